@@ -1,0 +1,80 @@
+"""The contract every controller keeps: ``state', pose = controller.step(state, intent, dt)``.
+
+State goes in, state comes out; a controller holds only what it was built from. So rewinding,
+replaying, testing and crowds need nothing more than keeping states.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal, Protocol
+
+import numpy as np
+
+from .body import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Intent:
+    """What somebody wants of a character, in the character's own ground frame.
+
+    velocity: (..., 3) forward speed v_f [m/s], angular speed ω [rad/s, counter-clockwise from
+    above] and lateral speed v_l [m/s, positive to the left].
+    """
+
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    @staticmethod
+    def tangential(v_t, omega, v_l) -> Intent:
+        """The intent in Truong's terms: tangential (total) speed v_t, ω and v_l, each (...).
+
+        v_f² = v_t² − v_l², with the sign of v_t: a negative v_t walks backward.
+        ValueError if |v_l| > |v_t|, which no motion has.
+        """
+        v_t, omega, v_l = np.broadcast_arrays(*(np.asarray(v, float) for v in (v_t, omega, v_l)))
+        if np.any(np.abs(v_l) > np.abs(v_t) + 1e-9):
+            raise ValueError("the lateral speed can't exceed the tangential (total) speed")
+        v_f = np.copysign(np.sqrt(np.maximum(v_t**2 - v_l**2, 0.0)), v_t)
+        return Intent(np.stack([v_f, omega, v_l], -1))
+
+
+@dataclass(frozen=True, eq=False)
+class CharacterState:
+    """All that is known of a character at one moment, whoever drives it.
+
+    ground: (..., 3) x, z [m] of the mid-shoulder point dropped to the floor, and heading θ [rad].
+    velocity: (..., 3) achieved (v_f, ω, v_l) in the ground frame [m/s, rad/s, m/s].
+    pose: the pose of the last step. contacts: (..., 4) bool, which of left heel, left ball,
+    right heel, right ball stand on the floor.
+    memory: what the active controller keeps for itself, a frozen dataclass of its own.
+    """
+
+    ground: np.ndarray
+    velocity: np.ndarray
+    pose: Pose
+    contacts: np.ndarray
+    memory: Any = None
+
+
+@dataclass(frozen=True)
+class Status:
+    """How a controller stands: running, done, or failed with a reason."""
+
+    kind: Literal["running", "done", "failed"] = "running"
+    reason: str = ""
+
+
+class Controller(Protocol):
+    """What the world asks of a controller."""
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """How well it could start from here for this intent: 0 not at all … 1 perfectly."""
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state with this controller's own memory, ready to step."""
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of `dt` seconds."""
+
+    def status(self, state: CharacterState) -> Status:
+        """Whether it goes on."""
