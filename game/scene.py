@@ -1,0 +1,67 @@
+"""What a frame shows: plain data between the world that makes it and the renderer that draws it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A pinhole camera. eye, target, up: (3,) [m] in the world. fov: vertical field of view [rad]."""
+
+    eye: np.ndarray
+    target: np.ndarray
+    up: np.ndarray = field(default_factory=lambda: np.array([0.0, 1.0, 0.0]))
+    fov: float = 0.8
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """One character to draw.
+
+    positions, orientations: (J, 3) [m], (J, 3, 3) world transforms of the standard human's joints.
+    tint: (3,) linear RGB. contacts: (4,) bool, left heel, left ball, right heel, right ball.
+    trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
+    """
+
+    positions: np.ndarray
+    orientations: np.ndarray
+    tint: tuple[float, float, float] = (0.75, 0.42, 0.22)
+    contacts: np.ndarray = field(default_factory=lambda: np.zeros(4, bool))
+    trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    path: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+
+
+@dataclass(frozen=True)
+class Box:
+    """A solid box on the stage (walls, pillars, platforms): centre [m], full size [m], heading [rad]."""
+
+    centre: tuple[float, float, float]
+    size: tuple[float, float, float]
+    heading: float = 0.0
+    tint: tuple[float, float, float] = (0.55, 0.56, 0.60)
+
+
+@dataclass(frozen=True)
+class Overlays:
+    """What to draw beside the bodies."""
+
+    mesh: bool = True
+    skeleton: bool = False
+    contacts: bool = False
+    trail: bool = False
+    path: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """All of one frame. text: lines for the top-left corner; panel: lines of a centred sheet (help, pause)."""
+
+    camera: Camera
+    figures: tuple[Figure, ...] = ()
+    boxes: tuple[Box, ...] = ()
+    overlays: Overlays = Overlays()
+    text: tuple[str, ...] = ()
+    panel: tuple[str, ...] = ()
