@@ -1,0 +1,93 @@
+"""What other people call the joints of a human.
+
+Every tool has its own names: `LeftUpLeg`, `lfemur`, `L_Hip`, `mixamorig:LeftUpLeg`, `thigh.L`.
+Only limbs, hips and head are told by name; which joints make up the trunk and the neck follows
+from the tree (from the hips to where the arms part, and on to the head), whatever they are called.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ..body import Skeleton
+
+# our name → what it is called elsewhere, the best first. Order matters: a name goes to the first
+# joint that asks for it, so that `LeftShoulder` is the upper arm only where nothing better is.
+_LIMBS = {
+    "UpLeg": ("upleg", "upperleg", "thigh", "femur", "hip"),
+    "Leg": ("leg", "lowerleg", "lowleg", "shin", "calf", "knee", "tibia"),
+    "Foot": ("ankle", "foot"),
+    "Toe": ("toebase", "toes", "toe", "toe0", "ball", "foot"),
+    "Arm": ("arm", "uparm", "upperarm", "humerus", "shldr", "shoulder"),
+    "ForeArm": ("forearm", "lowerarm", "lowarm", "elbow", "radius"),
+    "Hand": ("hand", "wrist"),
+    "Shoulder": ("shoulder1", "collar", "clavicle", "shoulder"),
+}
+_MIDLINE = {"Hips": ("hips", "hip", "pelvis", "root"), "Head": ("head",)}
+_NEEDED = tuple(side + limb for side in ("Left", "Right") for limb in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm"))
+
+
+@dataclass(frozen=True)
+class Roles:
+    """Which joint of a skeleton plays which part.
+
+    limbs: joint number by our name (`Hips`, `Head`, `LeftUpLeg`, …); hands, toes and clavicles
+    may be missing. trunk: joint numbers above the hips up to the one that carries the arms.
+    neck: from there up to the head, the head included.
+    """
+
+    limbs: dict[str, int]
+    trunk: tuple[int, ...]
+    neck: tuple[int, ...]
+
+
+def plain(name: str) -> str:
+    """A joint's name without namespace, punctuation, case and a tool's prefix."""
+    short = re.sub(r"[^a-z0-9]", "", name.split(":")[-1].lower())
+    return re.sub(r"^(mixamorig\d*|bip0?1)(?=.)", "", short)
+
+
+def roles(skeleton: Skeleton) -> Roles:
+    """Find the parts of a human in any skeleton.
+
+    ValueError, naming the missing parts and the names there are, if it has no legs, arms or head.
+    """
+    known = {}
+    for number, name in enumerate(skeleton.names):
+        known.setdefault(plain(name), number)
+    found: dict[str, int] = {}
+    for side, marks in (("Left", ("left", "l")), ("Right", ("right", "r"))):
+        for limb, bases in _LIMBS.items():
+            names = [n for base in bases for mark in marks for n in (mark + base, base + mark)]
+            number = next((known[n] for n in names if n in known and known[n] not in found.values()), None)
+            if number is not None:
+                found[side + limb] = number
+    for part, names in _MIDLINE.items():
+        number = next((known[n] for n in names if n in known), None)
+        if number is not None:
+            found[part] = number
+    found.setdefault("Hips", 0)
+    missing = [part for part in (*_NEEDED, "Head") if part not in found]
+    if missing:
+        raise ValueError(f"not a human we know: no {', '.join(missing)} among {', '.join(skeleton.names)}")
+    above = _path(skeleton, found["LeftArm"])
+    others = _path(skeleton, found["RightArm"])
+    chest = max(i for i in above if i in others)
+    head = _path(skeleton, found["Head"])
+    return Roles(found, _chain(skeleton, _path(skeleton, chest), found["Hips"], chest),
+                 _chain(skeleton, head, max(i for i in head if i in above), found["Head"]))
+
+
+def _path(skeleton, joint):
+    """Joint numbers from the root to a joint, both included."""
+    path = []
+    while joint >= 0:
+        path.append(int(joint))
+        joint = skeleton.parents[joint]
+    return path[::-1]
+
+
+def _chain(skeleton, path, after, last):
+    """The joints of a path after one and up to another; dummies, which never move, left out."""
+    return tuple(j for j in path if after < j <= last and "dummy" not in plain(skeleton.names[j]))

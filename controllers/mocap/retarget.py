@@ -1,0 +1,102 @@
+"""Other people's motion on Gambol's own skeleton.
+
+Orientations are carried over joint by joint through constant corrections (`calibration`), the
+way of the hips and of both ankles is scaled by the ratio of leg lengths, and two-bone inverse
+kinematics puts our ankles there: a foot that stood still in the data still stands still.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..body import Clip, Skeleton, forward_kinematics, human, local_rotations
+from ..body.human import CONTACT_HEIGHT
+from ..body.ik import two_bone_turns
+from ..body.rotations import exp, log
+from .calibration import SIDES, Calibration, calibrate, flat_frames, foot_points
+
+_TRUNK = ("Spine", "Spine1", "Spine2")
+_NECK = ("Neck", "Head")
+
+
+def retarget(clip: Clip, skeleton: Skeleton | None = None, *, calibration: Calibration | None = None) -> Clip:
+    """The same motion on another human skeleton with our joint names, feet on the floor y = 0.
+
+    clip: any human skeleton, metres, Y up. skeleton: the standard human by default.
+    calibration: from `calibrate`; by default from this clip alone, which serves where the foot
+    stands flat in it. ValueError if the clip's skeleton is no human, or not the calibrated one.
+    """
+    skeleton = skeleton or human()
+    known = calibration or calibrate([clip], skeleton)
+    if len(known.corrections) != len(clip.skeleton):
+        raise ValueError(f"{clip.name}: {len(clip.skeleton)} joints, but the calibration is of "
+                         f"{len(known.corrections)}")
+    positions, orientations = clip.kinematics()
+    limbs = known.roles.limbs
+    ours = _carry_over(skeleton, known, orientations)
+    hips = skeleton.index("Hips")
+    between_hips = (skeleton.offsets[skeleton.index("LeftUpLeg")] + skeleton.offsets[skeleton.index("RightUpLeg")]) / 2
+    root = known.scale * (positions[:, limbs["LeftUpLeg"]] + positions[:, limbs["RightUpLeg"]]) / 2
+    root = root - ours[:, hips] @ between_hips
+    for side in SIDES:
+        _place_ankle(skeleton, side, root, ours, known.scale * positions[:, limbs[side + "Foot"]])
+    root[:, 1] += _floor_shift(clip, skeleton, known, positions, orientations, root, ours)
+    local = local_rotations(skeleton, ours)
+    return Clip(clip.name, skeleton, clip.frame_time, root, Rotation.from_matrix(local).as_quat())
+
+
+def _carry_over(skeleton, known, orientations):
+    """Our world orientations (T, J, 3, 3) from theirs; a missing joint goes with its parent."""
+    theirs = orientations @ known.corrections
+    part = known.roles
+    given = {name: theirs[:, part.limbs[name]] for name in skeleton.names if name in part.limbs}
+    chest = theirs[:, part.trunk[-1]] if part.trunk else given["Hips"]
+    given |= _share(_TRUNK, [given["Hips"], *(theirs[:, j] for j in part.trunk)])
+    given |= _share(_NECK, [chest, *(theirs[:, j] for j in part.neck)])
+    ours = np.empty((len(orientations), len(skeleton), 3, 3))
+    for j, name in enumerate(skeleton.names):
+        ours[:, j] = given[name] if name in given else ours[:, skeleton.parents[j]]
+    return ours
+
+
+def _share(names, chain):
+    """A chain of source orientations spread over our joints: the last keeps the last one."""
+    shared = {}
+    for i, name in enumerate(names, 1):
+        place = i / len(names) * (len(chain) - 1)
+        low = min(int(np.floor(place + 1e-9)), len(chain) - 1)
+        high = min(low + 1, len(chain) - 1)
+        step = log(np.swapaxes(chain[low], -1, -2) @ chain[high])
+        shared[name] = chain[low] @ exp((place - low) * step)
+    return shared
+
+
+def _place_ankle(skeleton, side, root, ours, ankle):
+    """Turn thigh and shank (in `ours`, in place) so that the ankle comes to `ankle` (T, 3) [m]."""
+    positions, _ = forward_kinematics(skeleton, root, local_rotations(skeleton, ours))
+    hip, knee, foot = (skeleton.index(side + name) for name in ("UpLeg", "Leg", "Foot"))
+    # the knee points where the data bends it; a straight leg takes the thigh's own forward axis
+    line = positions[:, foot] - positions[:, hip]
+    bend = positions[:, knee] - positions[:, hip]
+    along = np.sum(bend * line, -1, keepdims=True) / np.sum(line * line, -1, keepdims=True)
+    pole = bend - along * line + 0.02 * ours[:, hip, :, 2]
+    upper, lower = two_bone_turns(positions[:, hip], positions[:, knee], positions[:, foot], ankle, pole)
+    ours[:, hip] = upper @ ours[:, hip]
+    ours[:, knee] = lower @ ours[:, knee]
+
+
+def _floor_shift(clip, skeleton, known, positions, orientations, root, ours):
+    """How far to lift the clip [m] so that the balls of flat feet are at their contact height."""
+    at, _ = forward_kinematics(skeleton, root, local_rotations(skeleton, ours))
+    heights = []
+    for side in SIDES:
+        flat = flat_frames(*foot_points(clip.skeleton, known.roles, side, positions, orientations), clip.frame_time)
+        heights.append(at[flat, skeleton.index(side + "Toe"), 1])
+    return _contact_height(skeleton) - np.median(np.concatenate(heights))
+
+
+def _contact_height(skeleton):
+    """CONTACT_HEIGHT [m] at this skeleton's size, told by its ankle above the ball."""
+    drop = skeleton.offsets[skeleton.index("LeftToe"), 1] / human().offsets[human().index("LeftToe"), 1]
+    return CONTACT_HEIGHT * drop
