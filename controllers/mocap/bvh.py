@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import warnings
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body import Clip, Skeleton
-from .text import decode, fail, line_at, number, numbers, read_bytes, table, turns, whole
-
-_CHANNELS = {f"{axis}{kind}".lower(): (kind, i) for kind in ("rotation", "position")
-             for i, axis in enumerate("XYZ")}
-
-
-@dataclass
-class _Joint:
-    name: str
-    parent: int
-    line: int
-    offset: np.ndarray | None = None
-    channels: list[tuple[str, int]] | None = None
-    ends: list[np.ndarray] = field(default_factory=list)
+from .bvh_header import Joint, read_header
+from .text import fail, read_bytes, table, turns
 
 
 def read_bvh(path) -> Clip:
@@ -37,23 +25,21 @@ def read_bvh(path) -> Clip:
     MotionFileError, naming file and line, for anything that is not sound BVH.
     """
     data = read_bytes(path)
-    lines, body = _header(data, path)
-    joints, at = _hierarchy(lines, path)
-    frames, frame_time = _motion(lines[at:], path)
-    columns = [(j, kind, axis) for j, joint in enumerate(joints) for kind, axis in joint.channels]
-    if not columns:
+    joints, frames, frame_time, body = read_header(data, path)
+    channels = [(j, kind, axis) for j, joint in enumerate(joints) for kind, axis in joint.channels]
+    if not channels:
         fail(path, joints[0].line, "no joint has any channel")
-    values = table(data, body, len(columns), frames, path)
-    turning = [(c, j, axis) for c, (j, kind, axis) in enumerate(columns) if kind == "rotation"]
+    values = table(data, body, len(channels), frames, path)
     offsets = np.stack([joint.offset for joint in joints])
     root = np.tile(offsets[0], (frames, 1))
-    for c, (j, kind, axis) in enumerate(columns):
+    for c, (j, kind, axis) in enumerate(channels):
         if kind == "position" and j == 0:
             root[:, axis] = values[:, c]
-    _rigid(joints, columns, values, offsets, path)
-    index = np.array(turning, np.int64).reshape(-1, 3)
+    _settle(joints, channels, values, offsets, path)
+    turning = np.array([(c, j, axis) for c, (j, kind, axis) in enumerate(channels) if kind == "rotation"],
+                       np.int64).reshape(-1, 3)
     values *= np.pi / 180.0
-    quaternions = turns(values, index[:, 0], index[:, 1], np.eye(3)[index[:, 2]], len(joints))
+    quaternions = turns(values, turning[:, 0], turning[:, 1], np.eye(3)[turning[:, 2]], len(joints))
     ends = [(j, end) for j, joint in enumerate(joints) for end in joint.ends]
     skeleton = Skeleton(tuple(joint.name for joint in joints),
                         np.array([joint.parent for joint in joints]), offsets,
@@ -61,145 +47,71 @@ def read_bvh(path) -> Clip:
     return Clip(Path(path).stem, skeleton, frame_time, root, quaternions)
 
 
-def _header(data: bytes, path) -> tuple[list[tuple[int, list[str]]], int]:
-    """The header's words by line, [(line, words)], and the byte at which the frames begin."""
-    motion = data.upper().find(b"MOTION")
-    stop = data.lower().find(b"frame time", motion) if motion >= 0 else -1
-    stop = data.find(b"\n", stop) + 1 if stop >= 0 else 0
-    text = decode(data[:stop] if stop else data, path)
-    spaced = text.replace("{", " { ").replace("}", " } ")
-    lines = [(i, words) for i, line in enumerate(spaced.split("\n"), 1) if (words := line.split())]
-    return lines, stop if stop else len(data)
-
-
-def _hierarchy(lines, path) -> tuple[list[_Joint], int]:
-    """Joints in file order, and how many of the lines they took (MOTION comes next)."""
-    words = [(word, i, k) for k, (i, line) in enumerate(lines) for word in line]
-    words.append(("", lines[-1][0], len(lines)))
-    if words[0][0].upper() != "HIERARCHY":
-        fail(path, words[0][1], f"a BVH file begins with HIERARCHY, not '{words[0][0][:40]}'")
-    joints: list[_Joint] = []
-    known: dict[str, int] = {}
-    open_: list[int] = []  # the joints whose brace is open; -1 for an end site
-    n = 1
-
-    def take(count):
-        nonlocal n
-        taken = [word for word, _, _ in words[n:n + count]]
-        n += count
-        return taken
-
-    def offset(what):
-        return numbers([w for w in take(3) if w not in ("{", "}", "")], 3, f"the OFFSET of {what}", path, line)
-
-    while True:
-        word, line, k = words[n]
-        n += 1
-        kind = word.upper()
-        here = joints[open_[-1]] if open_ and open_[-1] >= 0 else None
-        if kind in ("ROOT", "JOINT", "END"):
-            name = []
-            while words[n][0] not in ("{", ""):
-                name += take(1)
-            if words[n][0] != "{":
-                fail(path, line, f"no '{{' after {word} {' '.join(name)[:40]}")
-            n += 1
-            if kind == "ROOT" and joints:
-                fail(path, line, "a second ROOT: a file holds one skeleton")
-            if kind != "ROOT" and here is None:
-                fail(path, line, f"{word} {' '.join(name)[:40]} stands outside any joint's braces")
-            if kind == "END":
-                _complete(here, path, line)
-                open_.append(-1)
-                continue
-            name = " ".join(name)
-            if not name:
-                fail(path, line, f"{word} needs a name")
-            if name in known:
-                fail(path, line, f"joint '{name}' was already declared in line {known[name]}")
-            if here is not None:
-                _complete(here, path, line)
-            known[name] = line
-            joints.append(_Joint(name, open_[-1] if open_ else -1, line))
-            open_.append(len(joints) - 1)
-        elif kind == "OFFSET" and open_:
-            if here is None:
-                owner = joints[open_[-2]]
-                owner.ends.append(offset(f"the End Site of '{owner.name}'"))
-            else:
-                here.offset = offset(f"'{here.name}'")
-        elif kind == "CHANNELS" and here is not None:
-            count = whole(take(1)[0], "the number of CHANNELS", path, line)
-            here.channels = [_channel(w, here, count, path, line) for w in take(min(count, 7))]
-            if count > 6 or len(set(here.channels) - {("rotation", i) for i in range(3)}) < sum(
-                    kind == "position" for kind, _ in here.channels):
-                fail(path, line, f"'{here.name}' declares {count} channels; there are at most "
-                     "three positions, each once, and three rotations")
-        elif word == "}" and open_:
-            if here is not None:
-                _complete(here, path, line)
-            open_.pop()
-        elif kind == "MOTION" and joints and not open_:
-            return joints, k
-        else:
-            found = f"'{word[:40]}'" if word else "the end of the header"
-            if open_:
-                owner = joints[max(open_)]
-                fail(path, line, f"{found} where JOINT, End Site, OFFSET, CHANNELS or '}}' should stand: "
-                     f"'{owner.name}' of line {owner.line} is still open")
-            fail(path, line, f"{found} where {'MOTION' if joints else 'ROOT'} should stand")
-
-
-def _complete(joint: _Joint, path, line: int) -> None:
-    if joint.offset is None:
-        fail(path, line, f"joint '{joint.name}' of line {joint.line} has no OFFSET")
-    if joint.channels is None:
-        joint.channels = []
-
-
-def _channel(word: str, joint: _Joint, count: int, path, line: int) -> tuple[str, int]:
-    if word.lower() not in _CHANNELS:
-        if word.upper() in ("JOINT", "END", "{", "}", "OFFSET", ""):
-            fail(path, line, f"'{joint.name}' declares {count} CHANNELS but names fewer")
-        fail(path, line, f"unknown channel '{word[:40]}': a channel is X, Y or Z with position or rotation")
-    return _CHANNELS[word.lower()]
-
-
-def _motion(lines, path) -> tuple[int, float]:
-    """Frames and the frame time [s], from the lines MOTION, Frames: n, Frame Time: s."""
-    words = [word for _, line in lines for word in line]
-    at = [i for i, line in lines for _ in line]
-    low = [word.lower().rstrip(":") for word in words] + [""] * 6
-    words += ["nothing"] * 6
-    at += [at[-1]] * 6
-    if low[1] != "frames":
-        fail(path, at[1], f"'Frames: n' should follow MOTION, not '{words[1][:40]}'")
-    frames = whole(words[2], "the number of Frames", path, at[2])
-    if frames == 0:
-        fail(path, at[2], "the file holds zero frames; at least one is needed")
-    if low[3:5] != ["frame", "time"]:
-        fail(path, at[3], f"'Frame Time: seconds' should follow Frames, not '{words[3][:40]}'")
-    frame_time = number(words[5], path, at[5])
-    if frame_time <= 0:
-        fail(path, at[5], f"the Frame Time must be above zero seconds, not {frame_time}")
-    if len(lines) and sum(len(line) for _, line in lines) > 6:
-        fail(path, at[6], f"'{words[6][:40]}' after the Frame Time: the frames begin on the next line")
-    return frames, frame_time
-
-
-def _rigid(joints, columns, values, offsets, path) -> None:
-    """Let the position channels of other joints than the root replace their offsets, in place."""
-    moving: dict[int, list[tuple[int, int]]] = {}
-    for c, (j, kind, axis) in enumerate(columns):
-        if kind == "position" and j > 0 and values[:, c].any():
-            moving.setdefault(j, []).append((c, axis))
-    stretching = []
+def _settle(joints: list[Joint], channels, values: np.ndarray, offsets: np.ndarray, path) -> None:
+    """Let the position channels of joints other than the root replace their offsets, in place."""
     longest = np.linalg.norm(offsets[1:], axis=-1).max(initial=0.0)
-    for j, channels in moving.items():
-        for c, axis in channels:
-            offsets[j, axis] = np.median(values[:, c])
-            if np.ptp(values[:, c]) > 0.01 * longest:
+    stretching = []
+    for j in sorted({j for j, kind, _ in channels if kind == "position" and j > 0}):
+        mine = [(c, axis) for c, (i, kind, axis) in enumerate(channels) if i == j and kind == "position"]
+        track = values[:, [c for c, _ in mine]]
+        if track.any():
+            offsets[j, [axis for _, axis in mine]] = np.median(track, axis=0)
+            if np.ptp(track, axis=0).max() > 0.01 * longest:
                 stretching.append(joints[j].name)
     if stretching:
-        warnings.warn(f"{path}: the bones to {', '.join(dict.fromkeys(stretching))} change their "
-                      "length; a clip's bones are rigid, the median is taken", stacklevel=3)
+        warnings.warn(f"{path}: the bones to {', '.join(stretching)} change their length; a clip's "
+                      "bones are rigid, so the median over time is taken", stacklevel=3)
+
+
+def write_bvh(clip: Clip, path, order: str = "ZXY", unit: float = 0.01) -> None:
+    """Write a clip as BVH.
+
+    order: in which order the three rotation channels stand, which is the order of the intrinsic
+    turns. unit: metres in one unit of the file; 0.01 writes centimetres. White space and braces in
+    joint names become underscores. The root's OFFSET is written as zero, so that a reader that adds
+    it and one that doesn't agree. ValueError for another order, or numbers that are not finite.
+    """
+    if sorted(order.upper()) != ["X", "Y", "Z"]:
+        raise ValueError(f"the order of rotations is X, Y and Z in some order, not '{order}'")
+    order = order.upper()
+    lines, sequence = _hierarchy(clip.skeleton, order, unit)
+    angles = Rotation.from_quat(clip.quaternions).as_euler(order, degrees=True, suppress_warnings=True)
+    angles = np.unwrap(angles, period=360.0, axis=0)  # editors draw curves through the channels
+    values = np.concatenate([clip.root / unit, angles[:, sequence].reshape(len(clip), -1)], axis=1)
+    if not np.isfinite(values).all():
+        raise ValueError(f"the clip '{clip.name}' holds numbers that are not finite")
+    row = " ".join(["%.6f"] * values.shape[1])
+    lines += ["MOTION", f"Frames: {len(clip)}", f"Frame Time: {clip.frame_time:.9g}"]
+    lines += [row % tuple(frame) for frame in values.tolist()]
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _hierarchy(skeleton: Skeleton, order: str, unit: float) -> tuple[list[str], list[int]]:
+    """The header's lines, and the joints in the order in which they stand there: depth first."""
+    children = [np.flatnonzero(skeleton.parents == j).tolist() for j in range(len(skeleton))]
+    turning = " ".join(f"{axis}rotation" for axis in order)
+    lines, sequence, depth = ["HIERARCHY"], [], 0
+    stack = [(0, False)]  # joint, whether it only remains to be closed
+    while stack:
+        j, done = stack.pop()
+        if done:
+            depth -= 1
+            lines.append("\t" * depth + "}")
+            continue
+        tab, name = "\t" * depth, re.sub(r"[\s{}]+", "_", skeleton.names[j])
+        offset = skeleton.offsets[j] / unit if j else np.zeros(3)
+        placing = "3" if j else "6 Xposition Yposition Zposition"
+        lines += [f"{tab}{'JOINT' if j else 'ROOT'} {name}", tab + "{",
+                  f"{tab}\tOFFSET {_three(offset)}", f"{tab}\tCHANNELS {placing} {turning}"]
+        for e in np.flatnonzero(skeleton.end_parents == j):
+            lines += [f"{tab}\tEnd Site", f"{tab}\t{{",
+                      f"{tab}\t\tOFFSET {_three(skeleton.end_offsets[e] / unit)}", f"{tab}\t}}"]
+        sequence.append(j)
+        stack.append((j, True))
+        stack += [(child, False) for child in reversed(children[j])]
+        depth += 1
+    return lines, sequence
+
+
+def _three(vector) -> str:
+    return " ".join(f"{value:.8g}" for value in vector)
