@@ -1,0 +1,119 @@
+"""Steering: a wished velocity in the world becomes an intent in the character's own frame.
+
+Everything is a pure function over any batch. Nothing jumps as the wish changes, with one
+exception that no steering can avoid: straight behind, left and right are equally near. There
+the way the character already turns decides, so that it never dithers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body.rotations import wrap
+from ..contract import Intent
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How fast a body can go in each direction [m/s]; between them, ellipses."""
+
+    forward: float = 3.4
+    backward: float = 0.7
+    lateral: float = 0.6
+
+
+@dataclass(frozen=True)
+class Steering:
+    """How a character turns.
+
+    gain: rad/s of turning per rad of heading error. turn: the fastest turn [rad/s].
+    fade: below this wished speed [m/s] the direction of a wish counts less and less, as its
+    direction means nothing at rest. commit: how far beyond straight behind [rad] a turn that is
+    under way is still carried on the same way round.
+    """
+
+    gain: float = 4.0
+    turn: float = 2.0
+    fade: float = 0.15
+    commit: float = 0.5
+    reach: Reach = Reach()
+
+
+def turn_towards(heading, wanted, turning=0.0, settings: Steering = Steering()) -> tuple[np.ndarray, np.ndarray]:
+    """Angular speed ω [rad/s] and heading error [rad], both (...), that bring `heading` to `wanted`.
+
+    heading, wanted: (...) [rad]. turning: (...) the present ω [rad/s]. The error lies within
+    (-π, π], moved by up to `commit` to the side that the character turns to already.
+    """
+    lean = settings.commit * np.tanh(4.0 * np.asarray(turning, float) / settings.turn)
+    error = wrap(np.asarray(wanted) - heading - lean) + lean
+    return settings.turn * np.tanh(settings.gain * error / settings.turn), error
+
+
+def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steering()) -> Intent:
+    """The intent of a character that wishes to move with `velocity` in the world.
+
+    ground: (..., 3) x, z [m] and heading [rad]. velocity: (..., 2) wished world velocity along
+    x and z [m/s]. facing: None, or (...) the heading to hold [rad] whatever the movement
+    (strafing); NaN where none is held. turning: (...) the present angular speed [rad/s].
+
+    With nothing to face, the character turns to where it goes and walks only as far as it
+    already looks there: a wish to the side makes an arc, one straight back turns on the spot.
+    """
+    heading = np.asarray(ground, float)[..., 2]
+    velocity = np.asarray(velocity, float)
+    speed = np.hypot(velocity[..., 0], velocity[..., 1])
+    towards = np.arctan2(velocity[..., 0], velocity[..., 1])
+
+    trust = speed**2 / (speed**2 + settings.fade**2)
+    omega, error = turn_towards(heading, towards, turning, settings)
+    free = np.stack(np.broadcast_arrays(speed * (0.5 + 0.5 * np.cos(error)), trust * omega, 0.0), -1)
+    if facing is None:
+        return Intent(within(free, settings.reach))
+
+    facing = np.asarray(facing, float)
+    held = np.isfinite(facing)
+    omega, _ = turn_towards(heading, np.where(held, facing, heading), turning, settings)
+    cosine, sine = np.cos(heading), np.sin(heading)
+    strafe = np.stack(np.broadcast_arrays(
+        velocity[..., 0] * sine + velocity[..., 1] * cosine, omega,
+        velocity[..., 0] * cosine - velocity[..., 1] * sine), -1)
+    return Intent(within(np.where(held[..., None], strafe, free), settings.reach))
+
+
+def within(velocity, reach: Reach) -> np.ndarray:
+    """Velocities (..., 3) v_f, ω, v_l shortened to what the body reaches, direction and ω kept."""
+    velocity = np.asarray(velocity, float)
+    v_f, v_l = velocity[..., 0], velocity[..., 2]
+    along = np.where(v_f >= 0.0, reach.forward, reach.backward)
+    excess = np.maximum(np.hypot(v_f / along, v_l / reach.lateral), 1.0)
+    return np.stack([v_f / excess, velocity[..., 1], v_l / excess], -1)
+
+
+def in_world(ground, velocity) -> np.ndarray:
+    """World velocities (..., 2) along x and z [m/s] of ground frames (..., 3) moving with (..., 3) v_f, ω, v_l."""
+    heading, velocity = np.asarray(ground, float)[..., 2], np.asarray(velocity, float)
+    cosine, sine = np.cos(heading), np.sin(heading)
+    v_f, v_l = velocity[..., 0], velocity[..., 2]
+    return np.stack([v_f * sine + v_l * cosine, v_f * cosine - v_l * sine], -1)
+
+
+def drift(ground, velocity, seconds) -> np.ndarray:
+    """Ground frames (..., T, 3) that constant velocities lead to: arcs of circles.
+
+    ground: (..., 3) x, z [m], heading [rad]. velocity: (..., 3) v_f, ω, v_l in the moving
+    frame. seconds: (T,) times from now.
+    """
+    ground, velocity = np.asarray(ground, float)[..., None, :], np.asarray(velocity, float)[..., None, :]
+    seconds = np.asarray(seconds, float)
+    half = 0.5 * velocity[..., 1] * seconds
+    # the chord of an arc: as long as the way times sin(h)/h, and turned by half the angle
+    chord = seconds * np.sinc(half / np.pi)
+    middle = ground[..., 2] + half
+    cosine, sine = np.cos(middle), np.sin(middle)
+    v_f, v_l = velocity[..., 0], velocity[..., 2]
+    return np.stack([ground[..., 0] + chord * (v_f * sine + v_l * cosine),
+                     ground[..., 1] + chord * (v_f * cosine - v_l * sine),
+                     ground[..., 2] + 2.0 * half], -1)
