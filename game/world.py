@@ -1,0 +1,157 @@
+"""The world: characters and their controllers, stepped at a fixed rate.
+
+A world is a value. Stepping it gives the next one and leaves the old as it was, so pausing,
+rewinding, replaying and drawing in between need nothing more than keeping worlds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from controllers.body import Pose, forward_kinematics
+from controllers.body.rotations import wrap
+from controllers.contract import CharacterState, Intent
+from controllers.navigation import drift
+
+from .scene import Box, Figure
+
+RATE = 60
+"""Simulation steps a second, whatever the display does."""
+DT = 1.0 / RATE
+TRAIL_EVERY = 6
+TRAIL_LENGTH = 150
+FLOOR_LIFT = 0.01
+"""How high trails and paths are drawn above the floor [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Character:
+    """Somebody in the world.
+
+    controller: keeps `controllers.contract.Controller` and has the `skeleton` that it moves.
+    intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
+    """
+
+    name: str
+    controller: Any
+    state: CharacterState
+    tint: tuple[float, float, float] = (0.75, 0.42, 0.22)
+    intent: Intent = field(default_factory=Intent)
+    trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+
+    def step(self, intent: Intent, number: int) -> Character:
+        """One step on; `number` is that of the step that ends."""
+        state, _ = self.controller.step(self.state, intent, DT)
+        trail = self.trail
+        if number % TRAIL_EVERY == 0:
+            here = np.array([[state.ground[0], FLOOR_LIFT, state.ground[1]]])
+            trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
+        return replace(self, state=state, intent=intent, trail=trail)
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """All that is simulated at one moment. number: steps made since the start."""
+
+    characters: tuple[Character, ...] = ()
+    boxes: tuple[Box, ...] = ()
+    number: int = 0
+
+    @property
+    def time(self) -> float:
+        """Seconds of simulation since the start: exact, as it is counted, not summed."""
+        return self.number / RATE
+
+    def step(self, intents: Sequence[Intent]) -> World:
+        """The world one sixtieth of a second later; one intent for each character, in order."""
+        if len(intents) != len(self.characters):
+            raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
+        number = self.number + 1
+        return replace(self, number=number, characters=tuple(
+            character.step(intent, number) for character, intent in zip(self.characters, intents)))
+
+    def index(self, name: str) -> int:
+        """The number of a character. KeyError, naming it, if there is none."""
+        for i, character in enumerate(self.characters):
+            if character.name == name:
+                return i
+        raise KeyError(name)
+
+
+def replay(world: World, log: Iterable[Sequence[Intent]]) -> World:
+    """The world after the logged intents, one sequence for each step."""
+    for intents in log:
+        world = world.step(intents)
+    return world
+
+
+@dataclass(frozen=True)
+class FixedStep:
+    """Turns the display's uneven frames into whole steps.
+
+    cap: the most steps that one frame may ask for; what a late frame owes beyond is dropped,
+    so that a slow machine runs slower instead of falling ever further behind.
+    owed: seconds not yet simulated, always less than one step.
+    """
+
+    cap: int = 5
+    owed: float = 0.0
+
+    def add(self, seconds: float) -> tuple[int, FixedStep]:
+        """How many steps to make now that `seconds` have passed, and what is owed afterwards.
+
+        Negative, infinite and undefined times count as none.
+        """
+        owed = self.owed + (seconds if 0.0 <= seconds < np.inf else 0.0)
+        # a hair of slack, so that frames of exactly one step never skip a beat by rounding
+        steps = int(owed / DT + 1e-6)
+        if steps > self.cap:
+            return self.cap, replace(self, owed=0.0)
+        return steps, replace(self, owed=max(owed - steps * DT, 0.0))
+
+    @property
+    def alpha(self) -> float:
+        """How far the moment to draw lies between the last step but one and the last, 0 … 1."""
+        return min(self.owed / DT, 1.0)
+
+
+def ground_between(before: CharacterState, after: CharacterState, alpha: float) -> np.ndarray:
+    """The ground frame (..., 3) between two states, the heading by the shorter way round."""
+    change = after.ground - before.ground
+    change = np.concatenate([change[..., :2], wrap(change[..., 2:])], -1)
+    return before.ground + alpha * change
+
+
+def pose_between(before: Pose, after: Pose, alpha: float) -> Pose:
+    """The pose between two: the root on a line, each joint by the shortest rotation."""
+    if alpha <= 0.0:
+        return before
+    if alpha >= 1.0:
+        return after
+    turn = Rotation.from_matrix(np.swapaxes(before.rotations, -1, -2) @ after.rotations).as_rotvec()
+    return Pose(before.root + alpha * (after.root - before.root),
+                before.rotations @ Rotation.from_rotvec(alpha * turn).as_matrix())
+
+
+def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> tuple[Figure, ...]:
+    """What to draw of the characters between two worlds.
+
+    predict: seconds of the path ahead, if each character keeps the velocity it was asked for.
+    """
+    drawn = []
+    for old, new in zip(before.characters, after.characters):
+        pose = pose_between(old.state.pose, new.state.pose, alpha)
+        positions, orientations = forward_kinematics(new.controller.skeleton, pose.root, pose.rotations)
+        ground = ground_between(old.state, new.state, alpha)
+        ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16))
+        here = np.array([[ground[0], FLOOR_LIFT, ground[1]]])
+        contacts = (old if alpha < 0.5 else new).state.contacts
+        drawn.append(Figure(positions, orientations, new.tint, contacts,
+                            np.concatenate([old.trail, here]),
+                            np.stack([ahead[:, 0], np.full(len(ahead), FLOOR_LIFT), ahead[:, 1]], -1)))
+    return tuple(drawn)
