@@ -10,21 +10,23 @@ flat stance, since hardly any skeleton's zero pose has its soles level.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from collections.abc import Sequence
 
 import numpy as np
 
 from ..body import Clip, Skeleton, forward_kinematics, human
-from ..body.rotations import between, heading_of, mean, yaw
+from ..body.rotations import between, exp, heading_of, mean, yaw
 from .names import Roles, roles
+from .stance import flat_stance
 
 LIMBS = {"UpLeg": "Leg", "Leg": "Foot", "Arm": "ForeArm", "ForeArm": "Hand"}
 """The bones of the limbs: from a joint to the next, by our names without the side."""
 SIDES = ("Left", "Right")
-_FLAT_SPEED = 0.2  # m/s, ankle and ball of a foot that stands flat
-_FLAT_RISE = 0.02  # m, of the ankle above its 10th percentile among slow frames
 _UPRIGHT = np.cos(np.radians(20.0))
+_STRAIGHT = 0.04  # m: a leg that comes within this of straight is taken to straighten in its stride
+_MOST_ROLL = np.radians(3.0)
+_MOST_SINK = 0.01  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +35,19 @@ class Calibration:
 
     corrections: (J_source, 3, 3) the rotation C of each joint that plays a part, else identity.
     scale: our leg length over theirs. posed: whether the zero pose was a person standing.
+    ankles: (2, 3) [m] where our left and right ankle are in our foot's frame, seen from theirs
+    (scaled): some skeletons have their ankles 8 cm higher than people do, or one higher than the other.
+    clavicles: the share of the clavicles' rotation we take, so that longer ones do not shrug.
+    sink: how much lower than theirs our hips are [m], where our legs are uneven otherwise.
     """
 
     roles: Roles
     corrections: np.ndarray
     scale: float
     posed: bool
+    ankles: np.ndarray
+    clavicles: float
+    sink: float
 
 
 def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed: bool | None = None) -> Calibration:
@@ -71,10 +80,64 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
                 corrections[part.limbs[side + "Hand"]] = corrections[part.limbs[side + "ForeArm"]]
     else:
         _from_motion(skeleton, source, part, zero, motions, corrections)
-    for side in SIDES:
-        _level_feet(source, part, side, clips, motions, corrections)
-    ours = _leg_length(zero_positions(skeleton), {n: i for i, n in enumerate(skeleton.names)})
-    return Calibration(part, corrections, ours / _leg_length(zero, part.limbs), posed)
+    feet = [flat_stance(part, side, clips, motions) for side in SIDES]
+    for foot in feet:
+        for joint, turn in foot.turns.items():
+            corrections[joint] = turn
+    ours = {name: i for i, name in enumerate(skeleton.names)}
+    rest = zero_positions(skeleton)
+    scale = _leg_length(rest, ours) / _leg_length(zero, part.limbs)
+    drop = rest[ours["LeftFoot"], 1] - rest[ours["LeftToe"], 1] - scale * np.mean([foot.drop for foot in feet])
+    uneven = scale * np.median(feet[0].heights - feet[1].heights) / 2
+    ankles = np.array([[0.0, drop - uneven, 0.0], [0.0, drop + uneven, 0.0]])
+    clavicles = 1.0
+    if "LeftShoulder" in part.limbs:
+        bone = "LeftShoulder", "LeftArm"
+        clavicles = min(scale * _distance(zero, part.limbs, *bone) / _distance(rest, ours, *bone), 1.0)
+    draft = Calibration(part, corrections, scale, posed, ankles, clavicles, 0.0)
+    roll, sink = _even_legs(skeleton, draft, motions)
+    corrections[part.limbs["Hips"]] @= exp([0.0, 0.0, roll])
+    return replace(draft, sink=sink)
+
+
+def place_feet(skeleton: Skeleton, known: Calibration, positions: np.ndarray, orientations: np.ndarray
+               ) -> tuple[np.ndarray, np.ndarray]:
+    """Where our hip joints' midpoint (T, 3) and ankles (T, 2, 3) go [m], up to a constant height.
+
+    positions, orientations: (T, J, 3) [m], (T, J, 3, 3) of the source.
+    """
+    limbs = known.roles.limbs
+    middle = known.scale * (positions[:, limbs["LeftUpLeg"]] + positions[:, limbs["RightUpLeg"]]) / 2
+    middle[:, 1] -= known.sink
+    feet = [limbs["LeftFoot"], limbs["RightFoot"]]
+    turned = np.einsum("tsij,sj->tsi", orientations[:, feet] @ known.corrections[feet], known.ankles)
+    # the whole body sinks with the soles, so the legs keep their stretch
+    turned[..., 1] -= known.ankles[:, 1].mean()
+    return middle, known.scale * positions[:, feet] + turned
+
+
+def _even_legs(skeleton, known, motions):
+    """The pelvis' roll [rad] and how far it sinks [m] so that no foot hangs out of reach.
+
+    Fitted skeletons have one leg longer or one ankle higher than the other by up to 2 cm. On our
+    even legs a little roll evens out most of it, for the longer one's last reach the hips sink.
+    """
+    hips = known.roles.limbs["Hips"]
+    legs = [skeleton.offsets[skeleton.index(side + "UpLeg")] for side in SIDES]
+    length = _leg_length(zero_positions(skeleton), {name: i for i, name in enumerate(skeleton.names)})
+    stretch = []
+    for positions, orientations in motions:
+        middle, ankles = place_feet(skeleton, known, positions, orientations)
+        across = (orientations[:, hips] @ known.corrections[hips]) @ ((legs[0] - legs[1]) / 2)
+        stretch.append([np.linalg.norm(ankles[:, 0] - middle - across, axis=-1),
+                        np.linalg.norm(ankles[:, 1] - middle + across, axis=-1)])
+    left, right = np.percentile(np.concatenate(stretch, 1), 98, axis=1) - length
+    if min(left, right) < -_STRAIGHT:
+        return 0.0, 0.0
+    width = np.linalg.norm(legs[0] - legs[1])
+    roll = float(np.clip((right - left) / width, -_MOST_ROLL, _MOST_ROLL))
+    worst = max(left + roll * width / 2, right - roll * width / 2)
+    return roll, float(np.clip(worst + 0.002, 0.0, _MOST_SINK))
 
 
 def zero_positions(skeleton: Skeleton) -> np.ndarray:
@@ -82,40 +145,14 @@ def zero_positions(skeleton: Skeleton) -> np.ndarray:
     return forward_kinematics(skeleton, np.zeros(3), np.broadcast_to(np.eye(3), (len(skeleton), 3, 3)))[0]
 
 
-def flat_frames(ankle: np.ndarray, ball: np.ndarray, frame_time: float) -> np.ndarray:
-    """Frames (T,) bool in which a foot stands flat: ankle and ball slow, and the ankle low.
-
-    ankle, ball: (T, 3) [m]. Where hardly any frame is so slow (runs, noisy data) the measure is
-    loosened until half a percent, at least five frames, qualify.
-    """
-    if len(ankle) < 3:
-        return np.ones(len(ankle), bool)
-    speed = np.maximum(*(np.linalg.norm(np.gradient(p, frame_time, axis=0), axis=-1) for p in (ankle, ball)))
-    rise = ankle[:, 1] - np.percentile(ankle[:, 1], 2)
-    for factor in (1, 1.5, 2, 3, 5, 8, 15, 30):
-        slow = (speed < _FLAT_SPEED * factor) & (rise < 0.06 * factor)
-        if slow.sum() >= max(5, 0.005 * len(ankle)):
-            height = np.percentile(ankle[slow, 1], 10)
-            return slow & (ankle[:, 1] < height + _FLAT_RISE * factor)
-    return np.ones(len(ankle), bool)
-
-
-def foot_points(source: Skeleton, part: Roles, side: str, positions: np.ndarray, orientations: np.ndarray
-                ) -> tuple[np.ndarray, np.ndarray]:
-    """A source foot's ankle and ball (T, 3) [m]; without toes, the end of the foot serves as ball."""
-    foot = part.limbs[side + "Foot"]
-    if side + "Toe" in part.limbs:
-        return positions[:, foot], positions[:, part.limbs[side + "Toe"]]
-    ends = np.flatnonzero(source.end_parents == foot)
-    if not len(ends):
-        raise ValueError(f"{source.names[foot]} has neither a toe nor an end site: where does the foot point?")
-    return positions[:, foot], positions[:, foot] + orientations[:, foot] @ source.end_offsets[ends[0]]
-
-
 def _leg_length(zero, limbs):
     """Mean length [m] of thigh and shank together."""
-    return np.mean([np.linalg.norm(zero[limbs[side + a]] - zero[limbs[side + b]]) * 2
+    return np.mean([_distance(zero, limbs, side + a, side + b) * 2
                     for side in SIDES for a, b in (("UpLeg", "Leg"), ("Leg", "Foot"))])
+
+
+def _distance(zero, limbs, a, b):
+    return np.linalg.norm(zero[limbs[a]] - zero[limbs[b]])
 
 
 def _unit(v):
@@ -197,21 +234,3 @@ def _from_motion(skeleton, source, part, zero, motions, corrections):
             hand, fore = limbs[side + "Hand"], limbs[side + "ForeArm"]
             relative = np.swapaxes(orient(hand), -1, -2) @ orient(fore)
             corrections[hand] = mean(relative) @ corrections[fore]
-
-
-def _level_feet(source, part, side, clips, motions, corrections):
-    """Corrections of a foot and its toes so that flat stance comes out level; filled in place."""
-    joints = [part.limbs[side + limb] for limb in ("Foot", "Toe") if side + limb in part.limbs]
-    stands = []
-    for clip, (positions, orientations) in zip(clips, motions):
-        ankle, ball = foot_points(source, part, side, positions, orientations)
-        flat = flat_frames(ankle, ball, clip.frame_time)
-        turn = yaw(heading_of((ball - ankle)[flat]))
-        stands.append(np.swapaxes(turn, -1, -2)[:, None] @ orientations[flat][:, joints])
-    stands = np.concatenate(stands)
-    for k, joint in enumerate(joints):
-        middle = mean(stands[:, k])
-        for _ in range(3):  # the nearer half only: a median that heel rise and tiptoe cannot tilt
-            nearness = np.einsum("ij,tij->t", middle, stands[:, k])
-            middle = mean(stands[nearness >= np.median(nearness), k])
-        corrections[joint] = middle.T

@@ -11,10 +11,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body import Clip, Skeleton, forward_kinematics, human, local_rotations
-from ..body.human import CONTACT_HEIGHT
+from ..body.contact import contact_height
 from ..body.ik import two_bone_turns
-from ..body.rotations import exp, log
-from .calibration import SIDES, Calibration, calibrate, flat_frames, foot_points
+from ..body.rotations import between, exp, log
+from .calibration import SIDES, Calibration, calibrate, place_feet
+from .stance import flat_frames, foot_points
 
 _TRUNK = ("Spine", "Spine1", "Spine2")
 _NECK = ("Neck", "Head")
@@ -33,15 +34,15 @@ def retarget(clip: Clip, skeleton: Skeleton | None = None, *, calibration: Calib
         raise ValueError(f"{clip.name}: {len(clip.skeleton)} joints, but the calibration is of "
                          f"{len(known.corrections)}")
     positions, orientations = clip.kinematics()
-    limbs = known.roles.limbs
     ours = _carry_over(skeleton, known, orientations)
     hips = skeleton.index("Hips")
     between_hips = (skeleton.offsets[skeleton.index("LeftUpLeg")] + skeleton.offsets[skeleton.index("RightUpLeg")]) / 2
-    root = known.scale * (positions[:, limbs["LeftUpLeg"]] + positions[:, limbs["RightUpLeg"]]) / 2
-    root = root - ours[:, hips] @ between_hips
-    for side in SIDES:
-        _place_ankle(skeleton, side, root, ours, known.scale * positions[:, limbs[side + "Foot"]])
+    middle, ankles = place_feet(skeleton, known, positions, orientations)
+    root = middle - ours[:, hips] @ between_hips
+    for k, side in enumerate(SIDES):
+        _place_ankle(skeleton, side, root, ours, ankles[:, k])
     root[:, 1] += _floor_shift(clip, skeleton, known, positions, orientations, root, ours)
+    _bend_toes(skeleton, root, ours)
     local = local_rotations(skeleton, ours)
     return Clip(clip.name, skeleton, clip.frame_time, root, Rotation.from_matrix(local).as_quat())
 
@@ -54,6 +55,9 @@ def _carry_over(skeleton, known, orientations):
     chest = theirs[:, part.trunk[-1]] if part.trunk else given["Hips"]
     given |= _share(_TRUNK, [given["Hips"], *(theirs[:, j] for j in part.trunk)])
     given |= _share(_NECK, [chest, *(theirs[:, j] for j in part.neck)])
+    for side in SIDES:
+        if side + "Shoulder" in given:
+            given[side + "Shoulder"] = _part_way(chest, given[side + "Shoulder"], known.clavicles)
     ours = np.empty((len(orientations), len(skeleton), 3, 3))
     for j, name in enumerate(skeleton.names):
         ours[:, j] = given[name] if name in given else ours[:, skeleton.parents[j]]
@@ -67,9 +71,13 @@ def _share(names, chain):
         place = i / len(names) * (len(chain) - 1)
         low = min(int(np.floor(place + 1e-9)), len(chain) - 1)
         high = min(low + 1, len(chain) - 1)
-        step = log(np.swapaxes(chain[low], -1, -2) @ chain[high])
-        shared[name] = chain[low] @ exp((place - low) * step)
+        shared[name] = _part_way(chain[low], chain[high], place - low)
     return shared
+
+
+def _part_way(a, b, share):
+    """Rotations (..., 3, 3) on the way from a to b: 0 is a, 1 is b."""
+    return a @ exp(share * log(np.swapaxes(a, -1, -2) @ b))
 
 
 def _place_ankle(skeleton, side, root, ours, ankle):
@@ -86,6 +94,24 @@ def _place_ankle(skeleton, side, root, ours, ankle):
     ours[:, knee] = lower @ ours[:, knee]
 
 
+def _bend_toes(skeleton, root, ours):
+    """Turn toes (in `ours`, in place) that point into the floor along it: most data has them stiff."""
+    positions, _ = forward_kinematics(skeleton, root, local_rotations(skeleton, ours))
+    rest = contact_height(skeleton)
+    for side in SIDES:
+        toe = skeleton.index(side + "Toe")
+        bone = skeleton.end_offsets[skeleton.end_index[side + "Toe"]]
+        length = np.linalg.norm(bone)
+        points = ours[:, toe] @ (bone / length)
+        # a ball that is itself below the floor keeps its toes level
+        least = np.clip((rest - positions[:, toe, 1]) / length, -1.0, 0.0)
+        low = (points[:, 1] < least) & (np.hypot(points[:, 0], points[:, 2]) > 1e-6)
+        ground = points[low][:, [0, 2]]
+        ground *= np.sqrt(1 - least[low] ** 2)[:, None] / np.linalg.norm(ground, axis=-1, keepdims=True)
+        level = np.stack([ground[:, 0], least[low], ground[:, 1]], -1)
+        ours[low, toe] = between(points[low], level) @ ours[low, toe]
+
+
 def _floor_shift(clip, skeleton, known, positions, orientations, root, ours):
     """How far to lift the clip [m] so that the balls of flat feet are at their contact height."""
     at, _ = forward_kinematics(skeleton, root, local_rotations(skeleton, ours))
@@ -93,10 +119,4 @@ def _floor_shift(clip, skeleton, known, positions, orientations, root, ours):
     for side in SIDES:
         flat = flat_frames(*foot_points(clip.skeleton, known.roles, side, positions, orientations), clip.frame_time)
         heights.append(at[flat, skeleton.index(side + "Toe"), 1])
-    return _contact_height(skeleton) - np.median(np.concatenate(heights))
-
-
-def _contact_height(skeleton):
-    """CONTACT_HEIGHT [m] at this skeleton's size, told by its ankle above the ball."""
-    drop = skeleton.offsets[skeleton.index("LeftToe"), 1] / human().offsets[human().index("LeftToe"), 1]
-    return CONTACT_HEIGHT * drop
+    return contact_height(skeleton) - np.median(np.concatenate(heights))
