@@ -201,7 +201,11 @@ def load(name: str | File) -> Scenario:
     except tomllib.TOMLDecodeError as error:
         raise ScenarioError(f"{file}: not TOML: {error}") from None
     except ValidationError as error:
-        raise ScenarioError("\n".join(_fault(file, fault) for fault in error.errors())) from None
+        faults = error.errors()
+        # a list whose items are faulty also counts as too short: that line would only mislead
+        inner = [fault for fault in faults if not (fault["type"] == "too_short" and any(
+            f["loc"][:len(fault["loc"])] == fault["loc"] and f is not fault for f in faults))]
+        raise ScenarioError("\n".join(_fault(file, fault) for fault in inner)) from None
 
 
 def _fault(file: File, fault: dict) -> str:

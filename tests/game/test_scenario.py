@@ -1,0 +1,181 @@
+"""Scenarios: clear errors, the same to the bit, any frame rate the same motion."""
+
+import numpy as np
+import pytest
+
+from controllers.contract import Intent
+from game import film
+from game.input.script import Move, Script
+from game.scenario import OVERLAYS, Scenario, ScenarioError, load, shipped
+from game.scene import Overlays
+from game.world import DT
+from stand_in import Glide
+
+GOOD = """
+title = "Test"
+duration = 2
+[[actors]]
+name = "A"
+moves = [{ for = 1, velocity = [1.2, 0.5, 0.3] }, { walk_to = [0, 0], speed = 1 }]
+[[actors]]
+name = "B"
+start = [2, 0, 90]
+moves = [{ for = 1, velocity = [-0.5, 0, 0] }, { for = 0.5, stop = true, facing = 0 }]
+"""
+
+
+def written(folder, text):
+    file = folder / "my.toml"
+    file.write_bytes(text.encode() if isinstance(text, str) else text)
+    return file
+
+
+def test_all_that_is_shipped_loads_and_is_what_the_issue_lists():
+    assert {"speed_sweep", "curve_sweep", "holonomic", "start_stop", "medley", "corridor", "demo"} <= set(shipped())
+    for name in shipped():
+        scenario = load(name)
+        for actor in scenario.actors:
+            assert sum(move.seconds or 0 for move in actor.moves) <= scenario.duration + 1e-9, name
+    assert load("medley").duration == 60
+
+
+FAULTS = [
+    ("title", "colour = 1\ntitle", "colour: there is no such field"),
+    ('title = "Test"', "", "title: is missing, and needed"),
+    ("duration = 2", "duration = -2", "duration: input should be greater than 0, got -2"),
+    ("duration = 2", 'duration = "long"', "duration: input should be a valid number"),
+    ("duration = 2", "duration = nan", "duration:"),
+    ("duration = 2", "duration = 2\nfps = 0", "fps: input should be greater than or equal to 1, got 0"),
+    ("duration = 2", 'duration = 2\noverlays = ["bones"]', "overlays[0]: input should be 'mesh', 'skeleton'"),
+    ("velocity = [1.2, 0.5, 0.3]", "velocity = [1.2, 0.5]", "actors[0].moves[0].velocity[2]: is missing, and needed"),
+    ("velocity = [1.2, 0.5, 0.3]", "velocity = [0.2, 0.5, 0.3]", "actors[0].moves[0]: velocity is [v_t, ω, v_l] and |v_l| ≤ |v_t|"),
+    ("velocity = [1.2, 0.5, 0.3]", "velocity = [1.2, inf, 0.3]", "actors[0].moves[0].velocity[1]: input should be a finite number"),
+    ("walk_to = [0, 0], speed", "walk_to = [0, 0], stop = true, speed", "actors[0].moves[1]: needs exactly one of"),
+    ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, path, stop; has none"),
+    ("for = 1, velocity = [-0.5", "velocity = [-0.5", "actors[1].moves[0]: velocity needs `for`"),
+    ('name = "B"', 'name = "A"', "actors need different names; got A, A"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nkind = "fixed"', "shots[0]: a fixed shot needs eye"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nactor = "C"', "shots[0]: no actor is called 'C'; there are A, B"),
+    ("duration = 2", "duration = 2\n[[shots]]\n[[shots]]\nat = 0", "shots must begin at = 0 and then rise"),
+    ("duration = 2", "duration = ", "not TOML"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "says"), FAULTS)
+def test_a_fault_is_one_line_that_names_file_and_field(tmp_path, old, new, says):
+    assert old in GOOD
+    file = written(tmp_path, GOOD.replace(old, new, 1))
+    with pytest.raises(ScenarioError) as error:
+        load(file)
+    message = str(error.value)
+    assert says in message and message.startswith(str(file)) and "\n" not in message
+
+
+def test_several_faults_are_several_lines(tmp_path):
+    file = written(tmp_path, GOOD.replace("duration = 2", "duration = 0\nspeed = 3"))
+    with pytest.raises(ScenarioError) as error:
+        load(file)
+    assert len(str(error.value).splitlines()) == 2
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(ScenarioError, match="no scenario is called 'nowhere'.*corridor"):
+        load("nowhere")
+    with pytest.raises(ScenarioError, match="missing.toml"):
+        load(tmp_path / "missing.toml")
+    with pytest.raises(ScenarioError, match="not UTF-8 text .byte 9"):
+        load(written(tmp_path, b'title = "\xff"'))
+    with pytest.raises(ScenarioError, match=tmp_path.name):
+        load(tmp_path)
+
+
+def frames(scenario, seconds=2.0):
+    return list(film.run(scenario, Glide()))[: int(seconds * scenario.fps)]
+
+
+@pytest.fixture
+def scenario(tmp_path) -> Scenario:
+    return load(written(tmp_path, GOOD))
+
+
+def test_the_same_scenario_twice_is_the_same_to_the_bit(scenario):
+    for a, b in zip(frames(scenario), frames(scenario), strict=True):
+        for x, y in zip(a.before.characters, b.before.characters):
+            assert np.array_equal(x.state.ground, y.state.ground)
+            assert np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
+
+
+@pytest.mark.parametrize("fps", [1, 24, 30, 50, 120])
+def test_another_frame_rate_films_the_same_motion(scenario, fps):
+    reference = {round(f.time * 60): f.before for f in frames(scenario)}
+    shots = frames(scenario.at_fps(fps))
+    assert len(shots) == 2 * fps and shots[-1].time == (2 * fps - 1) / fps
+    for frame in shots:
+        assert 0 <= frame.alpha < 1
+        assert frame.before.time + frame.alpha * DT == pytest.approx(frame.time, abs=1e-12)
+        assert frame.after.number == frame.before.number + 1
+        for x, y in zip(frame.before.characters, reference[frame.before.number].characters):
+            assert np.array_equal(x.state.ground, y.state.ground)
+
+
+def test_scenes_are_filmed_with_cuts_and_overlays(tmp_path):
+    text = GOOD.replace("duration = 2", '''duration = 2
+overlays = ["skeleton", "trail"]
+props = [{ centre = [0, 1, 5], size = [1, 2, 1], heading = 45 }]
+[[shots]]
+kind = "dolly"
+eye = [5, 2, 0]
+to = [3, 2, 0]
+look_at = "B"
+[[shots]]
+at = 1
+kind = "follow"
+actor = "B"''')
+    scenario = load(written(tmp_path, text))
+    pictures = [scene for _, scene in film.scenes(scenario, Glide())]
+    assert len(pictures) == scenario.frames and len(pictures[0].figures) == 2 and len(pictures[0].boxes) == 1
+    assert pictures[0].overlays == Overlays(mesh=False, skeleton=True, trail=True)
+    assert pictures[0].camera.eye == pytest.approx([5, 2, 0]) and pictures[0].text == ("Test",)
+    assert np.linalg.norm(pictures[60].camera.eye - pictures[59].camera.eye) > 0.5
+    for a, b in zip(pictures[60:], pictures[61:]):
+        assert np.linalg.norm(a.camera.eye - b.camera.eye) < 0.1
+    _, first = next(film.scenes(scenario, Glide(), Overlays(path=True)))
+    assert first.overlays.path and not first.overlays.trail
+    assert set(OVERLAYS) == set(vars(Overlays()))
+
+
+def played(moves, seconds=20.0, ground=(0.0, 0.0, 0.0)):
+    glide = Glide()
+    state, script, asked = glide.start(ground), Script(tuple(moves)), []
+    for _ in range(round(seconds * 60)):
+        script, intent = script.step(state, DT)
+        state, _ = glide.step(state, intent, DT)
+        asked.append(intent.velocity)
+    return state, script, np.array(asked)
+
+
+def test_moves_take_their_time_and_then_it_rests():
+    _, script, asked = played([Move(1.0, (1, 0, 0)), Move(0.5, (0, 1, 0))], seconds=2)
+    assert np.all(asked[:60] == [1, 0, 0]) and np.all(asked[60:90] == [0, 1, 0]) and np.all(asked[90:] == 0)
+    assert script.done
+
+
+def test_a_velocity_may_change_on_the_way():
+    _, _, asked = played([Move(1.0, (0, 0, 0), until=(1, 0.5, 0))], seconds=1)
+    assert np.allclose(asked[30], [0.5, 0.25, 0])
+
+
+def test_walking_somewhere_arrives_and_goes_on_with_the_next_move():
+    state, script, _ = played([Move(np.inf, points=((0, -2), (2, -2)), speed=1.2), Move(np.inf, points=((2, 1),), facing=0.0, speed=0.5)])
+    assert script.done and np.linalg.norm(state.ground[:2] - [2, 1]) < 0.2 and abs(state.ground[2]) < 0.05
+    state, _, _ = played([Move(3.0, facing=2.0)], seconds=3)
+    assert state.ground[2] == pytest.approx(2.0, abs=0.01) and np.allclose(state.ground[:2], 0)
+
+
+def test_walking_to_where_one_stands_is_over_at_once():
+    state, script, asked = played([Move(np.inf, points=((0, 0),)), Move(0.2, (1, 0, 0))], seconds=1)
+    assert script.done and np.any(asked == 1.0)
+
+
+def test_no_moves_at_all():
+    assert np.array_equal(played([], seconds=0.1)[2][0], Intent().velocity)
