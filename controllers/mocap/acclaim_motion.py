@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -25,11 +26,13 @@ def read_amc(path, asf=None, fps: float = 120.0) -> Clip:
     MotionFileError, naming file and line, for anything that is not sound or doesn't fit the skeleton.
     """
     data = read_bytes(path)
-    acclaim = asf if isinstance(asf, AcclaimSkeleton) else read_asf(asf or _skeleton_beside(path))
-    start, radian = _head(data, acclaim.radian, path)
-    bones = _layout(data, start, acclaim, path)
+    if not isinstance(asf, AcclaimSkeleton):
+        asf = Path(asf or _skeleton_beside(path))
+        asf = _read_once(asf, asf.stat().st_mtime_ns) if asf.is_file() else read_asf(asf)
+    start, radian = _head(data, asf.radian, path)
+    bones = _layout(data, start, asf, path)
     values = _frames(data, start, [(name, len(dofs)) for name, dofs, _ in bones], path)
-    skeleton = acclaim.skeleton
+    skeleton = asf.skeleton
     turning: list[tuple[int, int, np.ndarray]] = []  # column, joint, axis
     root = np.tile(skeleton.offsets[0], (len(values), 1))
     column = 0
@@ -37,17 +40,23 @@ def read_amc(path, asf=None, fps: float = 120.0) -> Clip:
         # turns about fixed axes, one after another, are turns about moving axes in reverse
         for c, dof in reversed(list(enumerate(dofs, column))):
             if dof[0] == "r":
-                turning.append((c, joint, acclaim.axes[joint][:, "xyz".index(dof[1])]))
+                turning.append((c, joint, asf.axes[joint][:, "xyz".index(dof[1])]))
             elif dof[0] == "t" and joint == 0:
-                root[:, "xyz".index(dof[1])] += values[:, c] * acclaim.metre
+                root[:, "xyz".index(dof[1])] += values[:, c] * asf.metre
         column += len(dofs)
     values *= radian
     columns, joints, axes = (np.array(part) for part in zip(*turning))
     quaternions = turns(values, columns, joints, axes, len(skeleton))
-    if np.any(acclaim.axes[0] != np.eye(3)):  # the root's frame is its zero orientation, too
-        zero = Rotation.from_matrix(acclaim.axes[0])
+    if np.any(asf.axes[0] != np.eye(3)):  # the root's frame is its zero orientation, too
+        zero = Rotation.from_matrix(asf.axes[0])
         quaternions[:, 0] = (Rotation.from_quat(quaternions[:, 0]) * zero).as_quat()
     return Clip(Path(path).stem, skeleton, 1.0 / fps, root, quaternions)
+
+
+@lru_cache(maxsize=8)
+def _read_once(asf: Path, _modified: int) -> AcclaimSkeleton:
+    """One skeleton serves a folder of motions; read again when the file has changed."""
+    return read_asf(asf)
 
 
 def _skeleton_beside(path) -> Path:

@@ -1,0 +1,168 @@
+"""Any motion file as a clip in metres with Y up: what its units and axes are, judged from the body in it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..body import Clip, Skeleton
+from ..body.rotations import between
+from .acclaim_motion import read_amc
+from .bvh import read_bvh
+from .text import MotionFileError, fail
+
+UNITS = (1.0, 0.1, 0.01, 0.001, 0.3048, 0.0254, 0.0254 / 0.45)
+"""Metres in one unit: m, dm, cm, mm, foot, inch, and the 1/0.45 inch of CMU's recordings."""
+LEG = 0.856
+"""Thigh and shin of an adult [m], `LEG_PART` of the stature: de Leva 1996."""
+LEG_PART = 0.492
+_UP = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
+
+
+@dataclass(frozen=True)
+class Detected:
+    """How a raw clip is to be read.
+
+    up: the axis that points up, "x" … "-z". scale: metres in one unit. tpose: how many calibration
+    frames lead the motion. root_offset: whether the root's OFFSET adds to its position channels.
+    leg: thigh and shin [m], and the stature [m] that goes with them; nan without feet. floor: where
+    the lowest joint stands [m]: the 5th percentile over time.
+    """
+
+    up: str
+    scale: float
+    tpose: int
+    root_offset: bool
+    leg: float
+    stature: float
+    floor: float
+
+
+def read(path, *, asf=None) -> Clip:
+    """A raw clip from .bvh or .amc, in the file's own units and axes (AMC: metres).
+
+    asf: the skeleton of an AMC file, by default the one beside it. MotionFileError for other endings.
+    """
+    ending = Path(path).suffix.lower()
+    if ending == ".bvh":
+        return read_bvh(path)
+    if ending == ".amc":
+        return read_amc(path, asf)
+    fail(path, None, f"'{ending}' is no motion file: .bvh and .amc are read")
+
+
+def load(path, *, up: str | None = None, scale: float | None = None, tpose: int | None = None,
+         root_offset: bool | None = None, asf=None) -> Clip:
+    """A motion file as a clip in metres, Y up, without calibration frames; where it faces is left alone.
+
+    Whatever is not given is judged by `detect`; the arguments are as in `Detected`.
+    MotionFileError for a file that can't be read or judged; ValueError for an unknown `up`.
+    """
+    raw = read(path, asf=asf)
+    try:
+        found = detect(raw, up=up, scale=scale, tpose=tpose, root_offset=root_offset)
+    except MotionFileError as error:
+        fail(path, None, str(error))
+    return standardise(raw, found)
+
+
+def detect(clip: Clip, *, up: str | None = None, scale: float | None = None, tpose: int | None = None,
+           root_offset: bool | None = None) -> Detected:
+    """Judge a raw clip; what is given is taken for granted.
+
+    The scale is the unit that brings thigh and shin nearest to an adult's. Up is Z if the body,
+    from feet to head, stands along +Z more than along any other axis, and Y otherwise. Calibration
+    frames are cut off from the motion by a jump within the first two steps. The root's OFFSET is
+    added only where that brings a body from far off the floor onto it.
+    MotionFileError if no scale is given and none fits; ValueError for an unknown `up`.
+    """
+    leg = leg_length(clip.skeleton)
+    if scale is None:
+        scale = _unit(leg)
+    tpose = _calibration_frames(clip) if tpose is None else int(tpose)
+    moving = clip.slice(min(tpose, len(clip) - 1), len(clip))
+    positions, _ = moving.kinematics()
+    up = _up(clip.skeleton, positions) if up is None else up
+    height = scale * (positions @ _direction(up))
+    floor = float(np.percentile(height.min(axis=-1), 5))
+    raised = floor + scale * float(clip.skeleton.offsets[0] @ _direction(up))
+    if root_offset is None:
+        root_offset = bool(abs(floor) > 0.5 * leg * scale and abs(raised) < 0.2 * leg * scale)
+    return Detected(up, scale, tpose, root_offset, leg * scale, leg * scale / LEG_PART,
+                    raised if root_offset else floor)
+
+
+def standardise(clip: Clip, found: Detected) -> Clip:
+    """The clip in metres, Y up, without its calibration frames. A clip keeps one frame at least."""
+    clip = clip.slice(min(found.tpose, len(clip) - 1), len(clip))
+    skeleton, turn = clip.skeleton, between(_direction(found.up), np.array([0.0, 1.0, 0.0]))
+    root = clip.root + skeleton.offsets[0] if found.root_offset else clip.root
+    # axes change everywhere, not at the root alone, so that the zero pose stands upright, too
+    quaternions = clip.quaternions
+    if found.up != "y":
+        quaternions = np.concatenate([quaternions[..., :3] @ turn.T, quaternions[..., 3:]], -1)
+    skeleton = Skeleton(skeleton.names, skeleton.parents, skeleton.offsets @ turn.T * found.scale,
+                        skeleton.end_parents, skeleton.end_offsets @ turn.T * found.scale)
+    return replace(clip, skeleton=skeleton, root=root @ turn.T * found.scale, quaternions=quaternions)
+
+
+def leg_length(skeleton: Skeleton) -> float:
+    """Thigh and shin in the skeleton's own unit: the two bones above the ankles; nan without feet."""
+    lengths = np.linalg.norm(skeleton.offsets, axis=-1)
+    legs = []
+    for joint in _joints(skeleton, "foot|ankle"):
+        bones = []
+        while joint > 0 and len(bones) < 2:
+            if lengths[joint] > 1e-6 * lengths.max():  # dummy joints sit where their parents do
+                bones.append(lengths[joint])
+            joint = skeleton.parents[joint]
+        legs.append(sum(bones))
+    return float(np.mean(legs)) if legs else np.nan
+
+
+def _joints(skeleton: Skeleton, pattern: str) -> list[int]:
+    """Joints whose name matches, the first of each branch."""
+    fits = [re.search(pattern, name, re.IGNORECASE) is not None for name in skeleton.names]
+    return [j for j, fit in enumerate(fits) if fit and (j == 0 or not fits[skeleton.parents[j]])]
+
+
+def _unit(leg: float) -> float:
+    if not leg > 0:
+        raise MotionFileError("no foot or ankle to judge the unit by: give scale= (metres in one unit)")
+    best = min(UNITS, key=lambda unit: abs(np.log(unit * leg / LEG)))
+    if not 0.4 < best * leg < 1.4:
+        raise MotionFileError(f"a leg of {leg:.4g} units fits no unit we know: give scale= (metres in one unit)")
+    return best
+
+
+def _direction(up: str) -> np.ndarray:
+    if up not in _UP:
+        raise ValueError(f"up is one of {', '.join(_UP)}, not '{up}'")
+    return np.array(_UP[up], float)
+
+
+def _up(skeleton: Skeleton, positions: np.ndarray) -> str:
+    heads, feet = _joints(skeleton, "head|neck"), _joints(skeleton, "foot|ankle|toe")
+    if not heads or not feet:
+        return "y"
+    stand = np.median(positions[:, heads].mean(1) - positions[:, feet].mean(1), axis=0)
+    return "z" if stand[2] > max(abs(stand[0]), abs(stand[1])) else "y"
+
+
+def _calibration_frames(clip: Clip) -> int:
+    """Frames before the last jump among the first two steps.
+
+    A jump turns the joints by 8° on average, and 8 times as far as the steps of the first second
+    do: from a T-pose into motion it is 15° or more, while a recording's own flaws stay below 7°.
+    """
+    start = clip.quaternions[:1 + max(8, round(1.0 / clip.frame_time))]
+    if len(start) < 8:
+        return 0
+    turn = Rotation.from_quat(start[1:]) * Rotation.from_quat(start[:-1]).inv()
+    steps = np.degrees(turn.magnitude()).mean(axis=-1)
+    jumps = np.flatnonzero(steps[:2] > max(8.0, 8 * np.median(steps)))
+    return int(jumps[-1]) + 1 if len(jumps) else 0
