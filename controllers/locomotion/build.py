@@ -1,0 +1,187 @@
+"""Building a library: a folder of motion capture in, gait primitives out."""
+
+from __future__ import annotations
+
+import fnmatch
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ..body import Clip, human
+from ..body import rotations as rot
+from ..body.clip import mirror_index
+from ..mocap import MotionFileError, calibrate, load, retarget
+from . import fourier
+from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
+from .library import Library, LibraryError, Primitive, channels, reference_rotations
+from .selection import Choice, neighbours, select
+from .steady import settle
+
+Progress = Callable[[str, int, int], None]
+"""Called with what is being done, how much of it is done and how much there is."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Files to take cycles from: a glob inside the folder, gait families to look for, a handicap.
+
+    skip: patterns of file names to leave out. rank: handicap in scaled velocity against other
+    sources, so that one actor's cycles are preferred and others fill what that actor never did.
+    """
+
+    glob: str = "**/*"
+    families: tuple[str, ...] = ("walk", "run")
+    skip: tuple[str, ...] = ()
+    rank: float = 0.0
+    rest: bool = True
+
+
+def read_recipe(path: str | Path) -> tuple[list[Source], str]:
+    """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
+    try:
+        recipe = tomllib.loads(Path(path).read_text("utf-8"))
+        sources = [Source(**{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()})
+                   for s in recipe.get("source", [])]
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError) as error:
+        raise LibraryError(f"{path}: not a library recipe: {error}") from None
+    if not sources:
+        raise LibraryError(f"{path}: a recipe needs at least one [[source]]")
+    return sources, recipe.get("provenance", "")
+
+
+def gather(folder: Path, sources: list[Source], progress: Progress | None = None
+           ) -> tuple[list[tuple[Track, Source, str]], list[str]]:
+    """All clips of a folder on the standard human, prepared for cutting; and what could not be read.
+
+    Clips on the same skeleton are calibrated together. Each comes with its source and its actor.
+    """
+    found: dict[tuple[int, str], list[Path]] = {}
+    for number, source in enumerate(sources):
+        for path in sorted(folder.glob(source.glob)):
+            if path.suffix.lower() in (".bvh", ".amc") and not any(fnmatch.fnmatch(path.name, s) for s in source.skip):
+                found.setdefault((number, str(path.parent)), []).append(path)
+    total, done, problems, tracks = sum(map(len, found.values())), 0, [], []
+    if not total:
+        raise LibraryError(f"{folder}: no .bvh or .amc files in it" + (
+            "" if folder.is_dir() else " (no such folder)"))
+    for (number, parent), paths in found.items():
+        groups: dict[tuple, list[Clip]] = {}
+        for path in paths:
+            try:
+                clip = load(path)
+                if len(clip) * clip.frame_time > 0.6:
+                    groups.setdefault(_same_skeleton(clip), []).append(clip)
+            except MotionFileError as error:
+                problems.append(str(error))
+        for clips in groups.values():
+            try:
+                calibration = calibrate(clips)
+            except ValueError as error:
+                problems.append(f"{parent}: {error}")
+                continue
+            for clip in clips:
+                tracks.append((track(retarget(clip, calibration=calibration)), sources[number], parent))
+                done += 1
+                if progress:
+                    progress("reading", done, total)
+    return tracks, problems
+
+
+def _same_skeleton(clip: Clip) -> tuple:
+    return clip.skeleton.names, tuple(np.round(clip.skeleton.offsets[1:], 3).ravel())
+
+
+def build_library(folder: str | Path, recipe: str | Path | None = None,
+                  progress: Progress | None = None) -> tuple[Library, list[str]]:
+    """A library from a folder of BVH and ASF/AMC files, and notes on what was missing or unreadable.
+
+    LibraryError if the folder yields no walk that spans the control space.
+    """
+    sources, provenance = read_recipe(recipe) if recipe else ([Source()], "")
+    tracks, notes = gather(Path(folder), sources, progress)
+    cycles, rank, actor = [], [], []
+    for number, (one, source, parent) in enumerate(tracks):
+        for family in source.families:
+            for cycle in cut(one, family):
+                cycles.append(cycle)
+                rank.append(source.rank)
+                actor.append(parent)
+        if progress:
+            progress("cutting cycles", number + 1, len(tracks))
+    walk, missing = select(cycles, np.array(rank), "walk")
+    run, _ = select(cycles, np.array(rank), "run")
+    if len(walk) < 8:
+        raise LibraryError(f"{folder}: only {len(walk)} usable walking cycles; a library needs steady walking "
+                           "in several directions (forward, turning, sideways)")
+    notes += [f"no cycle for {label}" for label in missing]
+    library = assemble(cycles, np.array(actor), walk + run,
+                       [t for t, source, _ in tracks if source.rest], provenance)
+    return settle(library, progress), notes
+
+
+def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], stills: list[Track],
+             provenance: str = "") -> Library:
+    """Fourier coefficients of the chosen cycles, each averaged with its neighbours, and of rest."""
+    skeleton = human()
+    swap = mirror_index(skeleton)
+    reference = reference_rotations([cycles[c.cycle] for c in chosen])
+    primitives, velocities, rows = [], [], []
+    for choice in chosen:
+        seed = cycles[choice.cycle]
+        near, weight = neighbours(cycles, actor, choice.cycle, seed.family)
+        group = [mirrored(cycles[i], swap) if choice.mirrored else cycles[i] for i in near]
+        samples = sum(w * channels(c, reference) for w, c in zip(weight, group))
+        primitives.append(Primitive(choice.label, seed.clip, seed.start, seed.period, seed.family, seed.closure,
+                                    tuple(map(float, seed.events)), choice.mirrored, len(near)))
+        velocities.append(sum(w * c.velocity for w, c in zip(weight, group)))
+        rows.append(fourier.fit(samples))
+    walking = [i for i, p in enumerate(primitives) if p.family == "walk"]
+    rest, label = rest_pose(stills, reference)
+    row = np.zeros_like(rows[0])
+    row[0, :-5] = rest
+    row[:, -5:] = np.mean([rows[i][:, -5:] for i in walking], 0)  # it steps in place until its feet are right
+    primitives.append(Primitive("rest", label, 0.0, float(row[0, -1]), "rest", 0.0, tuple(EVENTS["walk"])))
+    return Library(skeleton, tuple(primitives), np.array(velocities + [np.zeros(3)]), np.array(rows + [row]),
+                   reference, provenance)
+
+
+def mirrored(cycle: Cycle, swap: np.ndarray) -> Cycle:
+    """The same cycle with left and right exchanged, half a cycle on, so that it starts at left toe-off."""
+    half = SAMPLES // 2
+    plane = np.diag([-1.0, 1.0, 1.0])
+    def turn(samples):
+        return np.roll(samples, -half, axis=0)
+    return replace(cycle, velocity=cycle.velocity * [1, -1, -1],
+                   rotations=turn(plane @ cycle.rotations[:, swap] @ plane), hips=turn(cycle.hips) * [-1, 1, 1],
+                   labels=turn(cycle.labels[:, [2, 3, 0, 1]]), duration=turn(cycle.duration))
+
+
+def rest_pose(tracks: list[Track], reference: np.ndarray) -> tuple[np.ndarray, str]:
+    """How somebody stands: the stillest second whose pose is not far from walking (a T-pose is).
+
+    Returns chart and hips (3 J + 3,) in the ground frame, and the name of the clip.
+    """
+    best, found = np.inf, None
+    second = int(RATE)
+    for one in tracks:
+        still = np.convolve(one.speeds.max(1), np.ones(second) / second, "valid")[::second // 2]
+        for k in np.argsort(still)[:4]:
+            a = k * second // 2
+            local = one.clip.slice(a, a + second).rotations
+            ground = one.ground[a:a + second].mean(0)
+            local[:, 0] = rot.yaw(-ground[2]) @ local[:, 0]
+            pose = rot.mean(local)
+            chart = rot.log(np.swapaxes(reference, -1, -2) @ pose)
+            score = still[k] / 0.02 + np.sqrt(np.mean(np.sum(chart**2, -1))) / 0.15
+            if score < best:
+                root = one.clip.root[a:a + second].mean(0)
+                c, s = np.cos(ground[2]), np.sin(ground[2])
+                dx, dz = root[0] - ground[0], root[2] - ground[1]
+                best = score
+                found = np.concatenate([chart.ravel(), [c * dx - s * dz, root[1], s * dx + c * dz]]), one.clip.name
+    if found is None:
+        raise LibraryError("no clip to take the standing pose from")
+    return found

@@ -1,0 +1,131 @@
+"""The control space: which primitives, and how much of each, give a wanted velocity.
+
+Truong 2010, section III: velocities (v_f, ω, v_l) are points of a 3-D Delaunay triangulation and
+the weights of the four primitives around a query are its barycentric coordinates (eq. 4). Beyond
+the paper: axes are scaled, queries outside are brought back along the ray to the anchor (the same
+path, walked slower), and because blending is not linear in velocity, the error measured at the
+middle of every edge gives a quadratic finite element of the velocity a blend really has, whose
+inverse corrects the query.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import ConvexHull, Delaunay
+
+SCALE = np.array([0.54, 0.99, 0.25])
+"""Spread of (v_f, ω, v_l) in human walking [m/s, rad/s, m/s]: one unit of distance in the space."""
+EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
+"""The six edges of a simplex, as pairs of its vertices."""
+INSIDE = 1.0 - 1e-6
+"""Clamped queries end this fraction of the way to the hull, so that rounding leaves them inside."""
+
+
+@dataclass(frozen=True, eq=False)
+class ControlSpace:
+    """Q points in velocity space, triangulated into S simplices.
+
+    points: (Q, 3) velocities, SI. anchor: (3,) the inner point that outside queries move towards.
+    simplices, neighbours: (S, 4) vertices, and the simplex opposite to each (-1: none).
+    transform: (S, 4, 3) as scipy's: barycentric b = T[:3] @ (p / SCALE − T[3]).
+    hull: (H, 4) planes, n·(p / SCALE) + d ≤ 0 inside. bend: (S, 6, 3) what a half-and-half blend
+    along each edge has beyond the mean of its ends' velocities.
+    """
+
+    points: np.ndarray
+    anchor: np.ndarray
+    simplices: np.ndarray
+    neighbours: np.ndarray
+    transform: np.ndarray
+    hull: np.ndarray
+    bend: np.ndarray
+
+    @staticmethod
+    def build(points: np.ndarray, anchor: np.ndarray | None = None) -> ControlSpace:
+        """Triangulate velocities (Q, 3). ValueError if they do not span the space."""
+        scaled = np.asarray(points, float) / SCALE
+        if len(scaled) < 4 or np.linalg.matrix_rank(scaled - scaled[0], tol=1e-3) < 3:
+            raise ValueError("the velocities must span all three of v_f, ω and v_l: "
+                             f"{len(scaled)} points given")
+        mesh, hull = Delaunay(scaled), ConvexHull(scaled)
+        sound = np.isfinite(mesh.transform).all((1, 2))
+        inner = scaled.mean(0) * SCALE if anchor is None else np.asarray(anchor, float)
+        if not np.all(hull.equations @ np.append(inner / SCALE, 1.0) < 0):
+            raise ValueError(f"the anchor {inner} lies outside the velocities' hull")
+        space = ControlSpace(np.asarray(points, float), inner, mesh.simplices.astype(np.int64),
+                             mesh.neighbors.astype(np.int64), mesh.transform,
+                             np.unique(np.round(hull.equations, 12), axis=0),
+                             np.zeros((len(mesh.simplices), 6, 3)))
+        if not sound.all():
+            raise ValueError(f"{(~sound).sum()} simplices are flat: thin out the velocities")
+        return space
+
+    def clamp(self, query: np.ndarray) -> np.ndarray:
+        """Queries (..., 3) brought into the hull along the ray to the anchor."""
+        origin = self.anchor / SCALE
+        ray = np.asarray(query, float) / SCALE - origin
+        room = -(self.hull[:, :3] @ origin + self.hull[:, 3])
+        reach = np.max(ray @ self.hull[:, :3].T / room, axis=-1)
+        return (origin + ray / np.maximum(reach / INSIDE, 1.0)[..., None]) * SCALE
+
+    def inside(self, query: np.ndarray) -> np.ndarray:
+        """Whether queries (..., 3) lie in the hull: (...) bool."""
+        return np.all(np.asarray(query) / SCALE @ self.hull[:, :3].T + self.hull[:, 3] <= 1e-9, -1)
+
+    def locate(self, query: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The simplex (...) and barycentric weights (..., 4) of queries (..., 3), clamped first: eq. (4)."""
+        p = self.clamp(query).reshape(-1, 1, 3) / SCALE
+        b = np.einsum("sij,nsj->nsi", self.transform[:, :3], p - self.transform[None, :, 3])
+        b = np.concatenate([b, 1 - b.sum(-1, keepdims=True)], -1)
+        best = np.argmax(b.min(-1), -1)
+        weights = np.maximum(b[np.arange(len(b)), best], 0.0)
+        weights /= weights.sum(-1, keepdims=True)
+        shape = np.shape(query)[:-1]
+        return best.reshape(shape), weights.reshape(shape + (4,))
+
+    def weights(self, query: np.ndarray, correct: int = 2) -> np.ndarray:
+        """Dense weights (..., Q) for queries (..., 3), after `correct` fixed-point corrections."""
+        target = self.clamp(query)
+        moved = target
+        for _ in range(correct):
+            moved = self.clamp(target - self.deviation(moved))
+        simplex, part = self.locate(moved)
+        dense = np.zeros(simplex.shape + (len(self.points),))
+        np.put_along_axis(dense, self.simplices[simplex], part, -1)
+        return dense
+
+    def deviation(self, query: np.ndarray) -> np.ndarray:
+        """Blended minus nominal velocity (..., 3) at queries: Σ 4 b_i b_j · bend of edge ij."""
+        simplex, b = self.locate(query)
+        pairs = 4 * b[..., EDGES[:, 0]] * b[..., EDGES[:, 1]]
+        return np.einsum("...e,...ei->...i", pairs, self.bend[simplex])
+
+    def edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """All edges (E, 2) as pairs of points, and which edge (S, 6) each simplex edge is."""
+        pairs = np.sort(self.simplices[:, EDGES].reshape(-1, 2), -1)
+        unique, number = np.unique(pairs, axis=0, return_inverse=True)
+        return unique, number.reshape(-1, 6)
+
+    def with_bend(self, bend: np.ndarray) -> ControlSpace:
+        """The same space, knowing the deviation (E, 3) measured at the middle of each of `edges()`."""
+        return replace(self, bend=np.asarray(bend, float)[self.edges()[1]])
+
+    def quality(self) -> np.ndarray:
+        """How round each simplex is (S,): 1 regular, 0 flat (3 · inradius / circumradius)."""
+        corners = (self.points / SCALE)[self.simplices]
+        a, b, c = (corners[:, i] - corners[:, 3] for i in range(3))
+        volume = np.abs(np.einsum("si,si->s", a, np.cross(b, c))) / 6
+        faces = [np.cross(a, b), np.cross(b, c), np.cross(c, a), np.cross(a - c, b - c)]
+        area = sum(np.linalg.norm(f, axis=-1) for f in faces) / 2
+        square = [np.sum(v * v, -1) for v in (a, b, c)]
+        centre = (square[0][:, None] * np.cross(b, c) + square[1][:, None] * np.cross(c, a)
+                  + square[2][:, None] * np.cross(a, b))
+        circumradius = np.linalg.norm(centre, axis=-1) / (12 * volume)
+        return 9 * volume / area / circumradius
+
+    def lipschitz(self) -> float:
+        """The steepest slope of any weight over the space, per unit of scaled velocity."""
+        rows = np.concatenate([self.transform[:, :3], -self.transform[:, :3].sum(1, keepdims=True)], 1)
+        return float(np.linalg.norm(rows, axis=-1).max())

@@ -1,0 +1,107 @@
+"""The locomotion controller: ``state', pose = locomotion.step(state, intent, dt)``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import assets
+
+from ..body import Pose, Skeleton
+from ..contract import CharacterState, Intent, Status
+from .kernel import body_tables, series_table, space_tables
+from .library import Library, LibraryError
+from .steady import space_of
+from .step import Settings, legs_of, memory_dtype, step_kernel
+
+DEFAULT_LIBRARY = assets.path("library", "default.npz")
+
+
+class Locomotion:
+    """Walks, turns, strafes, runs and stops by blending a library's primitives.
+
+    Holds only what it was built from; every character's state is passed in and out, with any
+    number of leading batch axes, so one call steps a crowd.
+    """
+
+    def __init__(self, library: Library, settings: Settings = Settings()):
+        self.library = library
+        self.settings = settings
+        self.walk = space_of(library, "walk")
+        runs = library.family("run")
+        self.run = space_of(library, "run") if len(runs) >= 5 else None
+        if self.run is None:  # no runs recorded: walking serves at any speed
+            self.settings = settings._replace(run_above=np.inf)
+        self._tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
+                        space_tables(self.run, runs) if self.run else
+                        space_tables(self.walk, library.family("walk")),
+                        series_table(library), library.velocities.astype(np.float32))
+        self._dtype = memory_dtype(len(library.primitives))
+
+    @staticmethod
+    def load(path: str | Path | None = None, settings: Settings = Settings()) -> Locomotion:
+        """The controller over a library file; the shipped one by default. LibraryError if unusable."""
+        return Locomotion(Library.load(path or DEFAULT_LIBRARY), settings)
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The standard human that the poses are of."""
+        return self.library.skeleton
+
+    def start(self, ground=(0.0, 0.0, 0.0)) -> CharacterState:
+        """A character at rest at ground (..., 3) x, z [m], heading [rad]. ValueError unless finite."""
+        ground = np.asarray(ground, float)
+        if ground.shape[-1:] != (3,) or not np.isfinite(ground).all():
+            raise ValueError(f"ground must be finite (..., 3) x, z, heading; got {ground!r}")
+        memory = np.zeros(ground.shape[:-1], self._dtype)
+        memory["ground"] = ground
+        memory["weights"][..., self.library.rest] = 1.0
+        memory["settled"] = 1
+        memory["phase"] = 0.25
+        memory["row"][..., -1] = 1.0
+        state = CharacterState(ground, np.zeros(ground.shape), Pose(np.zeros(ground.shape), np.zeros(3)),
+                               np.zeros(ground.shape[:-1] + (4,), bool), memory)
+        for _ in range(2):  # the first step finds the pose, the second knows where its feet were
+            state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)
+        memory = state.memory.copy()
+        memory["ground"], memory["breath"] = ground, 0.0
+        return replace(state, ground=ground, memory=memory)
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise).
+
+        intent.velocity broadcasts against the state's batch axes. A wish that is not finite counts
+        as no wish; one beyond what the library holds is walked as fast as it can on the same arc.
+        """
+        if not 0.0 < dt <= 0.1:
+            raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
+        memory = state.memory.reshape(-1).copy()
+        shape = state.memory.shape
+        wish = np.empty((len(memory), 3))
+        wish[:] = np.broadcast_to(intent.velocity, shape + (3,)).reshape(-1, 3)
+        wish[~np.isfinite(wish).all(-1)] = 0.0
+        np.clip(wish, -20.0, 20.0, out=wish)
+        joints = len(self.skeleton)
+        root = np.empty((len(memory), 3), np.float32)
+        local = np.empty((len(memory), joints, 3, 3), np.float32)
+        body, legs, walk, run, table, velocities = self._tables
+        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, velocities, root, local)
+        pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
+        memory = memory.reshape(shape)
+        return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory), pose
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """Walking can start from any pose: always possible, never urgent."""
+        return 0.5
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state as seen by this controller, at rest where the character is, unless it walked before."""
+        if isinstance(state.memory, np.ndarray) and state.memory.dtype == self._dtype:
+            return state
+        return self.start(state.ground)
+
+    def status(self, state: CharacterState) -> Status:
+        """Locomotion never ends by itself."""
+        return Status("running")

@@ -1,0 +1,125 @@
+"""The motion library: gait primitives as Fourier coefficients, with where each one came from."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..body import Skeleton, human
+from ..body import rotations as rot
+from . import fourier
+from .cycles import Cycle
+
+# what the columns of a coefficient array are, for J joints
+HIPS, LABELS, DURATION = -8, -5, -1
+"""Columns counted from the end: hips x, y, z; four contact labels; duration dt/dφ [s]."""
+
+
+class LibraryError(ValueError):
+    """A library file that can't be used, with the reason."""
+
+
+@dataclass(frozen=True)
+class Primitive:
+    """Where one primitive of the library comes from and how good it is.
+
+    label: its place in the protocol. clip, start [s], period [s]: the recorded cycle. family:
+    "walk", "run" or "rest". closure [rad]: RMS joint angle between its two ends. events: fractions
+    of the period. mirrored: left and right exchanged. averaged: cycles averaged into it.
+    """
+
+    label: str
+    clip: str
+    start: float
+    period: float
+    family: str
+    closure: float
+    events: tuple[float, ...]
+    mirrored: bool = False
+    averaged: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """P primitives on a skeleton of J joints.
+
+    velocities: (P, 3) (v_f, ω, v_l). coefficients: (P, 2N + 1, D) with D = 3 J + 8 columns: the
+    rotation vectors of all joints relative to `reference` (the root's in the ground frame), the
+    hips in the ground frame [m], the labels of left heel, left ball, right heel, right ball, and
+    the duration dt/dφ [s]. reference: (J, 3, 3) mean local rotations over the library.
+    bends: by family, (E, 3) what its control space knows of blends along its edges.
+    """
+
+    skeleton: Skeleton
+    primitives: tuple[Primitive, ...]
+    velocities: np.ndarray
+    coefficients: np.ndarray
+    reference: np.ndarray
+    provenance: str = ""
+    bends: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def family(self, name: str) -> np.ndarray:
+        """The numbers of the primitives of one family; "walk" has rest among them."""
+        wanted = {"walk", "rest"} if name == "walk" else {name}
+        return np.array([i for i, p in enumerate(self.primitives) if p.family in wanted], np.int64)
+
+    @property
+    def rest(self) -> int:
+        """The number of the rest primitive."""
+        return next(i for i, p in enumerate(self.primitives) if p.family == "rest")
+
+    def save(self, path: str | Path) -> None:
+        """Write a compressed .npz; reading it back gives the same library."""
+        about = {"format": 1, "height": float(self.skeleton.offsets[0, 1]),
+                 "primitives": [asdict(p) for p in self.primitives], "provenance": self.provenance}
+        np.savez_compressed(path, velocities=self.velocities, reference=self.reference,
+                            coefficients=self.coefficients.astype(np.float32),
+                            **{f"bend_{family}": bend for family, bend in self.bends.items()},
+                            about=np.frombuffer(json.dumps(about).encode(), np.uint8))
+
+    @staticmethod
+    def load(path: str | Path) -> Library:
+        """Read a library. LibraryError names the file if it is missing or not one."""
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                about = json.loads(bytes(file["about"]).decode())
+                standard = human()
+                skeleton = human() if abs(about["height"] - standard.offsets[0, 1]) < 1e-9 else \
+                    standard.scaled(about["height"] / standard.offsets[0, 1])
+                primitives = tuple(Primitive(**{**p, "events": tuple(p["events"])}) for p in about["primitives"])
+                library = Library(skeleton, primitives, file["velocities"],
+                                  file["coefficients"].astype(float), file["reference"], about["provenance"],
+                                  {k[5:]: file[k] for k in file.files if k.startswith("bend_")})
+        except FileNotFoundError:
+            raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
+        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+            raise LibraryError(f"{path}: not a gait library ({error})") from None
+        shape = (len(primitives), library.coefficients.shape[1], 3 * len(skeleton) + 8)
+        if library.coefficients.shape != shape or not np.isfinite(library.coefficients).all():
+            raise LibraryError(f"{path}: coefficients of shape {library.coefficients.shape} do not fit "
+                               f"{shape[0]} primitives on {len(skeleton)} joints")
+        return library
+
+
+def reference_rotations(cycles: list[Cycle]) -> np.ndarray:
+    """The mean local rotation (J, 3, 3) of every joint over all samples of some cycles."""
+    return rot.mean(np.concatenate([c.rotations for c in cycles]))
+
+
+def channels(cycle: Cycle, reference: np.ndarray) -> np.ndarray:
+    """One cycle's samples (S, 3 J + 8) in the library's columns."""
+    chart = rot.log(np.swapaxes(reference, -1, -2) @ cycle.rotations)
+    chart = rot.continuous(chart).reshape(len(chart), -1)
+    return np.concatenate([chart, cycle.hips, cycle.labels, cycle.duration[:, None]], -1)
+
+
+def poses(coefficients: np.ndarray, phase: np.ndarray, reference: np.ndarray
+          ) -> tuple[np.ndarray, np.ndarray]:
+    """Local rotations (..., J, 3, 3) and hips (..., 3) [m] of a series (2N + 1, D) at phases (...)."""
+    row = fourier.evaluate(coefficients, phase)
+    chart = row[..., :HIPS].reshape(row.shape[:-1] + (-1, 3))
+    return reference @ rot.exp(chart), row[..., HIPS:LABELS]
