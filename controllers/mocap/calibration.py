@@ -54,7 +54,8 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     """The calibration of one source skeleton from some of its clips; the more walking, the better.
 
     skeleton: ours, the standard human by default. posed: whether the zero pose is a person
-    standing; found out by default. ValueError if there is no clip, or if the skeleton is no human.
+    standing; found out by default. ValueError if there is no clip, if the skeleton is no human, or
+    if the clips' skeletons differ.
     """
     clips = list(clips)
     if not clips:
@@ -63,32 +64,27 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     source = clips[0].skeleton
     part = roles(source)
     zero = zero_positions(source)
+    for clip in clips[1:]:
+        length = _leg_length(zero_positions(clip.skeleton), part.limbs) if clip.skeleton.names == source.names else 0.0
+        if abs(length / _leg_length(zero, part.limbs) - 1) > 0.02:
+            raise ValueError(f"{clip.name} has another skeleton than {clips[0].name}: calibrate them apart")
     world = _zero_alignment(part, zero)
     posed = _is_posed(part, zero, world) if posed is None else posed
     motions = [clip.kinematics() for clip in clips]
     corrections = np.broadcast_to(np.eye(3), (len(source), 3, 3)).copy()
     if posed:
-        corrections[:] = world
-        for side in SIDES:
-            for joint, child in LIMBS.items():
-                if side + child in part.limbs:
-                    ours = skeleton.offsets[skeleton.index(side + child)]
-                    theirs = zero[part.limbs[side + child]] - zero[part.limbs[side + joint]]
-                    j = part.limbs[side + joint]
-                    corrections[j] = between(world @ ours, theirs) @ world
-            if side + "Hand" in part.limbs:
-                corrections[part.limbs[side + "Hand"]] = corrections[part.limbs[side + "ForeArm"]]
+        _from_zero_pose(skeleton, part, zero, world, corrections)
     else:
         _from_motion(skeleton, source, part, zero, motions, corrections)
-    feet = [flat_stance(part, side, clips, motions) for side in SIDES]
-    for foot in feet:
-        for joint, turn in foot.turns.items():
-            corrections[joint] = turn
     ours = {name: i for i, name in enumerate(skeleton.names)}
     rest = zero_positions(skeleton)
     scale = _leg_length(rest, ours) / _leg_length(zero, part.limbs)
-    drop = rest[ours["LeftFoot"], 1] - rest[ours["LeftToe"], 1] - scale * np.mean([foot.drop for foot in feet])
-    uneven = scale * np.median(feet[0].heights - feet[1].heights) / 2
+    feet = [flat_stance(part, side, clips, motions, scale) for side in SIDES]
+    for foot in feet:
+        for joint, turn in foot.turns.items():
+            corrections[joint] = turn
+    drop = rest[ours["LeftFoot"], 1] - rest[ours["LeftToe"], 1] - np.mean([foot.drop for foot in feet])
+    uneven = np.median(feet[0].heights - feet[1].heights) / 2
     ankles = np.array([[0.0, drop - uneven, 0.0], [0.0, drop + uneven, 0.0]])
     clavicles = 1.0
     if "LeftShoulder" in part.limbs:
@@ -96,8 +92,9 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
         clavicles = min(scale * _distance(zero, part.limbs, *bone) / _distance(rest, ours, *bone), 1.0)
     draft = Calibration(part, corrections, scale, posed, ankles, clavicles, 0.0)
     roll, sink = _even_legs(skeleton, draft, motions)
+    corrections = corrections.copy()
     corrections[part.limbs["Hips"]] @= exp([0.0, 0.0, roll])
-    return replace(draft, sink=sink)
+    return replace(draft, corrections=corrections, sink=sink)
 
 
 def place_feet(skeleton: Skeleton, known: Calibration, positions: np.ndarray, orientations: np.ndarray
@@ -191,6 +188,19 @@ def _is_posed(part, zero, world):
                    along(side + "Arm", side + "ForeArm", sign * left) > -0.1,
                    along(side + "Arm", side + "ForeArm", up) < 0.5, abs(along(side + "Arm", side + "ForeArm", ahead)) < 0.7]
     return all(checks)
+
+
+def _from_zero_pose(skeleton, part, zero, world, corrections):
+    """Corrections from a person standing in the zero pose; `corrections` is filled in place."""
+    corrections[:] = world
+    for side in SIDES:
+        for joint, child in LIMBS.items():
+            if side + child in part.limbs:
+                j = part.limbs[side + joint]
+                ours = skeleton.offsets[skeleton.index(side + child)]
+                corrections[j] = between(world @ ours, zero[part.limbs[side + child]] - zero[j]) @ world
+        if side + "Hand" in part.limbs:
+            corrections[part.limbs[side + "Hand"]] = corrections[part.limbs[side + "ForeArm"]]
 
 
 def _from_motion(skeleton, source, part, zero, motions, corrections):

@@ -117,6 +117,7 @@ def _floor_shift(clip, skeleton, known, positions, orientations, root, ours):
     at, _ = forward_kinematics(skeleton, root, local_rotations(skeleton, ours))
     heights = []
     for side in SIDES:
-        flat = flat_frames(*foot_points(clip.skeleton, known.roles, side, positions, orientations), clip.frame_time)
+        theirs = foot_points(clip.skeleton, known.roles, side, positions, orientations)
+        flat = flat_frames(*(known.scale * p for p in theirs), clip.frame_time)
         heights.append(at[flat, skeleton.index(side + "Toe"), 1])
     return contact_height(skeleton) - np.median(np.concatenate(heights))

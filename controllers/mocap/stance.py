@@ -31,7 +31,7 @@ class FlatStance:
 def flat_frames(ankle: np.ndarray, ball: np.ndarray, frame_time: float) -> np.ndarray:
     """Frames (T,) bool in which a foot stands flat: ankle and ball slow, and the ankle low.
 
-    ankle, ball: (T, 3) [m]. Where hardly any frame is so slow (runs, noisy data) the measure is
+    ankle, ball: (T, 3) [m], scaled to our size, so that a child's or a giant's will do as well. Where hardly any frame is so slow (runs, noisy data) the measure is
     loosened until half a percent, at least five frames, qualify.
     """
     if len(ankle) < 3:
@@ -58,13 +58,17 @@ def foot_points(source: Skeleton, part: Roles, side: str, positions: np.ndarray,
     return positions[:, foot], positions[:, foot] + orientations[:, foot] @ source.end_offsets[ends[0]]
 
 
-def flat_stance(part: Roles, side: str, clips: Sequence[Clip], motions: Sequence[tuple]) -> FlatStance:
-    """What the flat stance of one foot ("Left" or "Right") tells; motions: each clip's kinematics."""
+def flat_stance(part: Roles, side: str, clips: Sequence[Clip], motions: Sequence[tuple], scale: float
+                ) -> FlatStance:
+    """What the flat stance of one foot ("Left" or "Right") tells.
+
+    motions: each clip's kinematics. scale: our size over theirs; the result is in our metres.
+    """
     source = clips[0].skeleton
     joints = [part.limbs[side + limb] for limb in ("Foot", "Toe") if side + limb in part.limbs]
     stands, drops, heights = [], [], []
     for clip, (positions, orientations) in zip(clips, motions):
-        ankle, ball = foot_points(source, part, side, positions, orientations)
+        ankle, ball = (scale * p for p in foot_points(source, part, side, positions, orientations))
         flat = flat_frames(ankle, ball, clip.frame_time)
         turn = yaw(heading_of((ball - ankle)[flat]))
         stands.append(np.swapaxes(turn, -1, -2)[:, None] @ orientations[flat][:, joints])
