@@ -31,13 +31,13 @@ class Command:
     """What the player asks of the character, in the world.
 
     velocity: x, z [m/s]. facing: the heading to hold [rad], or None to look where it goes.
-    turn: turning on the spot [rad/s]. camera: rates at which the camera turns left and up [rad/s].
+    turn: turning on the spot [rad/s]. swing: turning the camera, and so the walk, left [rad/s].
     """
 
     velocity: tuple[float, float] = (0.0, 0.0)
     facing: float | None = None
     turn: float = 0.0
-    camera: tuple[float, float] = (0.0, 0.0)
+    swing: float = 0.0
 
     def intent(self, state: CharacterState, settings: Steering = STEERING) -> Intent:
         """The same as an intent of the character in `state`."""
@@ -78,8 +78,7 @@ class Pilot:
         on_spot = pace.turn * wish.turn if facing is None and throw == 0.0 else 0.0
         # a walker goes where the camera looks, so turning the walk means turning the camera
         swing = pace.turn * wish.turn if facing is None and throw > 0.0 else 0.0
-        camera = (swing + pace.orbit * wish.orbit[0], pace.orbit * wish.orbit[1])
-        return replace(self, facing=facing), Command(velocity, facing, on_spot, camera)
+        return replace(self, facing=facing), Command(velocity, facing, on_spot, swing)
 
 
 def _in_world(seen: tuple[float, float], camera_yaw: float) -> tuple[float, float]:

@@ -1,0 +1,218 @@
+"""The command line: ``gambol play``, ``render``, ``library``, ``scenarios``.
+
+A user's mistake gets one clear line and exit code 2; a machine without a display exits with 3.
+Everything heavy is imported where it is used, so that help comes at once.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+NO_DISPLAY = 3
+"""The exit code of `gambol play` where no window can be opened."""
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False,
+                  context_settings={"help_option_names": ["-h", "--help"]},
+                  help="A real-time human character, driven by gamepad, keyboard or script.")
+library_app = typer.Typer(no_args_is_help=True, help="Gait libraries: build one from motion capture, look at one.")
+app.add_typer(library_app, name="library")
+
+
+class Preset(str, Enum):
+    """How much light and shadow is drawn."""
+
+    full = "full"
+    fast = "fast"
+
+
+Library = Annotated[Path | None, typer.Option(help="A gait library; the shipped one by default.")]
+Quality = Annotated[Preset, typer.Option(help="Picture quality.")]
+
+
+def plainly(command):
+    """The command, with errors that a user can act on as one line instead of a traceback.
+
+    GAMBOL_TRACEBACK=1 in the environment shows the traceback.
+    """
+    @functools.wraps(command)
+    def wrapped(*args, **kwargs):
+        try:
+            return command(*args, **kwargs)
+        except (ValueError, OSError) as error:
+            if os.environ.get("GAMBOL_TRACEBACK"):
+                raise
+            _say(f"gambol: {error}")
+            raise typer.Exit(2) from None
+        except KeyboardInterrupt:
+            _say("gambol: stopped")
+            raise typer.Exit(130) from None
+    return wrapped
+
+
+def _say(text: str) -> None:
+    typer.echo(text, err=True)
+
+
+@app.command()
+@plainly
+def play(library: Library = None, preset: Quality = Preset.full,
+         size: Annotated[str, typer.Option(help="Size of the window.")] = "1280x720") -> None:
+    """Open the game: WASD or a gamepad moves, F1 shows every control."""
+    pixels, controller = _size(size), _controller(library)
+
+    from .hosts import NoDisplay, run_window
+    from .play import Play
+
+    try:
+        run_window(Play(controller), title="Gambol", size=pixels, preset=preset.value)
+    except NoDisplay as error:
+        _say(f"gambol: no window can be opened here: {error}")
+        _say("`gambol render demo -o demo.mp4` draws a film without a display")
+        raise typer.Exit(NO_DISPLAY) from None
+
+
+@app.command()
+@plainly
+def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")],
+           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")],
+           size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default.")] = None,
+           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default.")] = None,
+           preset: Quality = Preset.full,
+           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path.")] = None,
+           library: Library = None) -> None:
+    """Film a scenario without a display, or write its motion as BVH."""
+    from . import scenario as scenarios
+
+    film = scenarios.load(scenario)
+    film = film if fps is None else film.at_fps(fps)
+    if out.lower().endswith(".bvh"):
+        _write_motion(film, out, library)
+        return
+    from .film import scenes
+    from .recorder import recorder
+
+    width, height = film.size if size is None else _size(size)
+    shown = scenarios.overlays(film.overlays if overlay is None else _overlays(overlay))
+    target, controller = recorder(out, (width, height), film.fps), _controller(library)
+
+    from .hosts import Offscreen
+
+    with Offscreen((width, height), preset.value) as stage, target, _progress() as bar:
+        for _, scene in bar.track(scenes(film, controller, shown), film.frames, description=film.title):
+            target.write(stage.frame(scene))
+    _say(f"{target.path}: {film.frames} frames, {film.duration:g} s, {width} × {height}")
+
+
+def _write_motion(film, out: str, library: Path | None) -> None:
+    from .film import run
+    from .recorder import motion_clip, write_motion
+    from .world import pose_between
+
+    controller = _controller(library)
+    poses = [[] for _ in film.actors]
+    with _progress() as bar:
+        for frame in bar.track(run(film, controller), film.frames, description=film.title):
+            for kept, before, after in zip(poses, frame.before.characters, frame.after.characters):
+                kept.append(pose_between(before.state.pose, after.state.pose, frame.alpha))
+    for actor, kept in zip(film.actors, poses):
+        path = Path(out)
+        if len(poses) > 1:
+            path = path.with_name(f"{path.stem}-{actor.name}{path.suffix}")
+        write_motion(motion_clip(actor.name, controller.skeleton, kept, film.fps), path)
+        _say(f"{path}: {len(kept)} frames, {film.duration:g} s")
+
+
+@app.command()
+@plainly
+def scenarios() -> None:
+    """List the scenarios that come with Gambol."""
+    from .scenario import load, shipped
+
+    for name in shipped():
+        film = load(name)
+        people = "1 actor" if len(film.actors) == 1 else f"{len(film.actors)} actors"
+        typer.echo(f"{name:14} {film.duration:4g} s  {people:8}  {film.title}")
+
+
+@library_app.command()
+@plainly
+def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AMC files.")],
+          out: Annotated[Path, typer.Option("-o", "--out", help="The library file to write.")] = Path("library.npz"),
+          recipe: Annotated[Path | None, typer.Option(help="A TOML recipe: which files for which gait.")] = None) -> None:
+    """Cut gait cycles out of motion capture and make a library of them."""
+    from controllers.locomotion import build_library
+
+    with _progress() as bar:
+        tasks = {}
+
+        def progress(what: str, done: int, total: int) -> None:
+            task = tasks.setdefault(what, None) or bar.add_task(what)
+            tasks[what] = task
+            bar.update(task, completed=done, total=total)
+
+        made, notes = build_library(folder, recipe, progress=progress)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    made.save(out)
+    for note in notes:
+        _say(note)
+    _say(f"{out}: {len(made.primitives)} primitives")
+
+
+@library_app.command()
+@plainly
+def report(file: Annotated[Path | None, typer.Argument(help="A library file; the shipped one by default.")] = None,
+           picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None) -> None:
+    """What a library covers and where every primitive comes from."""
+    from controllers.locomotion import DEFAULT_LIBRARY, coverage
+    from controllers.locomotion import Library as GaitLibrary
+
+    made = GaitLibrary.load(file or DEFAULT_LIBRARY)
+    for line in coverage(made, picture):
+        typer.echo(line)
+
+
+def _controller(library: Path | None):
+    from controllers.locomotion import Locomotion
+
+    return Locomotion.load(library)
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.lower().partition("x")
+    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
+        raise ValueError(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
+    return int(width), int(height)
+
+
+def _overlays(text: str) -> list[str]:
+    from .scenario import OVERLAYS
+
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names:
+        if name not in OVERLAYS:
+            raise ValueError(f"--overlay {name!r}: there is no such overlay; choose from {', '.join(OVERLAYS)}")
+    return names if "mesh" in names or "skeleton" in names else ["mesh", *names]
+
+
+def _progress():
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    return Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
+                    console=Console(stderr=True))
+
+
+def main() -> None:
+    """The `gambol` command."""
+    app()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
