@@ -1,0 +1,15 @@
+"""Where the recorded motion lies that some tests read; it is no part of the project."""
+
+from pathlib import Path
+
+import pytest
+
+SHARED = Path(__file__).resolve().parents[1].parent / "shared"
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder of shared recordings; the test is skipped where there is none."""
+    if not (SHARED / "mocap").is_dir():
+        pytest.skip("no ../shared/mocap beside the project: recorded motion is not to be had here")
+    return SHARED
