@@ -1,0 +1,115 @@
+"""Units, axes, calibration frames and root offsets are judged rightly, and can be overruled."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from motion_samples import BVH, standing
+from scipy.spatial.transform import Rotation
+
+from controllers.body import Skeleton
+from controllers.mocap import Detected, MotionFileError, detect, load, read, standardise, write_bvh
+from controllers.mocap.detect import UNITS
+
+LYING = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]])  # Y up to Z up
+
+
+def z_up(clip):
+    """The same motion told in axes of which Z points up."""
+    skeleton = clip.skeleton
+    turned = Skeleton(skeleton.names, skeleton.parents, skeleton.offsets @ LYING.T,
+                      skeleton.end_parents, skeleton.end_offsets @ LYING.T)
+    quaternions = np.concatenate([clip.quaternions[..., :3] @ LYING.T, clip.quaternions[..., 3:]], -1)
+    return replace(clip, skeleton=turned, root=clip.root @ LYING.T, quaternions=quaternions)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("up", ["y", "z"])
+def test_units_and_up_are_found(tmp_path, unit, up):
+    clip = standing()
+    write_bvh(clip if up == "y" else z_up(clip), tmp_path / "a.bvh", unit=unit)
+    found = detect(read(tmp_path / "a.bvh"))
+    assert (found.up, found.scale, found.tpose, found.root_offset) == (up, unit, 0, False)
+    assert found.stature == pytest.approx(1.741, abs=0.03) and abs(found.floor) < 0.05
+    back = load(tmp_path / "a.bvh")
+    np.testing.assert_allclose(back.kinematics()[0], clip.kinematics()[0], atol=1e-4)
+    np.testing.assert_allclose(back.skeleton.offsets[1:], clip.skeleton.offsets[1:], atol=1e-6)
+
+
+def with_calibration(clip, count):
+    """The clip behind `count` frames of T-pose."""
+    still = np.tile([0, 0, 0, 1.0], (count, len(clip.skeleton), 1))
+    return replace(clip, quaternions=np.concatenate([still, clip.quaternions]),
+                   root=np.concatenate([np.tile(clip.root[0], (count, 1)), clip.root]))
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_calibration_frames_are_cut_off(count):
+    clip = standing()
+    # arms alone move between the T-pose and standing: a human in motion differs more
+    clip = replace(clip, quaternions=(Rotation.from_quat(clip.quaternions)
+                                      * Rotation.from_rotvec([0.2, 0, 0])).as_quat())
+    raw = with_calibration(clip, count)
+    assert detect(raw).tpose == count
+    assert len(standardise(raw, detect(raw))) == len(clip)
+    assert len(standardise(raw, detect(raw, tpose=1))) == len(raw) - 1
+
+
+def test_a_lone_calibration_frame_stays():
+    raw = standing(1)
+    assert len(standardise(raw, detect(raw, tpose=1))) == 1
+
+
+def test_the_root_offset_counts_only_where_it_leads_to_the_floor():
+    clip = standing()  # its offset repeats where the hips stand: absolute channels
+    assert not detect(clip).root_offset
+    relative = replace(clip, root=clip.root - clip.skeleton.offsets[0])
+    found = detect(relative)
+    assert found.root_offset and abs(found.floor) < 0.05
+    np.testing.assert_allclose(standardise(relative, found).root, clip.root, atol=1e-12)
+    assert not detect(relative, root_offset=False).root_offset
+
+
+def test_what_is_given_is_taken_for_granted(tmp_path):
+    write_bvh(standing(), tmp_path / "a.bvh")
+    clip = load(tmp_path / "a.bvh", up="x", scale=0.5, tpose=3, root_offset=True)
+    raw = read(tmp_path / "a.bvh")
+    assert len(clip) == len(raw) - 3
+    np.testing.assert_allclose(clip.root[:, 1], 0.5 * raw.root[3:, 0], atol=1e-12)
+    with pytest.raises(ValueError, match="up is one of"):
+        load(tmp_path / "a.bvh", up="north")
+
+
+def test_what_can_not_be_judged_is_asked_for(tmp_path):
+    path = tmp_path / "a.bvh"
+    path.write_text(BVH.replace("LeftFoot", "antenna"))
+    with pytest.raises(MotionFileError, match="a.bvh: no foot or ankle .* give scale="):
+        load(path)
+    assert load(path, scale=2.0).root[0].tolist() == [2, 4, 6]
+    path.write_text(BVH.replace("OFFSET 1 -2 3", "OFFSET 1e9 0 0"))
+    with pytest.raises(MotionFileError, match="fits no unit we know: give scale="):
+        load(path)
+
+
+EXPECTED = {  # up, unit, calibration frames, whether the root offset counts
+    "woody2/wd2_spiral_walk01.bvh": ("y", 0.0254, 0, False), "woody2/wd2_WalkBackward00.bvh": ("y", 0.01, 0, False),
+    "woody2/wd2_Physics_Raise00.bvh": ("y", 0.01, 0, False), "woody2/wd2_idle_65.bvh": ("y", 0.0254, 0, False),
+    "woody2/wd2_t-pose.bvh": ("y", 0.01, 0, False), "cmu_30fps/69/69_42.bvh": ("y", 0.01, 0, False),
+    "cmu_bvh/07/07_01.bvh": ("y", 0.0254 / 0.45, 1, False), "cmu_bvh/07/07_12.bvh": ("y", 0.0254 / 0.45, 2, False),
+    "cmu_bvh/35/35_29.bvh": ("y", 0.0254 / 0.45, 1, False), "cmu/49/49_08.amc": ("y", 1.0, 0, False),
+    "cmu/16/16_35.amc": ("y", 1.0, 0, False), "tennis/tennis_KangTennisF15.bvh": ("y", 0.01, 0, False),
+    "boxing/boxing_boxman_stand_dir_onetwo.bvh": ("y", 0.0254, 0, False)}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_recorded_motion_is_judged_rightly(shared, name):
+    found = detect(read(shared / "mocap" / name))
+    assert (found.up, found.scale, found.tpose, found.root_offset) == EXPECTED[name]
+
+
+def test_recorded_motion_loads(shared):
+    """Every eleventh file of every folder: an adult, on the floor, upright most of the time."""
+    files = sorted(path for path in (shared / "mocap").rglob("*") if path.suffix in (".bvh", ".amc"))
+    for path in files[::11]:
+        found = detect(read(path))
+        assert isinstance(found, Detected) and 1.4 < found.stature < 2.1 and abs(found.floor) < 0.2, (path, found)
