@@ -104,9 +104,13 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
 
     from .hosts import Offscreen
 
-    with Offscreen((width, height), preset.value) as stage, target, _progress() as bar:
-        for _, scene in bar.track(scenes(film, controller, shown), film.frames, description=film.title):
-            target.write(stage.frame(scene))
+    try:
+        with Offscreen((width, height), preset.value) as stage, target, _progress() as bar:
+            for _, scene in bar.track(scenes(film, controller, shown), film.frames, description=film.title):
+                target.write(stage.frame(scene))
+    except KeyboardInterrupt:
+        _say(f"what was drawn is in {target.part}")
+        raise
     _say(f"{target.path}: {film.frames} frames, {film.duration:g} s, {width} × {height}")
 
 
@@ -147,7 +151,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
           out: Annotated[Path, typer.Option("-o", "--out", help="The library file to write.")] = Path("library.npz"),
           recipe: Annotated[Path | None, typer.Option(help="A TOML recipe: which files for which gait.")] = None) -> None:
     """Cut gait cycles out of motion capture and make a library of them."""
-    from controllers.locomotion import build_library
+    from controllers.locomotion.build import build_library
 
     with _progress() as bar:
         tasks = {}
@@ -170,10 +174,13 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
 def report(file: Annotated[Path | None, typer.Argument(help="A library file; the shipped one by default.")] = None,
            picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None) -> None:
     """What a library covers and where every primitive comes from."""
-    from controllers.locomotion import DEFAULT_LIBRARY, coverage
+    from controllers.locomotion import DEFAULT_LIBRARY
     from controllers.locomotion import Library as GaitLibrary
 
     made = GaitLibrary.load(file or DEFAULT_LIBRARY)
+
+    from controllers.locomotion import coverage
+
     for line in coverage(made, picture):
         typer.echo(line)
 

@@ -22,7 +22,13 @@ PICTURE = re.compile(r"frame_\d{5,}\.png")
 
 
 class Recorder(Protocol):
-    """Takes frames. Used in a `with`; leaving it without an error completes the recording."""
+    """Takes frames. Used in a `with`; leaving it without an error completes the recording.
+
+    path: where the recording will be. part: where what there is so far lies until then.
+    """
+
+    path: Path
+    part: Path
 
     def write(self, frame: np.ndarray) -> None:
         """Add a frame (H, W, 3 or 4) uint8, top row first."""
@@ -101,7 +107,8 @@ class Pictures:
     """A folder of frame_00000.png, frame_00001.png, …; frames of an earlier, longer recording are removed."""
 
     def __init__(self, folder: str | Path, size: tuple[int, int]):
-        self.path, self.size, self._count = Path(folder), size, 0
+        self.path = self.part = Path(folder)
+        self.size, self._count = size, 0
 
     def __enter__(self) -> Pictures:
         self.path.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,134 @@
+"""The command line: what it makes, and one clear line for every mistake."""
+
+import subprocess
+import sys
+
+import av
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import game.hosts
+from game import cli
+from stand_in import Glide
+
+SHORT = """
+title = "Short"
+duration = 0.5
+fps = 20
+size = [64, 48]
+[[actors]]
+moves = [{ for = 0.5, velocity = [1, 0, 0] }]
+"""
+
+
+class Stage:
+    """Draws nothing, in the right size; remembers what it was asked for."""
+
+    scenes = []
+
+    def __init__(self, size, preset):
+        self.size = size
+        Stage.scenes.clear()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    def frame(self, scene):
+        Stage.scenes.append(scene)
+        return np.zeros((self.size[1], self.size[0], 4), np.uint8)
+
+
+@pytest.fixture
+def short(tmp_path, monkeypatch):
+    monkeypatch.setattr(cli, "_controller", lambda library: Glide())
+    monkeypatch.setattr(game.hosts, "Offscreen", Stage, raising=False)
+    file = tmp_path / "short.toml"
+    file.write_text(SHORT)
+    return file
+
+
+def gambol(*arguments):
+    return CliRunner().invoke(cli.app, [str(a) for a in arguments])
+
+
+def test_a_film(short, tmp_path):
+    done = gambol("render", short, "-o", tmp_path / "a.mp4")
+    assert done.exit_code == 0 and "a.mp4: 10 frames, 0.5 s, 64 × 48" in done.output
+    with av.open(str(tmp_path / "a.mp4")) as film:
+        frames = list(film.decode(video=0))
+        assert len(frames) == 10 and (frames[0].width, frames[0].height) == (64, 48)
+        assert film.streams.video[0].average_rate == 20
+
+
+def test_pictures_in_another_size_rate_and_dress(short, tmp_path):
+    done = gambol("render", short, "-o", tmp_path / "frames", "--size", "32x20", "--fps", 10, "--overlay", "trail, contacts")
+    assert done.exit_code == 0
+    assert len(list((tmp_path / "frames").glob("frame_*.png"))) == 5 == len(Stage.scenes)
+    shown = Stage.scenes[0].overlays
+    assert shown.mesh and shown.trail and shown.contacts and not shown.path
+
+
+def test_motion(short, tmp_path):
+    done = gambol("render", short, "-o", tmp_path / "a.bvh")
+    assert done.exit_code == 0 and "10 frames" in done.output
+    text = (tmp_path / "a.bvh").read_text()
+    assert "Frames: 10" in text and "HIERARCHY" in text
+    two = SHORT + '[[actors]]\nname = "B"\n'
+    short.write_text(two)
+    assert gambol("render", short, "-o", tmp_path / "b.bvh").exit_code == 0
+    assert (tmp_path / "b-A.bvh").exists() and (tmp_path / "b-B.bvh").exists()
+
+
+@pytest.mark.parametrize(("arguments", "says"), [
+    (("render", "nowhere", "-o", "a.mp4"), "no scenario is called 'nowhere'"),
+    (("render", "demo", "-o", "a.gif"), "can't record .gif"),
+    (("render", "demo", "-o", "a.mp4", "--size", "12"), "--size '12': needs width x height"),
+    (("render", "demo", "-o", "a.mp4", "--size", "axb"), "--size 'axb': needs width x height"),
+    (("render", "demo", "-o", "a.mp4", "--overlay", "bones"), "there is no such overlay; choose from mesh, skeleton"),
+    (("render", "demo", "-o", "a.mp4", "--library", "no.npz"), "no.npz"),
+    (("library", "build", "no_such_folder", "-o", "x.npz"), "no_such_folder"),
+    (("library", "report", "no.npz"), "no.npz"),
+])
+def test_a_mistake_is_one_line_and_code_2(arguments, says, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = gambol(*arguments)
+    assert done.exit_code == 2, done.output
+    lines = done.output.strip().splitlines()
+    assert len(lines) == 1 and lines[0].startswith("gambol: ") and says in lines[0]
+    assert not list(tmp_path.iterdir()), "a mistake leaves nothing behind"
+
+
+@pytest.mark.parametrize("arguments", [("render", "demo"), ("render", "demo", "-o", "a.mp4", "--fps", "0"),
+                                       ("render", "demo", "-o", "a.mp4", "--preset", "best"), ("dance",)])
+def test_a_wrong_call_has_code_2_too(arguments):
+    assert gambol(*arguments).exit_code == 2
+
+
+def test_an_interrupted_film_is_kept(short, tmp_path, monkeypatch):
+    def frame(self, scene):
+        if len(Stage.scenes) == 4:
+            raise KeyboardInterrupt
+        Stage.scenes.append(scene)
+        return np.zeros((48, 64, 4), np.uint8)
+    monkeypatch.setattr(Stage, "frame", frame)
+    done = gambol("render", short, "-o", tmp_path / "a.mp4")
+    assert done.exit_code == 130 and "stopped" in done.output and "a.part.mp4" in done.output
+    with av.open(str(tmp_path / "a.part.mp4")) as film:
+        assert len(list(film.decode(video=0))) == 4
+
+
+def test_scenarios_are_listed():
+    done = gambol("scenarios")
+    assert done.exit_code == 0 and "corridor" in done.output and "2 actors" in done.output
+
+
+def test_help_comes_without_loading_the_rest():
+    code = "import sys, game.cli; print(*[m for m in ('numpy', 'scipy', 'numba', 'pydantic', 'av') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
+    done = subprocess.run([sys.executable, "-m", "game.cli", "--help"], capture_output=True, text=True)
+    assert done.returncode == 0 and "render" in done.stdout
