@@ -13,9 +13,12 @@ import numpy as np
 from ..body import Clip, human
 from ..body import rotations as rot
 from ..body.clip import mirror_index
-from ..mocap import MotionFileError, calibrate, load, retarget
+from ..body.human import CONTACT_HEIGHT
+from ..mocap import MotionFileError, load
+from ..mocap.calibration import calibrate
+from ..mocap.retarget import retarget
 from . import fourier
-from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
+from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, relative, track
 from .library import Library, LibraryError, Primitive, channels, reference_rotations
 from .selection import Choice, neighbours, select
 from .steady import settle
@@ -139,11 +142,11 @@ def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], still
         velocities.append(sum(w * c.velocity for w, c in zip(weight, group)))
         rows.append(fourier.fit(samples))
     walking = [i for i, p in enumerate(primitives) if p.family == "walk"]
-    rest, label = rest_pose(stills, reference)
+    rest, clip, start = rest_pose(stills, reference)
     row = np.zeros_like(rows[0])
     row[0, :-5] = rest
     row[:, -5:] = np.mean([rows[i][:, -5:] for i in walking], 0)  # it steps in place until its feet are right
-    primitives.append(Primitive("rest", label, 0.0, float(row[0, -1]), "rest", 0.0, tuple(EVENTS["walk"])))
+    primitives.append(Primitive("rest", clip, start, float(row[0, -1]), "rest", 0.0, tuple(map(float, EVENTS["walk"]))))
     return Library(skeleton, tuple(primitives), np.array(velocities + [np.zeros(3)]), np.array(rows + [row]),
                    reference, provenance)
 
@@ -159,29 +162,35 @@ def mirrored(cycle: Cycle, swap: np.ndarray) -> Cycle:
                    labels=turn(cycle.labels[:, [2, 3, 0, 1]]), duration=turn(cycle.duration))
 
 
-def rest_pose(tracks: list[Track], reference: np.ndarray) -> tuple[np.ndarray, str]:
-    """How somebody stands: the stillest second whose pose is not far from walking (a T-pose is).
+def rest_pose(tracks: list[Track], reference: np.ndarray) -> tuple[np.ndarray, str, float]:
+    """How somebody stands: still, flat, upright, and not far from walking (which a T-pose is).
 
-    Returns chart and hips (3 J + 3,) in the ground frame, and the name of the clip.
+    Of all seconds with quiet feet, the best by speed and flatness of the feet, height of the hips
+    and distance from the mean walking pose. Returns chart and hips (3 J + 3,) in the ground frame, and the clip
+    and time where it was found. LibraryError without any clip.
     """
-    best, found = np.inf, None
-    second = int(RATE)
+    second, candidates = int(RATE), []
     for one in tracks:
-        still = np.convolve(one.speeds.max(1), np.ones(second) / second, "valid")[::second // 2]
-        for k in np.argsort(still)[:4]:
-            a = k * second // 2
-            local = one.clip.slice(a, a + second).rotations
-            ground = one.ground[a:a + second].mean(0)
-            local[:, 0] = rot.yaw(-ground[2]) @ local[:, 0]
-            pose = rot.mean(local)
-            chart = rot.log(np.swapaxes(reference, -1, -2) @ pose)
-            score = still[k] / 0.02 + np.sqrt(np.mean(np.sum(chart**2, -1))) / 0.15
-            if score < best:
-                root = one.clip.root[a:a + second].mean(0)
-                c, s = np.cos(ground[2]), np.sin(ground[2])
-                dx, dz = root[0] - ground[0], root[2] - ground[1]
-                best = score
-                found = np.concatenate([chart.ravel(), [c * dx - s * dz, root[1], s * dx + c * dz]]), one.clip.name
-    if found is None:
+        fastest = one.speeds.max(1)
+        for a in range(0, max(len(fastest) - second, 1), second // 2):
+            speed = float(fastest[a:a + second].mean())
+            if speed < 0.05 or not candidates:
+                uneven = float(np.abs(one.points[a:a + second, :, 1] - CONTACT_HEIGHT).mean())
+                candidates.append((speed / 0.02 + uneven / 0.005, a, one))
+    if not candidates:
         raise LibraryError("no clip to take the standing pose from")
-    return found
+    charts, hips = [], []
+    for _, a, one in candidates:
+        local = one.clip.slice(a, a + second).rotations
+        ground = one.ground[a:a + second].mean(0)
+        local[:, 0] = rot.yaw(-ground[2]) @ local[:, 0]
+        charts.append(rot.log(np.swapaxes(reference, -1, -2) @ rot.mean(local)))
+        root = one.clip.root[a:a + second].mean(0)
+        place = relative(ground, np.array([root[0], root[2], ground[2]]))
+        hips.append([place[0], root[1], place[1]])
+    charts, hips = np.array(charts), np.array(hips)
+    cost = (np.array([c[0] for c in candidates]) - hips[:, 1] / 0.01
+            + np.sqrt(np.mean(np.sum(charts**2, -1), -1)) / 0.10)
+    best = int(np.argmin(cost))
+    return (np.concatenate([charts[best].ravel(), hips[best]]), candidates[best][2].clip.name,
+            candidates[best][1] / RATE)

@@ -66,7 +66,9 @@ class Locomotion:
         for _ in range(2):  # the first step finds the pose, the second knows where its feet were
             state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)
         memory = state.memory.copy()
-        memory["ground"], memory["breath"] = ground, 0.0
+        for name, value in (("ground", ground), ("breath", 0.0), ("drift", 0.0), ("velocity", 0.0),
+                            ("row_rate", 0.0), ("standing", 0)):
+            memory[name] = value
         return replace(state, ground=ground, memory=memory)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
