@@ -83,15 +83,15 @@ def _joints(words: _Words) -> list[Joint]:
     lines: dict[str, int] = {}
     nest: list[int | None] = []  # the joints whose brace is open; None for an end site
     while True:
-        word = words.take()
+        word, line = words.take(), words.line
         key = word.upper()
         here = joints[nest[-1]] if nest and nest[-1] is not None else None
         if key == "ROOT" and not joints or key == "JOINT" and here:
             name = _name(words, word)
             if name in lines:
-                words.fail(f"joint '{name}' was already declared in line {lines[name]}")
-            lines[name] = words.line
-            joints.append(Joint(name, nest[-1] if nest else -1, words.line))
+                fail(words.path, line, f"joint '{name}' was already declared in line {lines[name]}")
+            lines[name] = line
+            joints.append(Joint(name, nest[-1] if nest else -1, line))
             nest.append(len(joints) - 1)
         elif key == "END" and here:
             _name(words, word)
@@ -129,13 +129,13 @@ def _name(words: _Words, kind: str) -> str:
     """The words up to the opening brace, which is taken too."""
     name = []
     line = words.line
-    while words.peek() not in ("{", "}", "") and len(name) < 100:
+    while words.peek() not in ("{", "}", "") and words.peek().upper() not in ("OFFSET", "CHANNELS"):
         name.append(words.take())
     if words.peek() != "{":
         fail(words.path, line, f"no '{{' after {kind} {' '.join(name)[:40]}".rstrip())
     words.take()
     if not name:
-        words.fail(f"{kind} needs a name")
+        fail(words.path, line, f"{kind} needs a name")
     return " ".join(name)
 
 
