@@ -49,9 +49,14 @@ def contact_height(skeleton: Skeleton) -> float:
     return CONTACT_HEIGHT * _foot_size(skeleton)
 
 
+def heel_offset(skeleton: Skeleton) -> np.ndarray:
+    """Where the heel's contact point is in this skeleton's foot frames (3,) [m]."""
+    return HEEL * _foot_size(skeleton)
+
+
 def contact_points(skeleton: Skeleton, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
     """Heels and balls (..., 4, 3) [m], from what forward kinematics returned."""
-    heel = HEEL.astype(positions.dtype) * positions.dtype.type(_foot_size(skeleton))
+    heel = heel_offset(skeleton).astype(positions.dtype)
     points = []
     for side in ("Left", "Right"):
         foot = skeleton.index(side + "Foot")

@@ -1,0 +1,80 @@
+"""Dampers and springs that are exact for any step: half a step twice is the same as a whole one.
+
+Their stiffness is said as a half-life [s]: how long until half of what is left is gone. A
+half-life of 0 jumps to the goal. READINGS F; the critically damped spring's own rate is
+y = 2·ln 2 / half-life, so that spring and damper of one half-life take about equally long.
+Arrays of any shape; the scalar kernels do the same inside compiled loops.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+_LN2 = math.log(2.0)
+_EPSILON = 1e-9  # s: keeps a half-life of 0 from dividing by 0
+
+
+def decay(x: np.ndarray, halflife: float, dt: float) -> np.ndarray:
+    """What is left of x (...) after dt [s]: half of it each half-life."""
+    return np.asarray(x) * math.exp(-_LN2 * dt / (halflife + _EPSILON))
+
+
+def damp(x: np.ndarray, goal: np.ndarray, halflife: float, dt: float) -> np.ndarray:
+    """x (...) moved towards its goal (...): the first-order damper."""
+    return np.asarray(goal) + decay(np.asarray(x) - goal, halflife, dt)
+
+
+def spring(x: np.ndarray, v: np.ndarray, goal: np.ndarray, halflife: float, dt: float
+           ) -> tuple[np.ndarray, np.ndarray]:
+    """Position and velocity (...) after dt [s] of a critically damped spring towards `goal`.
+
+    Never overshoots from rest, and takes the velocity v along without a jerk.
+    """
+    offset, velocity = settle(np.asarray(x) - goal, v, halflife, dt)
+    return np.asarray(goal) + offset, velocity
+
+
+def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """An offset and its velocity (...) after dt [s], settling critically damped to 0: inertialisation.
+
+    At a transition take x = old − new and v likewise, as vectors or rotation vectors (the short
+    way round), add the settling offset to the new motion, and nothing jumps.
+    """
+    y = 2.0 * _LN2 / (halflife + _EPSILON)
+    x, v = np.asarray(x), np.asarray(v)
+    pull = v + x * y
+    fade = math.exp(-y * dt)
+    return fade * (x + pull * dt), fade * (v - pull * (y * dt))
+
+
+def cubic(x: np.ndarray, v: np.ndarray, duration: float, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The offset and its velocity `time` [s] after a transition, gone for good after `duration` [s].
+
+    The cubic with value x and slope v at 0 and with value and slope 0 at the end. x, v: (...);
+    time: a number or (...). Unlike `settle` it ends exactly, but it is told from its start.
+    """
+    x, v = np.asarray(x), np.asarray(v)
+    s = np.clip(np.asarray(time, float) / max(duration, _EPSILON), 0.0, 1.0)
+    slope = v * duration
+    offset = (1 - s) ** 2 * (x * (1 + 2 * s) + slope * s)
+    velocity = (1 - s) * (slope * (1 - 3 * s) - 6 * x * s) / max(duration, _EPSILON)
+    return offset, velocity
+
+
+@njit(cache=True)
+def damp_kernel(x, goal, halflife, dt):
+    """`damp` of one number."""
+    return goal + (x - goal) * math.exp(-_LN2 * dt / (halflife + _EPSILON))
+
+
+@njit(cache=True)
+def spring_kernel(x, v, goal, halflife, dt):
+    """`spring` of one number: its position and velocity."""
+    y = 2.0 * _LN2 / (halflife + _EPSILON)
+    offset = x - goal
+    pull = v + offset * y
+    fade = math.exp(-y * dt)
+    return goal + fade * (offset + pull * dt), fade * (v - pull * (y * dt))
