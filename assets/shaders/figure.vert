@@ -1,0 +1,14 @@
+#include frame.glsl
+#include skin.glsl
+in vec2 paint;
+out vec3 v_at;
+out vec3 v_normal;
+out vec2 v_paint;
+flat out vec3 v_tint;
+
+void main() {
+    skinned(v_at, v_normal);
+    v_paint = paint;
+    v_tint = look[gl_InstanceID].rgb;
+    gl_Position = view_projection * vec4(v_at, 1.0);
+}

@@ -1,0 +1,17 @@
+// How much of the sun reaches a point: 1 lit, 0 in shadow. TAPS is set by the preset.
+uniform sampler2DShadow shadow_map;
+
+float sunlight(vec3 at) {
+    vec3 p = (light * vec4(at, 1.0)).xyz;
+#if TAPS == 1
+    float lit = texture(shadow_map, p);
+#else
+    // a disc of taps in golden-angle order: no two lie in one row, so edges do not show steps
+    float lit = 0.0;
+    const vec2 DISC[9] = vec2[9](vec2(0.0, 0.0), vec2(0.47, 0.10), vec2(-0.36, 0.38), vec2(0.04, -0.58),
+        vec2(0.55, 0.62), vec2(-0.86, 0.0), vec2(0.68, -0.62), vec2(-0.26, 0.93), vec2(-0.50, -0.80));
+    for (int i = 0; i < 9; i++) lit += texture(shadow_map, vec3(p.xy + DISC[i] * shade.xy, p.z));
+    lit *= 1.0 / 9.0;
+#endif
+    return lit;
+}

@@ -1,0 +1,140 @@
+"""The renderer: one scene in, one picture out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..scene import Scene
+from . import gl, view
+from .figures import Figures
+from .ground import Boxes, Ground
+from .overlays import OverlayPass
+from .presets import Preset, preset
+from .text import TextPass
+
+FOG = 30.0
+"""Where the floor is half fog [m]."""
+
+
+class Renderer:
+    """Draws scenes into its own framebuffer.
+
+    ctx: a moderngl context of OpenGL 3.3 core or later. size: width, height in pixels.
+    chosen: a preset or its name. Everything on the graphics card is made here, once; frames reuse it.
+    """
+
+    def __init__(self, ctx: Any, size: tuple[int, int], chosen: str | Preset = "full"):
+        self.ctx, self.preset = ctx, preset(chosen)
+        taps = self.preset.shadow_taps
+        self.target = gl.Target(ctx, size, self.preset.samples)
+        self.shadow_map = ctx.depth_texture((self.preset.shadow_size,) * 2)
+        self.shadow_map.compare_func = "<="
+        self.shadow_map.filter = ctx.LINEAR, ctx.LINEAR
+        self.shadow_map.repeat_x = self.shadow_map.repeat_y = False
+        self.shadow_target = ctx.framebuffer(depth_attachment=self.shadow_map)
+        self.frame = ctx.buffer(reserve=192, dynamic=True)
+        self.figures, self.boxes = Figures(ctx, taps), Boxes(ctx, taps)
+        self.ground, self.overlays, self.text = Ground(ctx, taps), OverlayPass(ctx), TextPass(ctx)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture in pixels."""
+        return self.target.size
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Draw pictures of another size from now on."""
+        if size != self.size:
+            replacement = gl.Target(self.ctx, size, self.preset.samples)
+            self.target.release()
+            self.target = replacement
+
+    def draw(self, scene: Scene) -> None:
+        """Draw a scene; `read` or `blit` then give the picture."""
+        ctx, camera = self.ctx, scene.camera
+        origin = view.origin_of(camera)
+        eye = np.asarray(camera.eye, float) - origin
+        shown = scene.figures if scene.overlays.mesh else ()
+        box = view.light_box(camera, shown, scene.boxes, self.preset.shadow_size, origin=origin)
+        projection = view.perspective(camera.fov, self.size[0] / self.size[1])
+        matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
+        self._frame(matrix, eye, box)
+        self.figures.prepare(shown, camera.eye, origin, self.preset.near)
+        self.boxes.prepare(scene.boxes, origin)
+        if box is not None:
+            self._shadows()
+        self.target.drawn.use()
+        ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
+        ctx.cull_face, ctx.depth_func = "back", "<="
+        self.target.drawn.clear(depth=1.0)
+        self.shadow_map.use(0)
+        self.figures.draw("body")
+        self.boxes.draw("body")
+        if scene.overlays.skeleton:
+            self.overlays.draw_bones(scene.figures, origin)
+        # floor and sky last: the depth test spares what is hidden by then
+        self.ground.draw(box, eye, np.linalg.inv(matrix))
+        self._over(scene, origin)
+        self.target.resolve()
+
+    def read(self, out: np.ndarray | None = None) -> np.ndarray:
+        """The picture (H, W, 4) uint8, top row first; into `out` where one is given."""
+        width, height = self.size
+        if out is None:
+            out = np.empty((height, width, 4), np.uint8)
+        if out.shape != (height, width, 4) or out.dtype != np.uint8:
+            raise ValueError(f"a picture of {width} × {height} needs ({height}, {width}, 4) uint8, "
+                             f"got {out.shape} {out.dtype}")
+        if getattr(self, "_pixels", None) is None or self._pixels.shape != out.shape:
+            self._pixels = np.empty_like(out, order="C")
+        self.target.resolved.read_into(self._pixels, components=4, alignment=1)
+        out[:] = self._pixels[::-1]
+        return out
+
+    def blit(self, target: Any = None) -> None:
+        """Copy the picture into another framebuffer of the same size; by default the window's."""
+        self.ctx.copy_framebuffer(self.ctx.screen if target is None else target, self.target.resolved)
+
+    def release(self) -> None:
+        """Give back all that was made on the graphics card."""
+        for part in (self.figures, self.boxes, self.ground, self.overlays, self.text, self.shadow_target,
+                     self.shadow_map, self.frame, self.target):
+            part.release()
+
+    def _frame(self, matrix: np.ndarray, eye: np.ndarray, box: view.LightBox | None) -> None:
+        """Fill the uniform block of frame.glsl."""
+        data = np.zeros(48, np.float32)
+        data[:16] = matrix.T.ravel()
+        data[32:36], data[36:39] = (*eye, FOG**-4), view.SUN
+        data[40:44] = *self.size, 1.0 / self.size[0], 1.0 / self.size[1]
+        if box is not None:
+            data[16:32] = box.matrix.T.ravel()
+            reach = max(self.preset.softness, 1.2 * box.texel)
+            data[44:48] = *(reach / box.size), 1.6 * box.texel + 0.002, 1.0
+        self.frame.orphan()
+        self.frame.write(data.tobytes())
+        self.frame.bind_to_uniform_block(gl.FRAME)
+
+    def _shadows(self) -> None:
+        ctx = self.ctx
+        self.shadow_target.use()
+        ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
+        # far sides only: what faces the sun then never shadows itself by a rounding error
+        ctx.cull_face, ctx.depth_func = "front", "<="
+        self.shadow_target.clear(depth=1.0)
+        self.figures.draw("shadow")
+        self.boxes.draw("shadow")
+
+    def _over(self, scene: Scene, origin: np.ndarray) -> None:
+        """Marks on the floor, then text over everything."""
+        ctx = self.ctx
+        ctx.enable(ctx.BLEND)
+        ctx.disable(ctx.CULL_FACE)
+        ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
+        self.target.drawn.depth_mask = False
+        self.overlays.draw_marks(scene.figures, scene.overlays, origin)
+        self.target.drawn.depth_mask = True
+        ctx.disable(ctx.DEPTH_TEST)
+        self.text.draw(scene.text, scene.panel, self.size)
+        ctx.disable(ctx.BLEND)

@@ -1,0 +1,174 @@
+"""Text: lines at the top left and a sheet in the middle, in the font that comes with pillow."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter, ImageFont
+
+from . import gl
+
+WORDS = {"–": "-", "—": "-", "−": "-", "²": "2", "³": "3", "×": "x", "µ": "u", "ω": "w", "φ": "phi", "√": "sqrt",
+         "≤": "<=", "≥": ">=", "•": "·", "½": "1/2", "\t": "    "}
+"""What stands in for characters that the font lacks."""
+ARROWS = {"→": 0, "↑": 90, "←": 180, "↓": 270}
+PLAIN = "".join(map(chr, range(32, 127))) + "°·±…“”’"
+INK = (0.97, 0.97, 0.95, 1.0)
+SHEET = (0.05, 0.06, 0.08, 0.80)
+
+
+def spelled(line: str) -> str:
+    """The line in characters that the font has; what nothing can stand in for becomes "?"."""
+    out = []
+    for char in line:
+        for part in WORDS.get(char, char):
+            if part not in PLAIN and part not in ARROWS:
+                part = unicodedata.normalize("NFKD", part)[:1]
+            out.append(part if part in PLAIN or part in ARROWS else "?")
+    return "".join(out)
+
+
+@dataclass(frozen=True, eq=False)
+class Atlas:
+    """Every glyph at one size.
+
+    pixels: (H, W, 2) uint8, the glyph and its soft shadow. cells: glyph → left, top, width, height [px]
+    in the atlas. advances: glyph → how far the pen moves [px]. margin: [px] around each glyph for its
+    shadow. line: [px] from one line to the next.
+    """
+
+    pixels: np.ndarray
+    cells: dict[str, tuple[int, int, int, int]]
+    advances: dict[str, float]
+    margin: int
+    line: int
+
+
+@lru_cache(maxsize=8)
+def atlas(size: int) -> Atlas:
+    """The atlas for letters of `size` pixels."""
+    font = ImageFont.load_default(size=size)
+    ascent, descent = font.getmetrics()
+    margin, height = max(2, size // 6), ascent + descent
+    width, x, y = 32 * size, 0, 0
+    cells, advances, places = {}, {}, {}
+    for glyph in PLAIN + "".join(ARROWS):
+        advance = float(size) if glyph in ARROWS else font.getlength(glyph)
+        box = int(np.ceil(advance)) + 2 * margin + 2
+        if x + box > width:
+            x, y = 0, y + height + 2 * margin
+        cells[glyph], advances[glyph] = (x, y, box, height + 2 * margin), advance
+        places[glyph] = (x + margin, y + margin)
+        x += box
+    sheet = Image.new("L", (width, y + height + 2 * margin))
+    pen = ImageDraw.Draw(sheet)
+    for glyph, place in places.items():
+        if glyph in ARROWS:
+            sheet.paste(_arrow(size, ascent, ARROWS[glyph]), place)
+        else:
+            pen.text(place, glyph, font=font, fill=255)
+    shadow = sheet.filter(ImageFilter.MaxFilter(3)).filter(ImageFilter.GaussianBlur(max(size / 14, 0.8)))
+    return Atlas(np.stack([np.asarray(sheet), np.asarray(shadow)], -1), cells, advances, margin,
+                 round(size * 1.45))
+
+
+def _arrow(size: int, ascent: int, angle: float) -> Image.Image:
+    big = Image.new("L", (size * 8, size * 8))
+    pen, unit = ImageDraw.Draw(big), size * 8
+    pen.line([(0.14 * unit, 0.5 * unit), (0.80 * unit, 0.5 * unit)], 255, int(0.09 * unit))
+    pen.polygon([(0.55 * unit, 0.27 * unit), (0.90 * unit, 0.5 * unit), (0.55 * unit, 0.73 * unit)], 255)
+    whole = Image.new("L", (size, ascent + 2))
+    whole.paste(big.rotate(angle).resize((size, size), Image.Resampling.BOX), (0, max(ascent - size, 0) + 1))
+    return whole
+
+
+def width_of(line: str, font: Atlas) -> float:
+    """How wide a spelled line is [px]."""
+    return sum(font.advances[c] for c in line)
+
+
+def columns(lines: tuple[str, ...], font: Atlas) -> list[list[tuple[float, str]]]:
+    """Each line as cells (x [px], text). Two spaces part cells; those that begin at the same
+    character of their lines stand under each other though the letters differ in width."""
+    cells = [[(m.start(), m.group()) for m in re.finditer(r"\S+(?: \S+)*", spelled(line))] for line in lines]
+    starts = sorted({start for row in cells for start, _ in row} | {0})
+    gap, x = 2.0 * font.line / 1.45, {0: 0.0}
+    if starts[0] == 0 and len(starts) > 1:
+        for before, start in zip(starts, starts[1:]):
+            # clear of every cell that begins to the left of it and not merely of its neighbour
+            ends = [x[s] + width_of(text, font) for row in cells for i, (s, text) in enumerate(row)
+                    if s <= before and i + 1 < len(row) and row[i + 1][0] == start]
+            indent = x[before] + (start - before) * font.advances[" "]
+            x[start] = max([end + gap for end in ends] + ([indent] if not ends else []))
+    return [[(x[start], text) for start, text in row] for row in cells]
+
+
+def glyphs(text: tuple[str, ...], panel: tuple[str, ...], size: tuple[int, int], font: Atlas) -> np.ndarray:
+    """Rows (N, 12): place and cell, left, top, width, height [px], then display RGB and opacity."""
+    rows: list[tuple] = []
+    inset = round(0.8 * font.line)
+    for i, line in enumerate(text):
+        _write(rows, spelled(line), inset, inset + i * font.line, font)
+    if panel:
+        laid = columns(panel, font)
+        wide = max((x + width_of(word, font) for row in laid for x, word in row), default=0.0)
+        tall = len(panel) * font.line
+        left, top = round(0.5 * (size[0] - wide)), round(0.5 * (size[1] - tall))
+        pad = font.line
+        rows.append((left - pad, top - pad, wide + 2 * pad, tall + 2 * pad, 0, 0, -1, 0, *SHEET))
+        for i, row in enumerate(laid):
+            for x, word in row:
+                _write(rows, word, left + round(x), top + i * font.line, font)
+    return np.array(rows, np.float32).reshape(-1, 12)
+
+
+def _write(rows: list, line: str, x: float, y: float, font: Atlas) -> None:
+    for char in line:
+        if char != " ":
+            cell = font.cells[char]
+            rows.append((round(x) - font.margin, y - font.margin, cell[2], cell[3], *cell, *INK))
+        x += font.advances[char]
+
+
+class TextPass:
+    """Draws text; made once per context. The layout of unchanged text is kept."""
+
+    def __init__(self, ctx: Any):
+        self.ctx, self.program = ctx, gl.program(ctx, "text.vert", "text.frag")
+        self.stream, self.texture, self.size, self.shown = gl.Stream(ctx), None, 0, None
+        self.count = 0
+        self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f/i", "place", "cell", "tint")])
+
+    def draw(self, text: tuple[str, ...], panel: tuple[str, ...], size: tuple[int, int]) -> None:
+        """Draw over the whole picture of `size` pixels, letters a fortieth of its height."""
+        if not text and not panel:
+            return
+        wanted = int(np.clip(round(size[1] / 40), 11, 96))
+        if wanted != self.size:
+            self._load(wanted)
+        shown = (tuple(text), tuple(panel), size, wanted)
+        if shown != self.shown:
+            rows = glyphs(shown[0], shown[1], size, atlas(wanted))
+            rows[:, 4:8] /= np.tile(self.texture.size, 2)
+            self.stream.write(rows.tobytes())
+            self.shown, self.count = shown, len(rows)
+        self.texture.use(0)
+        self.array.render(mode=self.ctx.TRIANGLE_STRIP, vertices=4, instances=self.count)
+
+    def _load(self, size: int) -> None:
+        if self.texture is not None:
+            self.texture.release()
+        pixels = atlas(size).pixels
+        self.texture = self.ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
+        self.texture.filter = self.ctx.NEAREST, self.ctx.NEAREST
+        self.size = size
+
+    def release(self) -> None:
+        for part in (self.array, self.program, self.stream, self.texture):
+            if part is not None:
+                part.release()

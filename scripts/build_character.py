@@ -1,0 +1,53 @@
+"""Model the mannequin and write assets/character/mannequin.npz.
+
+    python scripts/build_character.py [--fast]
+
+Everything is made here, from numbers in scripts/character: no scan, no foreign model.
+--fast: a coarse grid and no simplification, to look at a change quickly.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent)]
+
+from character import binding, shape, surface  # noqa: E402
+
+import assets  # noqa: E402
+from game.render.mesh import Mesh, pack  # noqa: E402
+
+TRIANGLES = {"near": 15000, "far": 4000}
+
+
+def finished(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
+    """The mesh with its normals, paint and skin weights."""
+    normals = shape.gradient(vertices)
+    joints, weights = binding.bound(vertices, faces)
+    paint = np.stack([shape.dark(vertices), surface.openness(vertices, normals)], 1)
+    return Mesh(vertices, normals, faces, joints, weights, paint)
+
+
+def main() -> None:
+    fast = "--fast" in sys.argv
+    began = time.perf_counter()
+    vertices, faces = surface.marched(0.013 if fast else 0.0065)
+    print(f"marching cubes: {len(faces)} triangles, {time.perf_counter() - began:.1f} s")
+    stored = {}
+    for level, wanted in TRIANGLES.items():
+        if not fast:
+            vertices, faces = surface.collapsed(vertices, faces, wanted, 0.011 if level == "near" else 0.022)
+            vertices = surface.relaxed(vertices, faces)
+        stored |= pack(finished(vertices, faces), level)
+        print(f"{level}: {len(vertices)} vertices, {len(faces)} triangles, {time.perf_counter() - began:.1f} s")
+    path = assets.path("character", "mannequin.npz")
+    np.savez_compressed(path, **stored)
+    print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""How the mannequin is made: its shape, its mesh and the binding to its joints."""
