@@ -56,9 +56,10 @@ def read_asf(path) -> AcclaimSkeleton:
     metre, radian = 0.0254, np.pi / 180
     for line, words in sections["units"]:
         if words[0] == "length" and len(words) == 2:
-            metre = 0.0254 / (number(words[1], path, line) or np.nan)
-            if not 0 < metre < np.inf:
+            inverse = number(words[1], path, line)
+            if inverse < 1e-9:
                 fail(path, line, f"the unit of length must be above zero, not {words[1]}")
+            metre = 0.0254 / inverse
         if words[0] == "angle" and len(words) == 2:
             radian = angle_unit(words[1], path, line)
     root = _root(sections["root"], path)

@@ -12,6 +12,8 @@ import numpy as np
 from numba import njit
 
 _TENS = 10.0 ** np.arange(23)  # exactly representable: one division or product rounds only once
+LIMIT = 1e15
+"""Numbers beyond this are taken for damage, like nan and inf: no unit makes them a place or an angle."""
 _OK, _BAD_COUNT, _BAD_NUMBER, _TOO_MANY = range(4)
 
 
@@ -61,7 +63,7 @@ def number(word: str, path, line: int) -> float:
         value = float(word)
     except ValueError:
         value = np.nan
-    if not np.isfinite(value):
+    if not abs(value) <= LIMIT:
         fail(path, line, f"'{word[:40]}' is not a finite number")
     return value
 
@@ -117,7 +119,7 @@ def is_space(byte):
 
 @njit(cache=True)
 def parse_number(buffer, i):
-    """(value, position behind it, whether it is a finite number) of the decimal at byte i.
+    """(value, position behind it, whether it is a number within LIMIT) of the decimal at byte i.
 
     Up to 15 digits and exponents within ±22 are rounded correctly; the rest to a few 1e-16.
     """
@@ -166,7 +168,7 @@ def parse_number(buffer, i):
     elif exponent > 0 and mantissa > 0:
         value *= 10.0 ** exponent
     ended = i == n or is_space(buffer[i]) or buffer[i] == 10
-    return (-value if negative else value), i, ended and value < np.inf
+    return (-value if negative else value), i, ended and value <= LIMIT
 
 
 @njit(cache=True)

@@ -91,17 +91,17 @@ def test_turns_are_scipys_in_any_order_and_number(tmp_path_factory, orders, seed
 @settings(max_examples=300, deadline=None)
 def test_numbers_are_pythons(value, form):
     text = form.format(value)
-    if abs(float(text)) < 1e-290 or abs(float(text)) > 1e290:  # denormal, or about to overflow
+    if 0 < abs(float(text)) < 1e-290:  # denormal
         return
     read, behind, good = parse_number(np.frombuffer(text.encode() + b" 7", np.uint8), 0)
-    assert good and behind == len(text)
-    assert read == pytest.approx(float(text), rel=2e-15, abs=1e-300)
+    assert behind == len(text) and good == (abs(float(text)) <= 1e15)
+    assert not good or read == pytest.approx(float(text), rel=2e-15, abs=1e-300)
 
 
 @pytest.mark.parametrize("text, good", [
     ("1.", True), (".5", True), ("-0", True), ("1e5", True), ("1.5E-009", True), ("0e999999999", True),
     ("", False), (".", False), ("-", False), ("1e", False), ("1e+", False), ("nan", False), ("inf", False),
-    ("1e400", False), ("1.2.3", False), ("1,5", False), ("0x10", False), ("--1", False), ("1_0", False)])
+    ("1e400", False), ("1e15", True), ("-1.1e15", False), ("1.2.3", False), ("1,5", False), ("0x10", False), ("--1", False), ("1_0", False)])
 def test_what_is_a_number(text, good):
     assert parse_number(np.frombuffer(text.encode() + b"\n", np.uint8), 0)[2] == good
 
