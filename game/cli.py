@@ -67,14 +67,13 @@ def play(library: Library = None, preset: Quality = Preset.full,
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     pixels, controller = _size(size), _controller(library)
 
-    from .hosts import NoDisplay, run_window
+    from .hosts import DisplayError, run_window
     from .play import Play
 
     try:
-        run_window(Play(controller), title="Gambol", size=pixels, preset=preset.value)
-    except NoDisplay as error:
-        _say(f"gambol: no window can be opened here: {error}")
-        _say("`gambol render demo -o demo.mp4` draws a film without a display")
+        run_window(Play(controller), pixels, preset.value)
+    except DisplayError as error:
+        _say(f"gambol: {error}")
         raise typer.Exit(NO_DISPLAY) from None
 
 
@@ -102,7 +101,7 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
     shown = scenarios.overlays(film.overlays if overlay is None else _overlays(overlay))
     target, controller = recorder(out, (width, height), film.fps), _controller(library)
 
-    from .hosts import Offscreen
+    from .hosts import GraphicsError, Offscreen
 
     try:
         with Offscreen((width, height), preset.value) as stage, target, _progress() as bar:
@@ -111,6 +110,8 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
     except KeyboardInterrupt:
         _say(f"what was drawn is in {target.part}")
         raise
+    except GraphicsError as error:
+        raise OSError(str(error)) from None
     _say(f"{target.path}: {film.frames} frames, {film.duration:g} s, {width} × {height}")
 
 

@@ -16,13 +16,17 @@ from controllers.contract import Intent
 from controllers.navigation import in_world
 
 from .camera import Follow
+from .hosts.events import Event, KeyEvent, MouseMove, PadState, Scroll
 from .input import Keyboard, Pilot, Wish, help_sheet, pad_pressed, pad_wish
-from .input.bindings import binding, pressed_by
+from .input.bindings import pressed_by
 from .scene import Overlays, Scene
 from .world import DT, Character, FixedStep, World, figures, ground_between
 
-ORBIT_PER_PIXEL = 0.006
+ORBIT = 4.0
+"""How far dragging the mouse over the height of the window turns the camera [rad]."""
 ZOOM_PER_NOTCH = 0.88
+LONGEST = 0.1
+"""The most time that one frame moves the camera [s]."""
 SHOWN_SPEED = 0.03
 """Below this speed [m/s] or [rad/s] a character is said to stand."""
 
@@ -35,8 +39,8 @@ def stage(controller: Any) -> World:
 class Play:
     """The game as an app: `handle` events, `tick` seconds, draw `scene`, until `done`.
 
-    log: the intents of every step since the last reset; with `opening` they replay the game to
-    the bit. A host may set nothing and read everything.
+    log: the intents of every step since the last reset; from `opening` they replay the game to
+    the bit.
     """
 
     def __init__(self, controller: Any, world: World | None = None):
@@ -44,7 +48,6 @@ class Play:
         self.overlays = Overlays(path=True)
         self.done = self.paused = self.helping = False
         self.pad, self.keyboard = None, Keyboard()
-        self._mouse: tuple[float, float] | None = None
         self.reset()
 
     def reset(self) -> None:
@@ -58,29 +61,46 @@ class Play:
     def _hero(self) -> Character:
         return self.after.characters[0]
 
-    def handle(self, event: Any) -> None:
-        """Take one event of `game.hosts.events`; unknown ones are ignored."""
-        kind = type(event).__name__
-        handler = getattr(self, f"_on_{kind}", None)
-        if handler is not None:
-            handler(event)
+    def handle(self, event: Event) -> None:
+        """Take one event from the host; those that mean nothing here are ignored."""
+        match event:
+            case KeyEvent(key, True):
+                self.keyboard = self.keyboard.press(key)
+                for action in pressed_by(key):
+                    self.do(action)
+            case KeyEvent(key, False):
+                self.keyboard = self.keyboard.release(key)
+            case MouseMove(dx=dx, dy=dy) if self.keyboard.held("orbit"):
+                self.camera = self.camera.turned(-ORBIT * dx, ORBIT * dy)
+            case Scroll(dy=notches) if math.isfinite(notches):
+                self.camera = self.camera.zoomed(ZOOM_PER_NOTCH ** min(max(notches, -10.0), 10.0))
+            case PadState():
+                pad = event if event.name else None
+                for action in pad_pressed(self.pad, pad):
+                    self.do(action)
+                self.pad = pad
 
     def tick(self, seconds: float) -> None:
         """Let `seconds` of real time pass: whole steps, then the camera."""
-        wish = Wish() if self.helping else self.keyboard.wish().merged(pad_wish(self.pad))
-        steps = 0
-        if not self.paused and not self.helping:
+        running = not (self.paused or self.helping)
+        seconds = seconds if 0.0 <= seconds < math.inf else 0.0
+        wish = self._wish()
+        if running:
             steps, self.clock = self.clock.add(seconds)
-        for _ in range(steps):
-            self._step(wish)
-        frame = min(max(seconds, 0.0), 0.1) if math.isfinite(seconds) else 0.0
-        moving = not (self.paused or self.helping)
-        turn = Pilot().pace.orbit * frame
+            for _ in range(steps):
+                self._step(wish)
+        # the camera keeps to the display's frames, also while the world stands still
+        frame = min(seconds, LONGEST)
         if wish.orbit != (0.0, 0.0):
-            self.camera = self.camera.turned(turn * wish.orbit[0], turn * wish.orbit[1])
+            rate = self.pilot.pace.orbit * frame
+            self.camera = self.camera.turned(rate * wish.orbit[0], rate * wish.orbit[1])
         state = self._hero.state
-        velocity = in_world(state.ground, state.velocity) if moving else np.zeros(2)
-        self.camera = self.camera.step(self._ground(), velocity, frame, self.after.boxes)
+        velocity = in_world(state.ground, state.velocity) if running else np.zeros(2)
+        ground = ground_between(self.before.characters[0].state, state, self.clock.alpha)
+        self.camera = self.camera.step(ground, velocity, frame, self.after.boxes)
+
+    def _wish(self) -> Wish:
+        return self.keyboard.wish().merged(pad_wish(self.pad))
 
     def _step(self, wish: Wish) -> None:
         state = self._hero.state
@@ -90,9 +110,6 @@ class Play:
         intents = (command.intent(state),) + (Intent(),) * (len(self.after.characters) - 1)
         self.before, self.after = self.after, self.after.step(intents)
         self.log.append(intents)
-
-    def _ground(self) -> np.ndarray:
-        return ground_between(self.before.characters[0].state, self._hero.state, self.clock.alpha)
 
     def scene(self, size: tuple[int, int]) -> Scene:
         """What to draw now; size: of the frame in pixels."""
@@ -123,7 +140,7 @@ class Play:
         elif action == "reset":
             self.reset()
         elif action == "step" and self.paused:
-            self._step(self.keyboard.wish().merged(pad_wish(self.pad)))
+            self._step(self._wish())
             self.clock = replace(self.clock, owed=DT)
         elif action == "strafe_lock":
             self.pilot = self.pilot.toggled()

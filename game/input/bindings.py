@@ -49,6 +49,7 @@ BINDINGS = (
     Binding("trail", "show the trail", ("4",)),
     Binding("path", "show the predicted path", ("5",), ("UP",)),
     Binding("help", "this sheet", ("F1", "H"), ("Y",)),
+    Binding("full_screen", "full screen", ("F11",)),
     Binding("quit", "leave", ("ESCAPE",)),
 )
 """Every binding, in the order of the help sheet."""

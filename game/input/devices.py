@@ -59,7 +59,7 @@ def trigger(value: float) -> float:
 
 
 def pad_wish(pad) -> Wish:
-    """What a gamepad asks for; `pad` is a `game.hosts` PadState, or None where none is plugged in."""
+    """What a gamepad asks for; `pad` is a `game.hosts.PadState`, or None where none is plugged in."""
     if pad is None:
         return Wish()
     left = dead_zone(pad.left[0], -pad.left[1])
