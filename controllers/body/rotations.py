@@ -106,29 +106,29 @@ def exp_kernel(x, y, z, out):
 
 @njit(cache=True, fastmath=True)
 def log_kernel(r, out):
-    """Write the rotation vector of matrix `r` (3, 3) into `out` (3,); exact up to angles near π."""
+    """Write the rotation vector of matrix `r` (3, 3) into `out` (3,); |v| ≤ π, any float type."""
     x, y, z = r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]
     sine = 0.5 * math.sqrt(x * x + y * y + z * z)
     cosine = 0.5 * (r[0, 0] + r[1, 1] + r[2, 2] - 1.0)
     angle = math.atan2(sine, cosine)
-    if sine > 1e-4:
+    if cosine > -0.5 and sine > 1e-4:
         scale = 0.5 * angle / sine
         out[0], out[1], out[2] = scale * x, scale * y, scale * z
     elif cosine > 0.0:
         out[0], out[1], out[2] = 0.5 * x, 0.5 * y, 0.5 * z
-    else:  # near π the antisymmetric part vanishes: the axis is the largest column of R + I
+    else:  # near π the antisymmetric part vanishes; the symmetric one, less cos·I, is (1 − cos)·axis·axisᵀ
         k = 0
         if r[1, 1] > r[0, 0]:
             k = 1
         if r[2, 2] > r[k, k]:
             k = 2
-        a, b, c = r[0, k], r[1, k], r[2, k]
+        a, b, c = 0.5 * (r[0, k] + r[k, 0]), 0.5 * (r[1, k] + r[k, 1]), 0.5 * (r[2, k] + r[k, 2])
         if k == 0:
-            a += 1.0
+            a -= cosine
         elif k == 1:
-            b += 1.0
+            b -= cosine
         else:
-            c += 1.0
+            c -= cosine
         scale = angle / math.sqrt(a * a + b * b + c * c)
         if a * x + b * y + c * z < 0.0:
             scale = -scale
