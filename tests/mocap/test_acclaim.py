@@ -27,6 +27,10 @@ def about(order, angles):
     return turn
 
 
+def words(values):
+    return " ".join(repr(float(value)) for value in values)
+
+
 def test_bones_at_rest_stand_where_the_file_puts_them(chain):
     body = read_asf(chain / "01.asf")
     skeleton = body.skeleton
@@ -59,10 +63,9 @@ def test_any_axes_and_orders(tmp_path_factory, seed):
     dofs = [f"r{axis}" for axis in rng.permutation(list("xyz"))]
     frame, turn, shin = rng.uniform(-180, 180, (3, 3))
     folder = tmp_path_factory.mktemp("acclaim")
-    (folder / "a.asf").write_text(ASF.replace("axis 10 20 30 XYZ", f"axis {' '.join(map(repr, map(float, frame)))} {order}")
+    (folder / "a.asf").write_text(ASF.replace("axis 10 20 30 XYZ", f"axis {words(frame)} {order}")
                                   .replace("dof rx ry rz", "dof " + " ".join(dofs)))
-    (folder / "a.amc").write_text("1\nroot 0 0 0 0 0 0\nshin " + repr(float(shin[0])) + "\nthigh "
-                                  + " ".join(repr(float(v)) for v in turn) + "\n")
+    (folder / "a.amc").write_text(f"1\nroot 0 0 0 0 0 0\nshin {words(shin[:1])}\nthigh {words(turn)}\n")
     clip = read_amc(folder / "a.amc")
     axes = about(order, [frame["xyz".index(axis)] for axis in order])
     thigh = axes @ about([dof[1] for dof in dofs], turn) @ axes.T
@@ -76,7 +79,7 @@ def test_any_axes_and_orders(tmp_path_factory, seed):
 
 def test_radians_read_the_same(chain):
     degrees = read_amc(chain / "01_01.amc")
-    amc = AMC.replace(":DEGREES", ":RADIANS").replace("40 -50 60", " ".join(repr(np.radians(v).item()) for v in (40, -50, 60)))
+    amc = AMC.replace(":DEGREES", ":RADIANS").replace("40 -50 60", words(np.radians([40, -50, 60])))
     (chain / "01_02.amc").write_text(amc)
     radians = read_amc(chain / "01_02.amc")
     np.testing.assert_allclose(radians.quaternions[0, 1], degrees.quaternions[0, 1], atol=1e-12)

@@ -71,7 +71,8 @@ BROKEN_AMC = {
     "unknown bone": (lambda t: t.replace("thigh 40", "tail 40"), 6, "'tail' is not in the skeleton"),
     "bone twice": (lambda t: t.replace("shin 25", "thigh 1 2 3"), 7, "'thigh' comes twice"),
     "bone missing": (lambda t: t.replace("shin 25\n", ""), 6, "the first frame lacks bone 'shin'"),
-    "another skeleton's channels": (lambda t: t.replace("shin 25", "shin 25 30"), 7, r"2 values, but 1 channels \(rx\)"),
+    "more channels than the skeleton's": (lambda t: t.replace("shin 25", "shin 25 30"), 7,
+                                          r"2 values, but 1 channels \(rx\)"),
     "not text": (lambda t: t.replace("thigh 41", "\udcff\udcfe 41"), 10, "where bone 'thigh' should stand"),
 }
 
@@ -98,7 +99,7 @@ BROKEN_ASF = {
     "unit of angle": (lambda t: t.replace("angle deg", "angle gon"), 7, "deg or rad, not 'gon'"),
     "unit of length": (lambda t: t.replace("length 0.5", "length 0"), 6, "must be above zero"),
     "bone twice": (lambda t: t.replace("name shin", "name thigh"), 25, "a second bone 'thigh'"),
-    "unknown in hierarchy": (lambda t: t.replace("shin toe", "shin tail"), 44, "names 'tail', which :bonedata does not"),
+    "unknown in hierarchy": (lambda t: t.replace("shin toe", "shin tail"), 44, "names 'tail', which :bonedata"),
     "a circle": (lambda t: t.replace("root thigh", "toe thigh"), 14, "'thigh' has no way to the root"),
     "two parents": (lambda t: t.replace("shin toe", "shin toe thigh"), 44, "'thigh' has a place in the hierarchy"),
     "left out": (lambda t: t.replace("    shin toe\n", ""), 33, "bone 'toe' has no way to the root"),
