@@ -47,8 +47,9 @@ def two_bone_turns(root: np.ndarray, mid: np.ndarray, end: np.ndarray, target: n
     """The world rotations (..., 3, 3) of the upper and the lower bone that two_bone implies.
 
     Multiply each from the left onto its joint's world orientation. Arguments as in `two_bone`;
-    the pole is where the middle joint faces now, and it goes on facing there. Both bones keep the same hinge axis in their own frames, so a hinge stays a hinge: the frame
-    of bone and hinge is carried over, not the bone alone.
+    the pole is where the middle joint faces now, and it goes on facing there. Both bones keep
+    the same hinge axis in their own frames, so a hinge stays a hinge: the frame of bone and hinge
+    is carried over, not the bone alone.
     """
     here = pole_of(root, mid, end) if pole is None else pole
     new_mid, new_end = two_bone(root, mid, end, target, here, buffer=buffer)

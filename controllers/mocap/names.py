@@ -21,7 +21,7 @@ _LIMBS = {
     "Toe": ("toebase", "toes", "toe", "toe0", "ball", "foot"),
     "Arm": ("arm", "uparm", "upperarm", "humerus", "shldr", "shoulder"),
     "ForeArm": ("forearm", "lowerarm", "lowarm", "elbow", "radius"),
-    "Hand": ("hand", "wrist"),
+    "Hand": ("fingerbase", "hand", "wrist"),
     "Shoulder": ("shoulder1", "collar", "clavicle", "shoulder"),
 }
 _MIDLINE = {"Hips": ("hips", "hip", "pelvis", "root"), "Head": ("head",)}
