@@ -16,6 +16,10 @@ from controllers.body.rotations import wrap
 from .scene import Box, Camera
 
 
+NEAREST = 0.8
+"""No wall or floor brings the eye nearer to the focus than this [m]."""
+
+
 def damp(value, target, halflife: float, dt: float):
     """`value` after `dt` seconds on its way to `target`; a half-life of 0 arrives at once."""
     if halflife <= 0.0:
@@ -127,9 +131,9 @@ class Follow:
     def _free_arm(self, boxes: Sequence[Box]) -> float:
         arm, back, s = self.distance, -self._forward(), self.settings
         if back[1] < 0.0:
-            arm = min(arm, max((s.floor - self.focus[1]) / back[1], 0.5))
+            arm = min(arm, max((s.floor - self.focus[1]) / back[1], NEAREST))
         for box in boxes:
-            arm = min(arm, max(_distance_to(box, self.focus, back) - 0.2, 0.5))
+            arm = min(arm, max(_distance_to(box, self.focus, back) - 0.2, NEAREST))
         return arm
 
 

@@ -86,7 +86,10 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None) -
 
 @dataclass(frozen=True, eq=False)
 class Operator:
-    """Who holds the camera during one shot. whom: the number of the actor watched."""
+    """Who holds the camera during one shot. whom: the number of the actor watched.
+
+    Props don't shorten the arm here: a film's author sees where they stand.
+    """
 
     shot: ShotTable
     whom: int
@@ -106,13 +109,13 @@ class Operator:
         above = math.radians(shot.above)
         return Operator(shot, whom, follow=replace(
             camera, pitch=above, wanted_pitch=above, distance=shot.distance, arm=shot.distance
-        ).step(ground, np.zeros(2), 0.0, frame.after.boxes))
+        ))
 
     def step(self, frame: Frame, dt: float) -> Operator:
         """One frame on."""
         ground = _ground(frame, self.whom)
         if self.follow is not None:
-            return replace(self, follow=self.follow.step(ground, _velocity(frame, self.whom), dt, frame.after.boxes))
+            return replace(self, follow=self.follow.step(ground, _velocity(frame, self.whom), dt))
         if self.shot.target is None:
             return replace(self, target=damp(self.target, _aim(ground), LOOK_HALFLIFE, dt))
         return self

@@ -103,8 +103,8 @@ class BoxTable(_Table):
 class ShotTable(_Table):
     """What the camera does from `at` seconds on.
 
-    follow: behind an actor, `around` degrees to the left of straight behind, `above` degrees
-    over the horizon. fixed: from `eye`. dolly: from `eye` to `to`. Both look at `target`, or
+    follow: an actor, looking `around` degrees to the left of its heading at the cut and from
+    `above` degrees over the horizon; with `swing` it comes round behind. fixed: from `eye`. dolly: from `eye` to `to`. Both look at `target`, or
     at the actor named in `look_at`.
     """
 
