@@ -36,6 +36,10 @@ Library = Annotated[Path | None, typer.Option(help="A gait library; the shipped 
 Quality = Annotated[Preset, typer.Option(help="Picture quality.")]
 
 
+class Mistake(ValueError):
+    """Something wrong in what was typed."""
+
+
 def plainly(command):
     """The command, with errors that a user can act on as one line instead of a traceback.
 
@@ -46,7 +50,8 @@ def plainly(command):
         try:
             return command(*args, **kwargs)
         except (ValueError, OSError) as error:
-            if os.environ.get("GAMBOL_TRACEBACK"):
+            # Gambol's own kinds of ValueError are about what the user gave; a bare one is our bug
+            if type(error) is ValueError or os.environ.get("GAMBOL_TRACEBACK"):
                 raise
             _say(f"gambol: {error}")
             raise typer.Exit(2) from None
@@ -195,7 +200,7 @@ def _controller(library: Path | None):
 def _size(text: str) -> tuple[int, int]:
     width, _, height = text.lower().partition("x")
     if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
-        raise ValueError(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
+        raise Mistake(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
     return int(width), int(height)
 
 
@@ -205,7 +210,7 @@ def _overlays(text: str) -> list[str]:
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:
         if name not in OVERLAYS:
-            raise ValueError(f"--overlay {name!r}: there is no such overlay; choose from {', '.join(OVERLAYS)}")
+            raise Mistake(f"--overlay {name!r}: there is no such overlay; choose from {', '.join(OVERLAYS)}")
     return names if "mesh" in names or "skeleton" in names else ["mesh", *names]
 
 

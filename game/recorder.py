@@ -21,6 +21,10 @@ from controllers.body import Clip, Pose, Skeleton
 PICTURE = re.compile(r"frame_\d{5,}\.png")
 
 
+class RecordingError(ValueError):
+    """Something that can't be recorded, and what could be."""
+
+
 class Recorder(Protocol):
     """Takes frames. Used in a `with`; leaving it without an error completes the recording.
 
@@ -41,14 +45,14 @@ class Recorder(Protocol):
 def recorder(path: str | Path, size: tuple[int, int], fps: int) -> Recorder:
     """The recorder for a path: a .mp4 file, or a folder of PNG frames where there is no suffix.
 
-    size: width and height in pixels. ValueError for any other suffix.
+    size: width and height in pixels. RecordingError for any other suffix.
     """
     text, path = str(path), Path(path)
     if path.suffix.lower() == ".mp4":
         return Film(path, size, fps)
     if text.endswith(("/", os.sep)) or path.is_dir() or not path.suffix:
         return Pictures(path, size)
-    raise ValueError(f"{path}: can't record {path.suffix}; name a .mp4 file, a .bvh file or a folder for PNG frames")
+    raise RecordingError(f"{path}: can't record {path.suffix}; name a .mp4 file, a .bvh file or a folder for PNG frames")
 
 
 class Film:
