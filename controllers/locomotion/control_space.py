@@ -19,6 +19,8 @@ SCALE = np.array([0.54, 0.99, 0.25])
 """Spread of (v_f, ω, v_l) in human walking [m/s, rad/s, m/s]: one unit of distance in the space."""
 EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
 """The six edges of a simplex, as pairs of its vertices."""
+STEEPEST = 10.0
+"""Simplices thinner than 1 / STEEPEST (scaled velocity) are slivers: weights would race across them."""
 INSIDE = 1.0 - 1e-6
 """Clamped queries end this fraction of the way to the hull, so that rounding leaves them inside."""
 
@@ -129,3 +131,22 @@ class ControlSpace:
         """The steepest slope of any weight over the space, per unit of scaled velocity."""
         rows = np.concatenate([self.transform[:, :3], -self.transform[:, :3].sum(1, keepdims=True)], 1)
         return float(np.linalg.norm(rows, axis=-1).max())
+
+
+def thin(points: np.ndarray, keep: np.ndarray, steepest: float = STEEPEST) -> np.ndarray:
+    """Numbers of the points (Q, 3) that remain when no simplex is a sliver any more.
+
+    Of the thinnest simplex the vertex nearest to its opposite face goes: what it told, its
+    neighbours nearly tell. keep: (Q,) bool, points that stay whatever happens.
+    """
+    left = np.arange(len(points))
+    while len(left) > 5:
+        mesh = Delaunay(points[left] / SCALE)
+        rows = np.concatenate([mesh.transform[:, :3], -mesh.transform[:, :3].sum(1, keepdims=True)], 1)
+        slope = np.nan_to_num(np.linalg.norm(rows, axis=-1), nan=np.inf)
+        slope[keep[left][mesh.simplices]] = 0.0
+        simplex, vertex = np.unravel_index(np.argmax(slope), slope.shape)
+        if slope[simplex, vertex] <= steepest:
+            break
+        left = np.delete(left, mesh.simplices[simplex, vertex])
+    return left

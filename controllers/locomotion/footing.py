@@ -17,6 +17,12 @@ from numba import njit
 
 from ..body.ik import two_bone_kernel
 
+STANDING = 0.06
+"""A point stands where its blended label exceeds this: early, so that no foot creeps into its stance …"""
+GATE = 0.035
+"""… but takes hold only when it is lower than this above where it rests [m]."""
+LAND_HALFLIFE = 0.03
+"""A landing point comes down to the floor with this half-life [s]."""
 OFFSET_HALFLIFE = 0.07
 """A released foot returns to the blend with this half-life [s]."""
 PELVIS_HALFLIFE = 0.08

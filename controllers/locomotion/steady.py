@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numba import njit
 
-from .control_space import ControlSpace
+from .control_space import ControlSpace, thin
 from .cycles import screw
 from .kernel import COLUMNS, LANES, body_tables, pose_kernel, series_table
 from .library import Library
@@ -72,7 +72,7 @@ def settle(library: Library, progress=None) -> Library:
     if progress:
         progress("measuring velocities", 0, 2)
     velocities[moving] = steady_velocities(library, np.eye(count))[moving]
-    library = replace(library, velocities=velocities)
+    library = _without_slivers(replace(library, velocities=velocities))
     if progress:
         progress("measuring velocities", 1, 2)
     bends = {}
@@ -83,6 +83,15 @@ def settle(library: Library, progress=None) -> Library:
     if progress:
         progress("measuring velocities", 2, 2)
     return replace(library, bends=bends)
+
+
+def _without_slivers(library: Library) -> Library:
+    """The library without the primitives that make its control spaces' simplices thin."""
+    left = np.sort(np.concatenate([
+        members[thin(library.velocities[members], members == library.rest)]
+        for members in (library.family("walk"), library.family("run")) if len(members)]))
+    return replace(library, primitives=tuple(library.primitives[i] for i in left),
+                   velocities=library.velocities[left], coefficients=library.coefficients[left])
 
 
 def measure_bend(library: Library, members: np.ndarray, space: ControlSpace) -> np.ndarray:

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from ..body.human import CONTACT_HEIGHT, human
-from .footing import (OFFSET_HALFLIFE, PELVIS_DROP, PELVIS_HALFLIFE, REACH, RELEASE, heel_rise_kernel,
+from .footing import (GATE, LAND_HALFLIFE, OFFSET_HALFLIFE, PELVIS_DROP, PELVIS_HALFLIFE, REACH, RELEASE, STANDING, heel_rise_kernel,
                       leg_kernel, spring_kernel, tilt_kernel)
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, joint_kernel,
                      pose_kernel, query_kernel, series_kernel)
@@ -32,6 +32,8 @@ class Settings(NamedTuple):
     walk_below: float = 1.60
     correct: int = 2
     footing: bool = True
+    acceleration: float = 4.5
+    clearance: float = 0.018
     breath: float = 0.012
 
 
@@ -98,16 +100,22 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
         _move_root(m, settings, body, legs, positions, orientations, velocities, dt)
         drop = 0.0
         if settings.footing:
-            drop = _place_feet(m, body, legs, positions, orientations, local[n], dt, work)
+            drop = _place_feet(m, body, legs, settings.clearance, positions, orientations, local[n], dt, work)
         _to_world(m, fresh, drop, root[n], local[n])
 
 
 @njit(cache=True)
 def _shape_command(m, wish, dt, settings):
-    """The wish, smoothed: an exact critically damped spring."""
+    """The wish, smoothed: an exact critically damped spring, no faster than legs can push."""
     for i in range(3):
-        x, v = spring_kernel(m.command[i] - wish[i], m.rate[i], settings.command_halflife, dt)
-        m.command[i], m.rate[i] = wish[i] + x, v
+        before = m.command[i]
+        x, v = spring_kernel(before - wish[i], m.rate[i], settings.command_halflife, dt)
+        most = settings.acceleration if i != 1 else 4.0 * settings.acceleration
+        step = wish[i] + x - before
+        if abs(step) > most * dt:
+            step = math.copysign(most * dt, step)
+            v = step / dt
+        m.command[i], m.rate[i] = before + step, v
 
 
 @njit(cache=True)
@@ -239,56 +247,95 @@ def _move_root(m, settings, body, legs, positions, orientations, velocities, dt)
 
 
 @njit(cache=True)
-def _hold_point(m, k, stands, height, dt):
-    """Advance one contact point's lock and offset; write where it shall be (ground frame) into m.points'
-    frame. Returns the target x, y, z."""
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x = m.ground[0] + c * m.points[k, 0] + s * m.points[k, 2]
-    z = m.ground[1] - s * m.points[k, 0] + c * m.points[k, 2]
-    y = float(m.points[k, 1])
-    if stands and not m.standing[k]:
-        m.standing[k] = 1
-        m.lock[k, 0], m.lock[k, 1], m.lock[k, 2] = x + m.offset[k, 0], height, z + m.offset[k, 2]
-    elif not stands:
-        m.standing[k] = 0
-    if m.standing[k] == 1:
-        before_x, before_z = m.offset[k, 0], m.offset[k, 2]
-        m.offset[k, 0], m.offset[k, 2] = m.lock[k, 0] - x, m.lock[k, 2] - z
-        m.offset_rate[k, 0] = (m.offset[k, 0] - before_x) / dt
-        m.offset_rate[k, 2] = (m.offset[k, 2] - before_z) / dt
-        rise, rate = spring_kernel(m.offset[k, 1] - (height - y), m.offset_rate[k, 1], 0.03, dt)
-        m.offset[k, 1], m.offset_rate[k, 1] = rise + height - y, rate
-        if m.offset[k, 0] ** 2 + m.offset[k, 2] ** 2 > RELEASE * RELEASE:
-            m.standing[k] = 2  # let go until the label says swing
-    if m.standing[k] != 1:
-        for i in range(3):
-            m.offset[k, i], m.offset_rate[k, i] = spring_kernel(m.offset[k, i], m.offset_rate[k, i],
-                                                                OFFSET_HALFLIFE, dt)
-    ox, oz = m.offset[k, 0], m.offset[k, 2]
-    return (m.points[k, 0] + c * ox - s * oz, max(y + m.offset[k, 1], height),
-            m.points[k, 2] + s * ox + c * oz)
+def _swing_lift(m, foot, clearance):
+    """How high foot 0 (left) or 1 must swing [m]: over the stretch of the phase in which it does,
+    and the more the farther it has to go beyond what the blend does by itself."""
+    share = 0.38 if m.family == WALK else 0.72
+    into = ((m.phase - 0.5 * foot) % 1.0) / share
+    if into >= 1.0 or m.settled:
+        return 0.0
+    return min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * into)
 
 
 @njit(cache=True)
-def _stands(m, k, foot_label):
-    """Whether point k stands, with hysteresis on its label."""
+def _hold_standing(m, height, dt):
+    """Lock the points that begin to stand, release those that end, keep the standing on their locks."""
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    for k in range(4):
+        stands = _stands(m, k, height)
+        x = m.ground[0] + c * m.points[k, 0] + s * m.points[k, 2]
+        z = m.ground[1] - s * m.points[k, 0] + c * m.points[k, 2]
+        offset, rate = m.offset[k], m.offset_rate[k]
+        if stands and m.standing[k] == 0:
+            m.standing[k] = 1
+            m.lock[k, 0], m.lock[k, 1], m.lock[k, 2] = x + offset[0], height, z + offset[2]
+        elif not stands and m.standing[k] != 0:
+            m.standing[k] = 0
+            m.swing[k // 2] = math.sqrt(offset[0] ** 2 + offset[2] ** 2)
+        if m.standing[k] == 1:
+            offset[0], offset[2] = m.lock[k, 0] - x, m.lock[k, 2] - z
+            rate[0], rate[2] = 0.0, 0.0
+            below = height - m.points[k, 1]
+            rise, rate[1] = spring_kernel(offset[1] - below, rate[1], LAND_HALFLIFE, dt)
+            offset[1] = rise + below
+            if offset[0] ** 2 + offset[2] ** 2 > RELEASE * RELEASE:
+                m.standing[k] = 2  # let go until the label says swing
+
+
+@njit(cache=True)
+def _hold_free(m, before, dt):
+    """Take the free points along with their foot's standing point, or else back to the blend.
+
+    before: (4, 3) the offsets one step ago.
+    """
+    for k in range(4):
+        if m.standing[k] == 1:
+            continue
+        other = k ^ 1
+        for i in range(3):
+            was, goal = 0.0, 0.0
+            if m.standing[other] == 1 and i != 1:
+                was, goal = before[other, i], m.offset[other, i]
+            rest, m.offset_rate[k, i] = spring_kernel(m.offset[k, i] - was, m.offset_rate[k, i],
+                                                      OFFSET_HALFLIFE, dt)
+            m.offset[k, i] = goal + rest
+
+
+@njit(cache=True)
+def _target(m, k, height, lift):
+    """Where contact point k shall be: x, y, z in the ground frame."""
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    least = height if m.standing[k] == 1 else height + lift
+    return (m.points[k, 0] + c * m.offset[k, 0] - s * m.offset[k, 2],
+            max(m.points[k, 1] + m.offset[k, 1], least),
+            m.points[k, 2] + s * m.offset[k, 0] + c * m.offset[k, 2])
+
+
+@njit(cache=True)
+def _stands(m, k, height):
+    """Whether point k stands: always at rest, else by its blended label, and only once it is low."""
     if m.settled:
         return True
-    return m.row[LABELS_AT + k] > (0.4 if m.standing[k] else 0.5)
+    low = m.standing[k] != 0 or m.points[k, 1] + m.offset[k, 1] < height + GATE
+    return low and m.row[LABELS_AT + k] > STANDING
 
 
 @njit(cache=True)
-def _place_feet(m, body, legs, positions, orientations, local, dt, work):
+def _place_feet(m, body, legs, clearance, positions, orientations, local, dt, work):
     """Hold standing feet, land swinging ones, bend the legs after them. Returns the pelvis offset [m]."""
     height = legs.height
     ankle = np.empty((2, 3))
     direction, axis, turned = np.empty(3), np.empty(3), np.empty((3, 3))
     need = 0.0
+    before = m.offset.copy()
+    _hold_standing(m, height, dt)
+    _hold_free(m, before, dt)
     for foot in range(2):
         a = legs.hip[foot] + 2
         heel, ball = 2 * foot, 2 * foot + 1
-        hx, hy, hz = _hold_point(m, heel, _stands(m, heel, 0.0), height, dt)
-        bx, by, bz = _hold_point(m, ball, _stands(m, ball, 0.0), height, dt)
+        lift = _swing_lift(m, foot, clearance)
+        hx, hy, hz = _target(m, heel, height, lift)
+        bx, by, bz = _target(m, ball, height, lift)
         hang = 0.5
         if m.standing[ball] == 1:
             hang = 1.0
