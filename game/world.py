@@ -99,7 +99,7 @@ class FixedStep:
     owed: seconds not yet simulated, always less than one step.
     """
 
-    cap: int = 5
+    cap: int = 12
     owed: float = 0.0
 
     def add(self, seconds: float) -> tuple[int, FixedStep]:

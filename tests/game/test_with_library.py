@@ -1,0 +1,59 @@
+"""The theatre around the real controller: the same to the bit, and on its way where it was sent."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from controllers.locomotion import Locomotion
+from game.film import run
+from game.play import Play
+from game.hosts.events import KeyEvent
+from game.scenario import load, shipped
+from game.world import replay
+
+
+@pytest.fixture(scope="module")
+def locomotion():
+    return Locomotion.load()
+
+
+def same(a, b):
+    return all(np.array_equal(x.state.ground, y.state.ground) and np.array_equal(x.state.pose.root, y.state.pose.root)
+               and np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
+               for x, y in zip(a.characters, b.characters, strict=True))
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_a_scenario_is_the_same_to_the_bit(name, locomotion):
+    """A minute of the medley, and the beginnings of the others: the checks cost more than the steps."""
+    scenario = load(name)
+    pairs = zip(run(scenario, locomotion), run(scenario, Locomotion.load()))
+    for a, b in itertools.islice(pairs, 0, None if name == "medley" else 5 * scenario.fps, 60):
+        assert same(a.before, b.before)
+    assert same(a.after, b.after)
+
+
+def test_the_two_in_the_corridor_meet_and_pass(locomotion):
+    a, b = [], []
+    for frame in run(load("corridor"), locomotion):
+        one, two = (character.state.ground for character in frame.before.characters)
+        a.append(one[:2])
+        b.append(two[:2])
+    a, b = np.array(a), np.array(b)
+    assert np.linalg.norm(a - b, axis=1).min() > 0.8, "nobody is walked through"
+    assert a[-1, 1] > 10 and b[-1, 1] < 0, "both get where they were going"
+    met = np.argmax(a[:, 1] > b[:, 1])
+    assert a[met, 0] < -0.3 < 0.3 < b[met, 0], "A has stepped aside"
+    assert np.abs(np.diff(b, axis=0)[met - 30:met]).max() * 60 < 0.1, "B waits while A passes"
+    assert np.all(np.abs(a[:, 0]) < 1.1)
+
+
+def test_a_game_replays_to_the_bit(locomotion):
+    game = Play(locomotion)
+    for key, frames in (("W", 50), ("A", 40), ("LEFT_SHIFT", 60), ("TAB", 30)):
+        game.handle(KeyEvent(key, True))
+        for _ in range(frames):
+            game.tick(1 / 60)
+    assert game.after.characters[0].state.ground[1] > 1.0
+    assert same(replay(game.opening, game.log), game.after)
