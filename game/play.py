@@ -126,7 +126,7 @@ class Play:
 
     def _panel(self) -> tuple[str, ...]:
         if self.helping:
-            return ("Controls", "", *help_sheet())
+            return ("Controls", *help_sheet())
         return ("Paused", "P goes on, . makes one step") if self.paused else ()
 
     def do(self, action: str) -> None:

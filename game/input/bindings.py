@@ -7,12 +7,14 @@ UP DOWN LEFT RIGHT of the cross; sticks and triggers are named in words and read
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 
 
 @dataclass(frozen=True)
 class Binding:
     """What does one thing. held: it acts while it is down; else once, when it is pressed.
 
+    help: what the sheet says; neighbours that say the same share a line.
     keys, buttons: any of them does. analog: the stick, trigger or mouse that does it too.
     """
 
@@ -24,15 +26,17 @@ class Binding:
     held: bool = False
 
 
+_SHOW = "body, skeleton, contacts, trail, path"
+
 BINDINGS = (
-    Binding("forward", "walk away from the camera", ("W", "UP"), analog="left stick", held=True),
-    Binding("back", "walk towards the camera", ("S", "DOWN"), analog="left stick", held=True),
-    Binding("left", "walk to the left", ("A", "LEFT"), analog="left stick", held=True),
-    Binding("right", "walk to the right", ("D", "RIGHT"), analog="left stick", held=True),
+    Binding("forward", "walk", ("W", "UP"), analog="left stick", held=True),
+    Binding("left", "walk", ("A", "LEFT"), analog="left stick", held=True),
+    Binding("back", "walk", ("S", "DOWN"), analog="left stick", held=True),
+    Binding("right", "walk", ("D", "RIGHT"), analog="left stick", held=True),
     Binding("run", "run", ("LEFT_SHIFT", "RIGHT_SHIFT"), analog="right trigger", held=True),
     Binding("slow", "walk slowly", ("LEFT_CONTROL", "LEFT_ALT"), ("B",), held=True),
-    Binding("turn_left", "turn left", ("Q",), ("LEFT",), held=True),
-    Binding("turn_right", "turn right", ("E",), ("RIGHT",), held=True),
+    Binding("turn_left", "turn left, right", ("Q",), ("LEFT",), held=True),
+    Binding("turn_right", "turn left, right", ("E",), ("RIGHT",), held=True),
     Binding("strafe", "keep facing the same way", ("F",), analog="left trigger", held=True),
     Binding("strafe_lock", "keep facing, on or off", ("TAB",), ("RB",)),
     Binding("face", "face a direction", analog="right stick"),
@@ -43,11 +47,11 @@ BINDINGS = (
     Binding("pause", "pause", ("P",), ("START",)),
     Binding("step", "one step while paused", ("PERIOD",), ("DOWN",)),
     Binding("reset", "start again", ("R",), ("BACK",)),
-    Binding("mesh", "show the body", ("1",)),
-    Binding("skeleton", "show the skeleton", ("2",), ("X",)),
-    Binding("contacts", "show foot contacts", ("3",)),
-    Binding("trail", "show the trail", ("4",)),
-    Binding("path", "show the predicted path", ("5",), ("UP",)),
+    Binding("mesh", _SHOW, ("1",)),
+    Binding("skeleton", _SHOW, ("2",)),
+    Binding("contacts", _SHOW, ("3",)),
+    Binding("trail", _SHOW, ("4",)),
+    Binding("path", _SHOW, ("5",)),
     Binding("help", "this sheet", ("F1", "H"), ("Y",)),
     Binding("full_screen", "full screen", ("F11",)),
     Binding("quit", "leave", ("ESCAPE",)),
@@ -57,6 +61,8 @@ BINDINGS = (
 _NAMES = {"LEFT_SHIFT": "Shift", "RIGHT_SHIFT": "", "LEFT_CONTROL": "Ctrl", "LEFT_ALT": "Alt", "TAB": "Tab",
           "SPACE": "Space", "PERIOD": ".", "ESCAPE": "Esc", "UP": "↑", "DOWN": "↓", "LEFT": "←",
           "RIGHT": "→", "LEFT_BUTTON": "drag", "RIGHT_BUTTON": ""}
+_BUTTONS = {"LEFT": "cross ←", "RIGHT": "cross →", "UP": "cross ↑", "DOWN": "cross ↓",
+            "START": "Start", "BACK": "Back", "RS": "press right stick"}
 
 
 def binding(action: str) -> Binding:
@@ -75,19 +81,15 @@ def pressed_by(name: str, kind: str = "keys") -> tuple[str, ...]:
 def help_sheet() -> tuple[str, ...]:
     """The table as lines of text: action, keyboard and mouse, gamepad."""
     rows = [("", "keyboard", "gamepad")]
-    for row in BINDINGS:
-        mouse, _, stick = row.analog.partition(" · ")
+    for text, group in groupby(BINDINGS, key=lambda row: row.help):
+        group = list(group)
+        mouse, _, stick = group[0].analog.partition(" · ")
         if not stick and "mouse" not in mouse:
             mouse, stick = "", mouse
-        keys = " ".join(filter(None, (_NAMES.get(key, key.capitalize()) for key in row.keys)))
-        keys = " ".join(filter(None, (mouse, keys)))
-        pad = " + ".join(filter(None, (" ".join(_button(b) for b in row.buttons), stick)))
-        rows.append((row.help, keys, pad))
+        keys = [_NAMES.get(row.keys[i], row.keys[i].capitalize())
+                for i in range(2) for row in group if i < len(row.keys)]
+        buttons = [_BUTTONS.get(button, button) for row in group for button in row.buttons]
+        rows.append((text, " ".join(filter(None, (mouse, *keys))),
+                     " + ".join(filter(None, (" ".join(buttons), stick)))))
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     return tuple("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
-
-
-def _button(name: str) -> str:
-    names = {"LEFT": "cross ←", "RIGHT": "cross →", "UP": "cross ↑", "DOWN": "cross ↓",
-             "START": "Start", "BACK": "Back", "RS": "press right stick"}
-    return names.get(name, name)

@@ -87,8 +87,11 @@ def test_the_table_is_sound():
         names = [name for row in BINDINGS for name in getattr(row, kind)]
         assert len(set(names)) == len(names), f"one of the {kind} does two things"
     assert pressed_by("P") == ("pause",) and pressed_by("W") == () and pressed_by("NOTHING") == ()
-    assert len(help_sheet()) == len(BINDINGS) + 1
-    assert all(row.help in line for row, line in zip(BINDINGS, help_sheet()[1:]))
+    sheet = help_sheet()
+    assert len(sheet) <= 20, "the sheet must fit a small window"
+    for row in BINDINGS:
+        line, = (line for line in sheet if line.startswith(row.help + "  "))
+        assert all(key.capitalize() in line for key in row.keys if len(key) == 1)
 
 
 def command(wish, yaw=0.0, heading=0.0, pilot=Pilot()):
