@@ -28,7 +28,7 @@ def finished(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
     """The mesh with its normals, paint and skin weights."""
     normals = shape.gradient(vertices)
     joints, weights = binding.bound(vertices, faces)
-    paint = np.stack([shape.dark(vertices), surface.openness(vertices, normals)], 1)
+    paint = np.stack([shape.dark(vertices), surface.openness(vertices, normals), shape.seam(vertices)], 1)
     return Mesh(vertices, normals, faces, joints, weights, paint)
 
 

@@ -1,9 +1,9 @@
 #include frame.glsl
 #include skin.glsl
-in vec2 paint;
+in vec3 paint;
 out vec3 v_at;
 out vec3 v_normal;
-out vec2 v_paint;
+out vec3 v_paint;
 flat out vec3 v_tint;
 
 void main() {

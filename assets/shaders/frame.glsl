@@ -9,9 +9,9 @@ layout(std140) uniform Frame {
     vec4 shade;      // xy: reach of a soft shadow in the map; z: normal offset [m]; w: 1 if there is a map
 };
 
-const vec3 SUN = vec3(1.22, 1.12, 0.98);
-const vec3 SKY_LIGHT = vec3(0.30, 0.35, 0.42);
-const vec3 GROUND_LIGHT = vec3(0.15, 0.14, 0.13);
+const vec3 SUN = vec3(1.30, 1.18, 1.00);
+const vec3 SKY_LIGHT = vec3(0.40, 0.46, 0.54);
+const vec3 GROUND_LIGHT = vec3(0.21, 0.20, 0.19);
 const vec3 HORIZON = vec3(0.66, 0.72, 0.78);
 const vec3 ZENITH = vec3(0.20, 0.33, 0.52);
 

@@ -13,7 +13,7 @@ from .view import scale_of
 
 BATCH = 16
 """Figures in a draw call: what fits the 16 KiB that every OpenGL 3.3 gives a uniform block."""
-_LAYOUT = "3f 3f 4u1 4f1 2f"
+_LAYOUT = "3f 3f 4u1 4f1 3f"
 _NAMES = ("position", "normal", "joints", "weights", "paint")
 
 

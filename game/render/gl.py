@@ -80,6 +80,12 @@ class Target:
             self.drawn = self.resolved = ctx.framebuffer([self.resolved_colour], depth)
         self._parts = parts
 
+    def masked(self, colour: bool = True, depth: bool = True) -> Any:
+        """Draw here from now on, but write only what is wanted."""
+        self.drawn.color_mask, self.drawn.depth_mask = (colour,) * 4, depth
+        self.drawn.use()  # a mask takes effect only then
+        return self.drawn
+
     def resolve(self) -> None:
         """Bring the resolved copy up to date."""
         if self.drawn is not self.resolved:

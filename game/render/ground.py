@@ -7,37 +7,44 @@ from typing import Any
 
 import numpy as np
 
-from ..scene import Box
-from . import gl
-from .view import LightBox
+from controllers.body import end_positions
+from controllers.body.rotations import yaw
+
+from ..scene import Box, Figure
+from . import gl, skin
+from .view import LightBox, outlines, scale_of
 
 EXTENT = 250.0
 """How far the floor reaches [m]: beyond, it would be all fog."""
 
 
-def floor_patches(shadow: LightBox | None, eye: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles (K, 3), (M, 3) [m] of the floor within the shadow map's outline and without.
+# how far flesh reaches around each joint and bone end, for the outline of a shadow [m]
+_GIRTH = np.concatenate([[0.17 if n in ("Hips", "Spine", "Spine1", "Spine2", "Head") else 0.12
+                          for n in skin.STANDARD.names], [0.09] * len(skin.STANDARD.end_parents)])
 
-    Only the inner ones pay for shadows. Both share the outline's corners, so no crack shows.
+
+def shaded_floor(box: LightBox | None, figures: Sequence[Figure], boxes: Sequence[Box], origin: np.ndarray
+                 ) -> np.ndarray:
+    """Triangles (K, 3) [m] of the floor on which shadows may fall; only these pay for looking.
+
+    They may overlap, as all of them are drawn alike. Counted from `origin`.
     """
-    eye = np.array([eye[0], 0.0, eye[2]])
-    if shadow is None:
-        outer = eye + EXTENT * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1.0]])
-        return np.zeros((0, 3)), outer[[0, 1, 2, 0, 2, 3]]
-    inner = shadow.footprint - [0.0, 1.0, 0.0] * shadow.footprint
-    area = np.sum(inner[:, 2] * np.roll(inner[:, 0], -1) - inner[:, 0] * np.roll(inner[:, 2], -1))
-    if area < 0:  # counter-clockwise seen from above
-        inner = inner[::-1]
-    centre = inner.mean(0)
-    edges = np.roll(inner, -1, 0) - inner
-    normals = np.stack([edges[:, 2], -edges[:, 0]], -1) / np.linalg.norm(edges, axis=1, keepdims=True)
-    inradius = np.abs(np.sum((inner - centre)[:, [0, 2]] * normals, 1)).min()
-    outer = centre + (inner - centre) * (EXTENT + np.linalg.norm(centre - eye)) / inradius
-    ring = []
-    for i in range(4):
-        k = (i + 1) % 4
-        ring += [inner[i], outer[i], outer[k], inner[i], outer[k], inner[k]]
-    return inner[[0, 1, 2, 0, 2, 3]], np.array(ring)
+    if box is None:
+        return np.zeros((0, 3))
+    found = []
+    bodies = [f for f in figures if np.isfinite(f.positions).all()]
+    if bodies:
+        at = np.stack([f.positions for f in bodies]).astype(float)
+        turn = np.stack([f.orientations for f in bodies]).astype(float)
+        scale = scale_of(at, skin.REST, skin.STANDARD.parents).max()
+        tips = end_positions(skin.STANDARD, at, turn)
+        found.append(outlines(np.concatenate([at, tips], 1) - origin, _GIRTH * max(scale, 1.0) * 1.1, box.axes))
+    if boxes:
+        half = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        corners = np.stack([(half * b.size) @ yaw(b.heading).T + b.centre for b in boxes])
+        found.append(outlines(corners - origin, np.full(8, 0.02), box.axes))
+    fans = [rows[:, [0, i, i + 1]] for rows in found for i in range(1, rows.shape[1] - 1)]
+    return np.concatenate(fans).reshape(-1, 3)
 
 
 class Ground:
@@ -47,22 +54,30 @@ class Ground:
         self.programs = [gl.program(ctx, "floor.vert", "floor.frag", TAPS=taps, SHADOWED=1),
                          gl.program(ctx, "floor.vert", "floor.frag", TAPS=taps, SHADOWED=0),
                          gl.program(ctx, "sky.vert", "sky.frag")]
-        self.streams = [gl.Stream(ctx), gl.Stream(ctx)]
-        self.arrays = [ctx.vertex_array(program, [(stream.buffer, "3f", "position")])
-                       for program, stream in zip(self.programs, self.streams)]
+        self.ctx, self.stream = ctx, gl.Stream(ctx)
+        corners = EXTENT * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [-1, 0, -1], [1, 0, 1], [1, 0, -1]], "f4")
+        self.plain = ctx.buffer(corners.tobytes())
+        self.arrays = [ctx.vertex_array(program, [(buffer, "3f", "position")])
+                       for program, buffer in zip(self.programs, (self.stream.buffer, self.plain))]
         self.sky = ctx.vertex_array(self.programs[2], [])
 
-    def draw(self, shadow: LightBox | None, eye: np.ndarray, inverse: np.ndarray) -> None:
-        """Fill what the bodies leave of the picture. inverse: (4, 4) of the view-projection."""
-        for triangles, stream, array in zip(floor_patches(shadow, eye), self.streams, self.arrays):
-            if len(triangles):
-                stream.write(triangles.astype(np.float32).tobytes())
-                array.render(vertices=len(triangles))
+    def draw(self, shaded: np.ndarray, inverse: np.ndarray) -> None:
+        """Fill what the bodies leave of the picture.
+
+        shaded: (K, 3) triangles from `shaded_floor`. inverse: (4, 4) of the view-projection.
+        """
+        if len(shaded):
+            self.stream.write(shaded.astype(np.float32).tobytes())
+            self.arrays[0].render(vertices=len(shaded))
+        # the plain floor lies a hair behind, and so loses wherever the other is
+        self.ctx.polygon_offset = 1.0, 4.0
+        self.arrays[1].render(vertices=6)
+        self.ctx.polygon_offset = 0.0, 0.0
         self.programs[2]["inverse_view_projection"].write(inverse.T.astype(np.float32).tobytes())
         self.sky.render(vertices=3)
 
     def release(self) -> None:
-        for part in (*self.arrays, self.sky, *self.programs, *self.streams):
+        for part in (*self.arrays, self.sky, *self.programs, self.stream, self.plain):
             part.release()
 
 

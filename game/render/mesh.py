@@ -21,8 +21,9 @@ class Mesh:
     """A skinned mesh at T-pose.
 
     positions, normals: (V, 3) [m], unit. triangles: (T, 3), counter-clockwise from outside.
-    joints, weights: (V, 4) into `skin.NAMES`, summing to 1. paint: (V, 2) the distance [m] to the
-    border of the dark material, positive inside it, and how open the vertex is to the sky, 0 … 1.
+    joints, weights: (V, 4) into `skin.NAMES`, summing to 1. paint: (V, 3) the distance [m] to the
+    border of the dark material, positive inside it; how open the vertex is to the sky, 0 … 1; the
+    signed distance [m] to the seams where limbs are set in.
     """
 
     positions: np.ndarray
@@ -33,9 +34,9 @@ class Mesh:
     paint: np.ndarray
 
     def interleaved(self) -> bytes:
-        """All vertices: position 3f, normal 3f, joints 4u1, weights 4 normalised u1, paint 2f."""
+        """All vertices: position 3f, normal 3f, joints 4u1, weights 4 normalised u1, paint 3f."""
         layout = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("joints", "u1", 4),
-                           ("weights", "u1", 4), ("paint", "f4", 2)])
+                           ("weights", "u1", 4), ("paint", "f4", 3)])
         rows = np.empty(len(self.positions), layout)
         rows["position"], rows["normal"], rows["joints"] = self.positions, self.normals, self.joints
         rows["weights"], rows["paint"] = np.round(self.weights * 255), self.paint
@@ -48,8 +49,7 @@ def pack(mesh: Mesh, level: str) -> dict[str, np.ndarray]:
     # hand the steps lost by rounding down to the largest weight, so that they still sum to 255
     whole[np.arange(len(whole)), mesh.weights.argmax(1)] += 255 - whole.sum(1)
     kind = np.uint16 if len(mesh.positions) < 65536 else np.uint32
-    paint = np.stack([np.clip(np.round(mesh.paint[:, 0] / PAINT_UNIT), -127, 127),
-                      np.round(mesh.paint[:, 1] * 127)], 1)
+    paint = np.clip(np.round(mesh.paint / [PAINT_UNIT, 1 / 127, PAINT_UNIT]), -127, 127)
     return {f"{level}_{name}": value for name, value in {
         "positions": np.round(mesh.positions / POSITION_UNIT).astype(np.int16),
         "normals": np.round(mesh.normals * 127).astype(np.int8), "triangles": mesh.triangles.astype(kind),
@@ -64,7 +64,7 @@ def mannequin(level: str = "near") -> Mesh:
         stored = {name: file[f"{level}_{name}"] for name in
                   ("positions", "normals", "triangles", "joints", "weights", "paint")}
     normals = stored["normals"] / np.linalg.norm(stored["normals"].astype(np.float32), axis=1, keepdims=True)
-    paint = stored["paint"].astype(np.float32) * np.array([PAINT_UNIT, 1 / 127], np.float32)
+    paint = stored["paint"].astype(np.float32) * np.array([PAINT_UNIT, 1 / 127, PAINT_UNIT], np.float32)
     return Mesh((stored["positions"] * POSITION_UNIT).astype(np.float32), normals.astype(np.float32),
                 stored["triangles"].astype(np.uint32), stored["joints"],
                 (stored["weights"] / 255.0).astype(np.float32), paint)

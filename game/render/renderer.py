@@ -9,7 +9,7 @@ import numpy as np
 from ..scene import Scene
 from . import gl, view
 from .figures import Figures
-from .ground import Boxes, Ground
+from .ground import Boxes, Ground, shaded_floor
 from .overlays import OverlayPass
 from .presets import Preset, preset
 from .text import TextPass
@@ -64,17 +64,18 @@ class Renderer:
         self.boxes.prepare(scene.boxes, origin)
         if box is not None:
             self._shadows()
-        self.target.drawn.use()
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
         ctx.cull_face, ctx.depth_func = "back", "<="
-        self.target.drawn.clear(depth=1.0)
+        # the sky and the floor cover every pixel: only the depth needs clearing
+        self.target.masked(colour=False).clear(depth=1.0)
+        self.target.masked()
         self.shadow_map.use(0)
         self.figures.draw("body")
         self.boxes.draw("body")
         if scene.overlays.skeleton:
             self.overlays.draw_bones(scene.figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
-        self.ground.draw(box, eye, np.linalg.inv(matrix))
+        self.ground.draw(shaded_floor(box, shown, scene.boxes, origin), np.linalg.inv(matrix))
         self._over(scene, origin)
         self.target.resolve()
 
@@ -132,9 +133,9 @@ class Renderer:
         ctx.enable(ctx.BLEND)
         ctx.disable(ctx.CULL_FACE)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
-        self.target.drawn.depth_mask = False
+        self.target.masked(depth=False)
         self.overlays.draw_marks(scene.figures, scene.overlays, origin)
-        self.target.drawn.depth_mask = True
+        self.target.masked()
         ctx.disable(ctx.DEPTH_TEST)
         self.text.draw(scene.text, scene.panel, self.size)
         ctx.disable(ctx.BLEND)

@@ -10,7 +10,7 @@ from ..scene import Box, Camera, Figure
 
 NEAR, FAR = 0.1, 400.0
 """The depth range of a camera [m]."""
-SUN = np.array([0.42, 0.80, 0.43]) / np.linalg.norm([0.42, 0.80, 0.43])
+SUN = np.array([0.62, 0.75, -0.22]) / np.linalg.norm([0.62, 0.75, -0.22])
 """Towards the sun."""
 TILE = 2.0
 """The floor's pattern repeats every so many metres, and so may the frame's origin move."""
@@ -56,13 +56,13 @@ def origin_of(camera: Camera) -> np.ndarray:
 class LightBox:
     """What the shadow map covers.
 
-    matrix: (4, 4) world to map, 0 … 1 in all three. footprint: (4, 3) [m] its outline on the floor.
-    texel: [m] the larger side of a texel.
+    matrix: (4, 4) world to map, 0 … 1 in all three. texel: [m] the larger side of a texel.
     size: (2,) [m] what the map's sides measure.
+    axes: (3, 3) the map's two sides and the direction to the sun, as rows.
     """
 
     matrix: np.ndarray
-    footprint: np.ndarray
+    axes: np.ndarray
     texel: float
     size: np.ndarray
 
@@ -96,18 +96,36 @@ def light_box(camera: Camera, figures: tuple[Figure, ...], boxes: tuple[Box, ...
     # where the box's four edges, followed along the sun, meet the floor
     square = corner + size * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     along = -(square @ axes[:2, 1]) / axes[2, 1]
-    footprint = square @ axes[:2] + along[:, None] * axes[2]
-    origin = np.zeros(3) if origin is None else origin
-    shift = axes @ origin
-    corner, footprint, along = corner - shift[:2], footprint - origin, along - shift[2]
-    low, high = low - shift, high - shift
+    shift = axes @ (np.zeros(3) if origin is None else origin)
+    corner, along, low, high = corner - shift[:2], along - shift[2], low - shift, high - shift
     bottom, top = min(along.min(), low[2]) - 0.1, high[2] + 0.1
     matrix = np.eye(4)
     matrix[:2, :3] = axes[:2] / size[:, None]
     matrix[:2, 3] = -corner / size
     matrix[2, :3] = -axes[2] / (top - bottom)
     matrix[2, 3] = top / (top - bottom)
-    return LightBox(matrix, footprint, float(texel.max()), size)
+    return LightBox(matrix, axes, float(texel.max()), size)
+
+
+def outlines(points: np.ndarray, radii: np.ndarray, axes: np.ndarray, sides: int = 12) -> np.ndarray:
+    """Where shadows of bodies may fall on the floor: convex outlines (N, sides, 3) [m], counter-clockwise
+    from above, around the balls of `radii` (P,) [m] about `points` (N, P, 3) that hold each body.
+
+    axes: as in `LightBox`. Every side touches its body's shadow, so that the outline is tight.
+    """
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    normals = np.stack([np.cos(angle), np.sin(angle)], 1)
+    reach = (points @ axes[:2].T @ normals.T + radii[:, None]).max(1)
+    after = np.roll(reach, -1, 1)
+    # neighbouring sides n·x = h meet at one corner each
+    sine, cosine = np.sin(angle[1]), np.cos(angle[1])
+    across = np.stack([-normals[:, 1], normals[:, 0]], 1)
+    corners = reach[..., None] * normals + ((after - cosine * reach) / sine)[..., None] * across
+    along = -(corners @ axes[:2, 1]) / axes[2, 1]
+    flat = corners @ axes[:2] + along[..., None] * axes[2]
+    flat[..., 1] = 0.0
+    area = np.sum(flat[..., 2] * np.roll(flat[..., 0], -1, -1) - flat[..., 0] * np.roll(flat[..., 2], -1, -1), -1)
+    return np.where((area < 0.0)[:, None, None], flat[:, ::-1], flat)
 
 
 def scale_of(positions: np.ndarray, standard: np.ndarray, parents: np.ndarray) -> np.ndarray:

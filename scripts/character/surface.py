@@ -12,10 +12,11 @@ from . import shape
 def sampled(cell: float) -> tuple[np.ndarray, np.ndarray]:
     """Distances on a grid of `cell` metres, (X, Y, Z), and the grid's first corner (3,).
 
-    Only blocks near the surface are sampled finely; the rest keep their middle's distance.
+    Only blocks near the surface are sampled finely; the rest keep their middle's distance. Only the
+    left half is computed, half a cell off the middle, and mirrored.
     """
     block = 8
-    low, high = np.array([-1.0, -0.04, -0.18]), np.array([1.0, 1.80, 0.26])
+    low, high = np.array([0.5 * cell, -0.04, -0.18]), np.array([0.96, 1.80, 0.26])
     counts = np.ceil((high - low) / (cell * block)).astype(int)
     middles = low + (np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), -1) + 0.5) * block * cell
     coarse = shape.body(middles.reshape(-1, 3)).reshape(counts)
@@ -25,7 +26,7 @@ def sampled(cell: float) -> tuple[np.ndarray, np.ndarray]:
         points = low + at * block * cell + inside
         s = tuple(slice(a * block, (a + 1) * block) for a in at)
         grid[s] = shape.body(points.reshape(-1, 3)).reshape(block, block, block)
-    return grid, low
+    return np.concatenate([grid[::-1], grid]), low - [grid.shape[0] * cell, 0.0, 0.0]
 
 
 def marched(cell: float) -> tuple[np.ndarray, np.ndarray]:
