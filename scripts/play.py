@@ -17,7 +17,7 @@ def main() -> int:
     if code != NO_DISPLAY:
         return code
     print(f"There is no display here, so the demo is filmed into {FILM}", flush=True)
-    code = _setup.run("-m", "game.cli", "render", "demo", "-o", FILM)
+    code = _setup.run("-m", "game.cli", "render", "demo", "-o", FILM, "--fps", "30")
     if code == 0:
         print(f"Done: copy {FILM} to where you can watch it", flush=True)
     return code
