@@ -34,7 +34,7 @@ class Locomotion:
         self.run = space_of(library, "run") if len(runs) >= 5 else None
         if self.run is None:  # no runs recorded: walking serves at any speed
             self.settings = settings._replace(run_above=np.inf)
-        self._tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
+        self.tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
                         space_tables(self.run, runs) if self.run else
                         space_tables(self.walk, library.family("walk")),
                         series_table(library), library.velocities.astype(np.float32))
@@ -88,7 +88,7 @@ class Locomotion:
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
-        body, legs, walk, run, table, velocities = self._tables
+        body, legs, walk, run, table, velocities = self.tables
         step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, velocities, root, local)
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)

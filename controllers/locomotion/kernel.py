@@ -25,7 +25,11 @@ ACTIVE = np.float32(5e-4)
 
 
 class Body(NamedTuple):
-    """The skeleton as the kernels need it, float32. heel: (3,) in the foot's frame [m]."""
+    """The skeleton as the kernels need it, float32.
+
+    reference: (9, LANES) the reference rotations' entries, all joints side by side. heel: (3,) in
+    the foot's frame, toe_end: (3,) in the toe's [m].
+    """
 
     parents: np.ndarray
     offsets: np.ndarray
@@ -35,7 +39,7 @@ class Body(NamedTuple):
 
 
 class Space(NamedTuple):
-    """A control space as the kernels need it. vertices: (S, 4) numbers of primitives in the library."""
+    """A control space as the kernels need it, in scaled velocity. vertices: (S, 4) numbers in the library."""
 
     vertices: np.ndarray
     neighbours: np.ndarray
@@ -51,8 +55,10 @@ def body_tables(library: Library) -> Body:
     skeleton = library.skeleton
     scale = skeleton.offsets[0, 1] / human().offsets[0, 1]
     toe = skeleton.end_offsets[skeleton.end_index["LeftToe"]]
-    return Body(skeleton.parents.astype(np.int64), skeleton.offsets.astype(np.float32),
-                library.reference.astype(np.float32), (HEEL * scale).astype(np.float32),
+    reference = np.zeros((9, LANES), np.float32)
+    reference[:, :len(skeleton)] = library.reference.reshape(-1, 9).T
+    return Body(skeleton.parents.astype(np.int64), skeleton.offsets.astype(np.float32), reference,
+                (HEEL * scale).astype(np.float32),
                 toe.astype(np.float32))
 
 
@@ -62,7 +68,7 @@ def space_tables(space: ControlSpace, members: np.ndarray) -> Space:
     room = -(space.hull[:, :3] @ origin + space.hull[:, 3])
     return Space(*(np.ascontiguousarray(a) for a in (
         members[space.simplices].astype(np.int64), space.neighbours, space.transform,
-        space.hull[:, :3].copy(), room, origin, space.bend)))
+        space.hull[:, :3].copy(), room, origin, space.bend / SCALE)))
 
 
 def series_table(library: Library) -> np.ndarray:
@@ -78,29 +84,16 @@ def series_table(library: Library) -> np.ndarray:
 
 
 @njit(cache=True)
-def clamp_kernel(space, v, out):
-    """Write into `out` (3,) the scaled velocity `v` (3,), moved towards the anchor until inside."""
-    reach = 1.0
-    for h in range(space.room.shape[0]):
-        along = 0.0
-        for i in range(3):
-            along += space.hull[h, i] * (v[i] - space.anchor[i])
-        if along > reach * space.room[h] * INSIDE:
-            reach = along / (space.room[h] * INSIDE)
-    for i in range(3):
-        out[i] = space.anchor[i] + (v[i] - space.anchor[i]) / reach
-
-
-@njit(cache=True)
 def locate_kernel(space, p, start, b):
     """The simplex around the scaled point `p` (3,), its barycentric weights into `b` (4,): eq. (4).
 
-    Walks from simplex `start` across the face opposite to the most negative weight.
+    Walks from simplex `start` across the face opposite to the most negative weight. A point
+    outside the hull is moved to it (`p` is rewritten) when the walk leaves the triangulation.
     """
     simplex = start
-    for _ in range(space.neighbours.shape[0]):
+    for _ in range(2 * space.neighbours.shape[0]):
         rest = 1.0
-        least, worst = -1e-9, -1
+        least, worst = -1e-7, -1
         for i in range(3):
             b[i] = 0.0
             for j in range(3):
@@ -110,9 +103,12 @@ def locate_kernel(space, p, start, b):
         for i in range(4):
             if b[i] < least:
                 least, worst = b[i], i
-        if worst < 0 or space.neighbours[simplex, worst] < 0:
+        if worst < 0:
             break
-        simplex = space.neighbours[simplex, worst]
+        if space.neighbours[simplex, worst] >= 0:
+            simplex = space.neighbours[simplex, worst]
+        elif not clamp_kernel(space, p):
+            break
     total = 0.0
     for i in range(4):
         b[i] = max(b[i], 0.0)
@@ -123,6 +119,22 @@ def locate_kernel(space, p, start, b):
 
 
 @njit(cache=True)
+def clamp_kernel(space, p):
+    """Move the scaled point `p` (3,) towards the anchor until it is in the hull; whether it was not."""
+    reach = 1.0
+    for h in range(space.room.shape[0]):
+        along = 0.0
+        for i in range(3):
+            along += space.hull[h, i] * (p[i] - space.anchor[i])
+        if along > reach * space.room[h] * INSIDE:
+            reach = along / (space.room[h] * INSIDE)
+    if reach > 1.0:
+        for i in range(3):
+            p[i] = space.anchor[i] + (p[i] - space.anchor[i]) / reach
+    return reach > 1.0
+
+
+@njit(cache=True)
 def query_kernel(space, velocity, start, correct, b, target, moved):
     """The simplex and weights `b` (4,) whose blend moves at `velocity` (3,) SI.
 
@@ -130,17 +142,15 @@ def query_kernel(space, velocity, start, correct, b, target, moved):
     `target`, `moved`: (3,) scratch.
     """
     for i in range(3):
-        moved[i] = velocity[i] / SCALE[i]
-    clamp_kernel(space, moved, target)
-    for i in range(3):
-        moved[i] = target[i]
-    simplex = locate_kernel(space, moved, start, b)
+        target[i] = velocity[i] / SCALE[i]
+    simplex = locate_kernel(space, target, start, b)
     for _ in range(correct):
         for i in range(3):
             moved[i] = target[i]
-            for e in range(6):
-                moved[i] -= 4.0 * b[EDGES[e, 0]] * b[EDGES[e, 1]] * space.bend[simplex, e, i] / SCALE[i]
-        clamp_kernel(space, moved, moved)
+        for e in range(6):
+            pair = 4.0 * b[EDGES[e, 0]] * b[EDGES[e, 1]]
+            for i in range(3):
+                moved[i] -= pair * space.bend[simplex, e, i]
         simplex = locate_kernel(space, moved, simplex, b)
     return simplex
 
@@ -150,50 +160,70 @@ def series_kernel(table, weights, phase, row):
     """Write into `row` (80,) the weighted sum of all primitives' series at `phase`: eq. (5) and (6)."""
     rows = table.shape[1]
     c1, s1 = math.cos(2 * math.pi * phase), math.sin(2 * math.pi * phase)
+    c2, s2 = c1 * c1 - s1 * s1, 2.0 * s1 * c1
     for d in range(COLUMNS):
         row[d] = np.float32(0.0)
     for p in range(table.shape[0]):
         w = weights[p]
         if w <= 0.0:
             continue
-        c, s = 1.0, 0.0
         for d in range(COLUMNS):
             row[d] += w * table[p, 0, d]
-        for k in range(1, rows, 2):  # cos kφ and sin kφ by rotation
-            c, s = c * c1 - s * s1, s * c1 + c * s1
-            a, b = np.float32(w * c), np.float32(w * s)
+        ca, sa, cb, sb = c1, s1, c2, s2
+        for k in range(1, rows - 3, 4):  # two harmonics a pass: half the loads and stores of the row
+            a0, b0, a1, b1 = np.float32(w * ca), np.float32(w * sa), np.float32(w * cb), np.float32(w * sb)
             for d in range(COLUMNS):
-                row[d] += a * table[p, k, d] + b * table[p, k + 1, d]
+                row[d] += (a0 * table[p, k, d] + b0 * table[p, k + 1, d]
+                           + a1 * table[p, k + 2, d] + b1 * table[p, k + 3, d])
+            ca, sa = ca * c2 - sa * s2, sa * c2 + ca * s2
+            cb, sb = cb * c2 - sb * s2, sb * c2 + cb * s2
+        if (rows - 1) % 4:  # an odd number of harmonics leaves one
+            for d in range(COLUMNS):
+                row[d] += np.float32(w * ca) * table[p, rows - 2, d] + np.float32(w * sa) * table[p, rows - 1, d]
+
+
+# sin x / x and (1 − cos x) / x² as polynomials in x²: Taylor, exact to float32 for |x| < π
+_SINC = tuple(np.float32((-1) ** n / math.factorial(2 * n + 1)) for n in range(10))
+_VERS = tuple(np.float32((-1) ** n / math.factorial(2 * n + 2)) for n in range(10))
+SCRATCH = (18, LANES)
+"""Shape of the float32 scratch of `pose_kernel`."""
 
 
 @njit(cache=True, fastmath=True)
 def pose_kernel(body, row, local, positions, orientations, scratch):
     """Local rotations (J, 3, 3), positions (J, 3) and orientations (J, 3, 3) of a series row.
 
-    In the ground frame. The exponential map's two quotients are their Taylor series in the
-    squared angle, exact to float32 below π and free of branches. scratch: (2, LANES).
+    In the ground frame. All joints' exponentials are taken side by side, without branches, so
+    that they vectorise; only the chain of parents is walked joint by joint.
     """
+    e, r = scratch[:9], scratch[9:]
     one = np.float32(1.0)
     for j in range(LANES):
         x, y, z = row[j], row[LANES + j], row[2 * LANES + j]
         t = x * x + y * y + z * z
-        a, b = one, one
-        for n in range(9, 0, -1):
-            a = one - a * t * np.float32(1.0 / ((2 * n) * (2 * n + 1)))
-            b = one - b * t * np.float32(1.0 / ((2 * n + 1) * (2 * n + 2)))
-        scratch[0, j] = a
-        scratch[1, j] = b * np.float32(0.5)
+        a = _SINC[9]
+        b = _VERS[9]
+        a, b = a * t + _SINC[8], b * t + _VERS[8]
+        a, b = a * t + _SINC[7], b * t + _VERS[7]
+        a, b = a * t + _SINC[6], b * t + _VERS[6]
+        a, b = a * t + _SINC[5], b * t + _VERS[5]
+        a, b = a * t + _SINC[4], b * t + _VERS[4]
+        a, b = a * t + _SINC[3], b * t + _VERS[3]
+        a, b = a * t + _SINC[2], b * t + _VERS[2]
+        a, b = a * t + _SINC[1], b * t + _VERS[1]
+        a, b = a * t + _SINC[0], b * t + _VERS[0]
+        e[0, j], e[1, j], e[2, j] = one - b * (y * y + z * z), b * x * y - a * z, b * x * z + a * y
+        e[3, j], e[4, j], e[5, j] = b * x * y + a * z, one - b * (x * x + z * z), b * y * z - a * x
+        e[6, j], e[7, j], e[8, j] = b * x * z - a * y, b * y * z + a * x, one - b * (x * x + y * y)
+    for i in range(3):
+        for k in range(3):
+            for j in range(LANES):
+                r[3 * i + k, j] = (body.reference[3 * i, j] * e[k, j] + body.reference[3 * i + 1, j] * e[3 + k, j]
+                                   + body.reference[3 * i + 2, j] * e[6 + k, j])
     for j in range(local.shape[0]):
-        x, y, z = row[j], row[LANES + j], row[2 * LANES + j]
-        a, b = scratch[0, j], scratch[1, j]
-        e00, e01, e02 = one - b * (y * y + z * z), b * x * y - a * z, b * x * z + a * y
-        e10, e11, e12 = b * x * y + a * z, one - b * (x * x + z * z), b * y * z - a * x
-        e20, e21, e22 = b * x * z - a * y, b * y * z + a * x, one - b * (x * x + y * y)
         for i in range(3):
-            r0, r1, r2 = body.reference[j, i, 0], body.reference[j, i, 1], body.reference[j, i, 2]
-            local[j, i, 0] = r0 * e00 + r1 * e10 + r2 * e20
-            local[j, i, 1] = r0 * e01 + r1 * e11 + r2 * e21
-            local[j, i, 2] = r0 * e02 + r1 * e12 + r2 * e22
+            for k in range(3):
+                local[j, i, k] = r[3 * i + k, j]
     for i in range(3):
         positions[0, i] = row[HIPS_AT + i]
         for k in range(3):
@@ -202,13 +232,18 @@ def pose_kernel(body, row, local, positions, orientations, scratch):
         joint_kernel(body, j, local, positions, orientations)
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@njit(cache=True, fastmath=True)
 def joint_kernel(body, j, local, positions, orientations):
     """Place joint j from its parent's place and its own local rotation."""
     p = body.parents[j]
+    x, y, z = body.offsets[j, 0], body.offsets[j, 1], body.offsets[j, 2]
+    # the local rotation in scalars: the compiler can't know that the arrays don't overlap
+    l00, l01, l02 = local[j, 0, 0], local[j, 0, 1], local[j, 0, 2]
+    l10, l11, l12 = local[j, 1, 0], local[j, 1, 1], local[j, 1, 2]
+    l20, l21, l22 = local[j, 2, 0], local[j, 2, 1], local[j, 2, 2]
     for i in range(3):
         a, b, c = orientations[p, i, 0], orientations[p, i, 1], orientations[p, i, 2]
-        positions[j, i] = (positions[p, i] + a * body.offsets[j, 0] + b * body.offsets[j, 1]
-                           + c * body.offsets[j, 2])
-        for k in range(3):
-            orientations[j, i, k] = a * local[j, 0, k] + b * local[j, 1, k] + c * local[j, 2, k]
+        positions[j, i] = positions[p, i] + a * x + b * y + c * z
+        orientations[j, i, 0] = a * l00 + b * l10 + c * l20
+        orientations[j, i, 1] = a * l01 + b * l11 + c * l21
+        orientations[j, i, 2] = a * l02 + b * l12 + c * l22

@@ -34,7 +34,7 @@ class Choice:
 
 def protocol() -> list[tuple[str, np.ndarray]]:
     """The walking targets, each a label and (v_f, ω, v_l) in SI."""
-    targets = [(f"forward {v:.2f} m/s", (v, 0, 0)) for v in (0.40, 0.65, 0.95, 1.30, 1.50)]
+    targets = [(f"forward {v:.2f} m/s", (v, 0, 0)) for v in (0.40, 0.65, 0.95, 1.30, 1.45, 1.65)]
     for speed, v in (("slow", 0.53), ("normal", 0.83), ("fast", 1.15)):
         targets.append((f"radius inf {speed}", (v, 0, 0)))
         for radius in (3, 2, 1, 0.4):
@@ -69,7 +69,7 @@ def select(cycles: list[Cycle], rank: np.ndarray, family: str) -> tuple[list[Cho
     if not usable.any():
         return [], [label for label, _ in protocol()] if family == "walk" else []
     velocity = np.array([c.velocity for c in cycles]) / SCALE
-    cost = np.asarray(rank, float) ** 2 + 0.15 * (np.array([c.closure for c in cycles]) / limit) ** 2
+    cost = np.asarray(rank, float) ** 2 + 0.05 * (np.array([c.closure for c in cycles]) / limit) ** 2
     flip = np.array([1.0, -1.0, -1.0])
     chosen: list[Choice] = []
     places: list[np.ndarray] = []
@@ -89,7 +89,7 @@ def select(cycles: list[Cycle], rank: np.ndarray, family: str) -> tuple[list[Cho
             score = np.where(usable & (distance < REACH), distance**2 + cost, np.inf)
             best = int(np.argmin(score))
             if np.isfinite(score[best]):
-                if spare(best, mirrored, 0.3 * SPACING):
+                if spare(best, mirrored, 0.25 * SPACING):
                     take(label, best, mirrored)
                 break
         else:

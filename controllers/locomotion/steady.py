@@ -14,7 +14,7 @@ from numba import njit
 
 from .control_space import ControlSpace, thin
 from .cycles import screw
-from .kernel import COLUMNS, LANES, body_tables, pose_kernel, series_table
+from .kernel import COLUMNS, SCRATCH, body_tables, pose_kernel, series_table
 from .library import Library
 from .step import Settings, _advance_phase, _blend_series, _move_root, legs_of, memory_dtype
 
@@ -39,7 +39,7 @@ def steady_velocities(library: Library, weights: np.ndarray) -> np.ndarray:
 def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velocities):
     joints = body.parents.shape[0]
     local, orientations = np.empty((joints, 3, 3), np.float32), np.empty((joints, 3, 3), np.float32)
-    positions, scratch = np.empty((joints, 3), np.float32), np.empty((2, LANES), np.float32)
+    positions, scratch = np.empty((joints, 3), np.float32), np.empty(SCRATCH, np.float32)
     fresh, wish = np.empty(COLUMNS, np.float32), np.ones(3)
     for n in range(memory.shape[0]):
         m = memory[n]
@@ -86,9 +86,13 @@ def settle(library: Library, progress=None) -> Library:
 
 
 def _without_slivers(library: Library) -> Library:
-    """The library without the primitives that make its control spaces' simplices thin."""
+    """The library without the primitives that make its control spaces' simplices thin.
+
+    Rest stays, and so does straight walking, which people do most.
+    """
+    kept = np.array([p.family == "rest" or p.label.startswith("forward") for p in library.primitives])
     left = np.sort(np.concatenate([
-        members[thin(library.velocities[members], members == library.rest)]
+        members[thin(library.velocities[members], kept[members])]
         for members in (library.family("walk"), library.family("run")) if len(members)]))
     return replace(library, primitives=tuple(library.primitives[i] for i in left),
                    velocities=library.velocities[left], coefficients=library.coefficients[left])

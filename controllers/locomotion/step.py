@@ -15,7 +15,7 @@ from numba import njit
 from ..body.human import CONTACT_HEIGHT, human
 from .footing import (GATE, LAND_HALFLIFE, OFFSET_HALFLIFE, PELVIS_DROP, PELVIS_HALFLIFE, REACH, RELEASE, STANDING, heel_rise_kernel,
                       leg_kernel, spring_kernel, tilt_kernel)
-from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, joint_kernel,
+from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, joint_kernel,
                      pose_kernel, query_kernel, series_kernel)
 
 WALK, RUN = 0, 1
@@ -28,9 +28,9 @@ class Settings(NamedTuple):
     weight_halflife: float = 0.06
     drift_halflife: float = 0.03
     switch_halflife: float = 0.10
-    run_above: float = 1.80
-    walk_below: float = 1.60
-    correct: int = 2
+    run_above: float = 1.85
+    walk_below: float = 1.70
+    correct: int = 3
     footing: bool = True
     acceleration: float = 4.5
     clearance: float = 0.018
@@ -86,7 +86,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
     joints = local.shape[1]
     positions = np.empty((joints, 3), np.float32)
     orientations = np.empty((joints, 3, 3), np.float32)
-    scratch = np.empty((2, LANES), np.float32)
+    scratch = np.empty(SCRATCH, np.float32)
     fresh = np.empty(COLUMNS, np.float32)
     work = np.empty((5, 3, 3), np.float64)
     b, p, q = np.empty(4), np.empty(3), np.empty(3)
