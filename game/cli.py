@@ -7,6 +7,7 @@ Everything heavy is imported where it is used, so that help comes at once.
 from __future__ import annotations
 
 import functools
+import math
 import os
 import sys
 from enum import Enum
@@ -170,25 +171,40 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
         made, notes = build_library(folder, recipe, progress=progress)
     out.parent.mkdir(parents=True, exist_ok=True)
     made.save(out)
-    for note in notes:
-        _say(note)
-    _say(f"{out}: {len(made.primitives)} primitives")
+
+    from controllers.locomotion.coverage import report as in_words
+
+    for line in [*notes, *in_words(made), str(out)]:
+        _say(line)
 
 
 @library_app.command()
 @plainly
 def report(file: Annotated[Path | None, typer.Argument(help="A library file; the shipped one by default.")] = None,
-           picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None) -> None:
-    """What a library covers and where every primitive comes from."""
+           picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None,
+           primitives: Annotated[bool, typer.Option("--primitives", help="List every primitive and its clip.")] = False) -> None:
+    """What a library covers, and where its primitives come from."""
     from controllers.locomotion import DEFAULT_LIBRARY
     from controllers.locomotion import Library as GaitLibrary
 
     made = GaitLibrary.load(file or DEFAULT_LIBRARY)
 
-    from controllers.locomotion import coverage
+    from controllers.locomotion.coverage import picture as draw
+    from controllers.locomotion.coverage import report as in_words
 
-    for line in coverage(made, picture):
+    for line in in_words(made):
         typer.echo(line)
+    if primitives:
+        typer.echo(f"{'primitive':34} {'v_f':>6} {'ω':>6} {'v_l':>6} {'closure':>8}  clip")
+        for one, (v_f, omega, v_l) in zip(made.primitives, made.velocities):
+            typer.echo(f"{one.label:34} {v_f:6.2f} {omega:6.2f} {v_l:6.2f} {math.degrees(one.closure):7.1f}°  "
+                       f"{one.clip} at {one.start:.2f} s{', mirrored' if one.mirrored else ''}")
+    if picture:
+        try:
+            draw(made, picture)
+        except ImportError:
+            raise Mistake("--picture needs matplotlib: pip install gambol[report]") from None
+        _say(str(picture))
 
 
 def _controller(library: Path | None):

@@ -121,6 +121,30 @@ def test_an_interrupted_film_is_kept(short, tmp_path, monkeypatch):
         assert len(list(film.decode(video=0))) == 4
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display unless told otherwise")
+def test_playing_without_a_display_says_what_to_do(short, monkeypatch):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    done = gambol("play")
+    assert done.exit_code == cli.NO_DISPLAY and "no display" in done.output and "gambol render" in done.output
+
+
+def test_a_machine_without_opengl_says_so_and_leaves_nothing(short, tmp_path, monkeypatch):
+    def none(*_):
+        raise game.hosts.GraphicsError("no OpenGL here. Type: apt install it")
+    monkeypatch.setattr(game.hosts, "Offscreen", none)
+    done = gambol("render", short, "-o", tmp_path / "a.mp4")
+    assert done.exit_code == 2 and done.output == "gambol: no OpenGL here. Type: apt install it\n"
+    assert not list(tmp_path.glob("a.*"))
+
+
+def test_bugs_keep_their_traceback(short, tmp_path, monkeypatch):
+    def broken(self, scene):
+        raise ValueError("operands do not fit")
+    monkeypatch.setattr(Stage, "frame", broken)
+    assert isinstance(gambol("render", short, "-o", tmp_path / "a.mp4").exception, ValueError)
+
+
 def test_scenarios_are_listed():
     done = gambol("scenarios")
     assert done.exit_code == 0 and "corridor" in done.output and "2 actors" in done.output
