@@ -21,26 +21,28 @@ from character import binding, shape, surface  # noqa: E402
 import assets  # noqa: E402
 from game.render.mesh import Mesh, pack  # noqa: E402
 
-TRIANGLES = {"near": 15000, "far": 4000}
+TRIANGLES = {"near": 16000, "middle": 7000, "far": 3000}
+"""How many each level of detail gets, the finest first."""
+FINE = {"near": 0.0105, "middle": 0.0160, "far": 0.0240}
+"""The length of their edges [m] where the shape needs it most not."""
 
 
 def finished(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
-    """The mesh with its normals, paint and skin weights."""
+    """The mesh with its normals, openness and skin weights."""
     normals = shape.gradient(vertices)
     joints, weights = binding.bound(vertices, faces)
-    paint = np.stack([shape.dark(vertices), surface.openness(vertices, normals), shape.seam(vertices)], 1)
-    return Mesh(vertices, normals, faces, joints, weights, paint)
+    return Mesh(vertices, normals, faces, joints, weights, surface.openness(vertices, normals))
 
 
 def main() -> None:
     fast = "--fast" in sys.argv
     began = time.perf_counter()
-    vertices, faces = surface.marched(0.013 if fast else 0.0065)
+    vertices, faces = surface.marched(0.013 if fast else 0.007)
     print(f"marching cubes: {len(faces)} triangles, {time.perf_counter() - began:.1f} s")
     stored = {}
     for level, wanted in TRIANGLES.items():
         if not fast:
-            vertices, faces = surface.collapsed(vertices, faces, wanted, 0.011 if level == "near" else 0.022)
+            vertices, faces = surface.collapsed(vertices, faces, wanted, FINE[level])
             vertices = surface.relaxed(vertices, faces)
         stored |= pack(finished(vertices, faces), level)
         print(f"{level}: {len(vertices)} vertices, {len(faces)} triangles, {time.perf_counter() - began:.1f} s")

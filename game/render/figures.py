@@ -13,8 +13,8 @@ from .view import scale_of
 
 BATCH = 16
 """Figures in a draw call: what fits the 16 KiB that every OpenGL 3.3 gives a uniform block."""
-_LAYOUT = "3f 3f 4u1 4f1 3f"
-_NAMES = ("position", "normal", "joints", "weights", "paint")
+_LAYOUT = "3f 3f 4u1 4f1 1f"
+_NAMES = ("position", "normal", "joints", "weights", "open")
 
 
 class Figures:
@@ -35,9 +35,8 @@ class Figures:
                     program, [_content(program, vertices)], index_buffer=indices, index_element_size=4)
         self.batches: list[tuple[str, bytes, int]] = []
 
-    def prepare(self, figures: Sequence[Figure], eye: np.ndarray, origin: np.ndarray, near: float) -> None:
-        """Pose what will be drawn. Figures that are not finite are left out: nothing can show them."""
-        figures = [f for f in figures if _drawable(f)]
+    def prepare(self, figures: Sequence[Figure], eye: np.ndarray, origin: np.ndarray, ranges: Sequence[float]) -> None:
+        """Pose what will be drawn, all of it `drawable`. ranges: how far each finer mesh serves [m]."""
         self.batches = []
         if not figures:
             return
@@ -45,8 +44,9 @@ class Figures:
         scale = scale_of(positions, skin.REST, skin.STANDARD.parents)
         motion = skin.motions(positions - origin, np.stack([f.orientations for f in figures]), scale)
         look = np.concatenate([np.array([f.tint for f in figures]), scale[:, None]], 1).astype(np.float32)
-        far = np.linalg.norm(positions[:, 0] - eye, axis=1) > near
-        for level, chosen in (("near", np.flatnonzero(~far)), ("far", np.flatnonzero(far))):
+        levels = np.searchsorted(ranges, np.linalg.norm(positions[:, 0] - eye, axis=1))
+        for k, level in enumerate(mesh.LEVELS):
+            chosen = np.flatnonzero(levels == k)
             for start in range(0, len(chosen), BATCH):
                 part = chosen[start:start + BATCH]
                 # a full block each time, so that the look follows at its fixed place
@@ -80,7 +80,11 @@ def _pad(part: str) -> str:
     return f"{count * size}x"
 
 
-def _drawable(figure: Figure) -> bool:
+def drawable(figure: Figure) -> bool:
+    """Whether a figure can be shown: not if anything in its pose is infinite, undefined or flattened.
+
+    ValueError if it has other joints than the standard human.
+    """
     count = len(skin.STANDARD)
     if np.shape(figure.positions) != (count, 3) or np.shape(figure.orientations) != (count, 3, 3):
         raise ValueError(f"a figure needs {count} joints: positions ({count}, 3) and orientations ({count}, 3, 3), "

@@ -32,10 +32,9 @@ def shaded_floor(box: LightBox | None, figures: Sequence[Figure], boxes: Sequenc
     if box is None:
         return np.zeros((0, 3))
     found = []
-    bodies = [f for f in figures if np.isfinite(f.positions).all()]
-    if bodies:
-        at = np.stack([f.positions for f in bodies]).astype(float)
-        turn = np.stack([f.orientations for f in bodies]).astype(float)
+    if figures:
+        at = np.stack([f.positions for f in figures]).astype(float)
+        turn = np.stack([f.orientations for f in figures]).astype(float)
         scale = scale_of(at, skin.REST, skin.STANDARD.parents).max()
         tips = end_positions(skin.STANDARD, at, turn)
         found.append(outlines(np.concatenate([at, tips], 1) - origin, _GIRTH * max(scale, 1.0) * 1.1, box.axes))

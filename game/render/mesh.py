@@ -10,10 +10,9 @@ import numpy as np
 import assets
 
 POSITION_UNIT = 1.0 / 16384.0
-PAINT_UNIT = 0.0005
-"""What one step of a stored position, and of the stored paint, measures [m]."""
-LEVELS = ("near", "far")
-"""The meshes in the file, fine and coarse."""
+"""What one step of a stored position measures [m]."""
+LEVELS = ("near", "middle", "far")
+"""The meshes in the file, the finest first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,9 +20,8 @@ class Mesh:
     """A skinned mesh at T-pose.
 
     positions, normals: (V, 3) [m], unit. triangles: (T, 3), counter-clockwise from outside.
-    joints, weights: (V, 4) into `skin.NAMES`, summing to 1. paint: (V, 3) the distance [m] to the
-    border of the dark material, positive inside it; how open the vertex is to the sky, 0 … 1; the
-    signed distance [m] to the seams where limbs are set in.
+    joints, weights: (V, 4) into `skin.NAMES`, summing to 1. open: (V,) how open each vertex is to
+    the sky, 0 … 1.
     """
 
     positions: np.ndarray
@@ -31,15 +29,15 @@ class Mesh:
     triangles: np.ndarray
     joints: np.ndarray
     weights: np.ndarray
-    paint: np.ndarray
+    open: np.ndarray
 
     def interleaved(self) -> bytes:
-        """All vertices: position 3f, normal 3f, joints 4u1, weights 4 normalised u1, paint 3f."""
+        """All vertices: position 3f, normal 3f, joints 4u1, weights 4 normalised u1, openness f."""
         layout = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("joints", "u1", 4),
-                           ("weights", "u1", 4), ("paint", "f4", 3)])
+                           ("weights", "u1", 4), ("open", "f4")])
         rows = np.empty(len(self.positions), layout)
         rows["position"], rows["normal"], rows["joints"] = self.positions, self.normals, self.joints
-        rows["weights"], rows["paint"] = np.round(self.weights * 255), self.paint
+        rows["weights"], rows["open"] = np.round(self.weights * 255), self.open
         return rows.tobytes()
 
 
@@ -49,12 +47,11 @@ def pack(mesh: Mesh, level: str) -> dict[str, np.ndarray]:
     # hand the steps lost by rounding down to the largest weight, so that they still sum to 255
     whole[np.arange(len(whole)), mesh.weights.argmax(1)] += 255 - whole.sum(1)
     kind = np.uint16 if len(mesh.positions) < 65536 else np.uint32
-    paint = np.clip(np.round(mesh.paint / [PAINT_UNIT, 1 / 127, PAINT_UNIT]), -127, 127)
     return {f"{level}_{name}": value for name, value in {
         "positions": np.round(mesh.positions / POSITION_UNIT).astype(np.int16),
         "normals": np.round(mesh.normals * 127).astype(np.int8), "triangles": mesh.triangles.astype(kind),
         "joints": mesh.joints.astype(np.uint8), "weights": whole.astype(np.uint8),
-        "paint": paint.astype(np.int8)}.items()}
+        "open": np.round(mesh.open * 255).astype(np.uint8)}.items()}
 
 
 @lru_cache
@@ -62,9 +59,8 @@ def mannequin(level: str = "near") -> Mesh:
     """Gambol's own character. FileNotFoundError if it was not built."""
     with np.load(assets.path("character", "mannequin.npz")) as file:
         stored = {name: file[f"{level}_{name}"] for name in
-                  ("positions", "normals", "triangles", "joints", "weights", "paint")}
+                  ("positions", "normals", "triangles", "joints", "weights", "open")}
     normals = stored["normals"] / np.linalg.norm(stored["normals"].astype(np.float32), axis=1, keepdims=True)
-    paint = stored["paint"].astype(np.float32) * np.array([PAINT_UNIT, 1 / 127, PAINT_UNIT], np.float32)
     return Mesh((stored["positions"] * POSITION_UNIT).astype(np.float32), normals.astype(np.float32),
                 stored["triangles"].astype(np.uint32), stored["joints"],
-                (stored["weights"] / 255.0).astype(np.float32), paint)
+                (stored["weights"] / 255.0).astype(np.float32), (stored["open"] / 255.0).astype(np.float32))

@@ -16,6 +16,7 @@ from .view import scale_of
 LIFT = 0.006
 """Marks lie this high above the floor [m], so that the two do not fight for the depth buffer."""
 LEFT, RIGHT, MIDDLE = (0.12, 0.55, 0.95), (0.95, 0.45, 0.10), (0.85, 0.85, 0.80)
+AHEAD = (0.85, 0.50, 0.02)
 DISC, BAND, DASHES = 0.0, 1.0, 2.0
 _SIDES = np.array([LEFT if n.startswith("Left") else RIGHT if n.startswith("Right") else MIDDLE
                    for n in skin.STANDARD.names])
@@ -94,9 +95,8 @@ def ribbon(points: np.ndarray, colour, opacity: np.ndarray, half: float, kind: f
     edges = np.zeros((len(points), 2, 10))
     for k, sign in enumerate((-1.0, 1.0)):
         edges[:, k, [0, 2]] = flat + sign * across
-        edges[:, k, 1] = np.maximum(points[:, 1], 0.0) if kind == BAND else np.maximum(points[:, 1], LIFT)
         edges[:, k, 8] = sign
-    edges[..., 1] = np.maximum(edges[..., 1], LIFT)
+    edges[..., 1] = np.maximum(points[:, 1:2], LIFT)
     edges[..., 3:6], edges[..., 7], edges[..., 9] = colour, (far / dash)[:, None], kind
     edges[..., 6] = np.linspace(opacity[0], opacity[1], len(points))[:, None]
     a, b, c, d = edges[:-1, 0], edges[:-1, 1], edges[1:, 1], edges[1:, 0]
@@ -109,9 +109,9 @@ def marks(figures: Sequence[Figure], shown: Overlays) -> np.ndarray:
     for figure in figures:
         tint = np.asarray(figure.tint, float)
         if shown.trail:
-            rows.append(ribbon(figure.trail, tint, (0.0, 0.8), 0.018, BAND))
+            rows.append(ribbon(figure.trail, tint**1.7, (0.0, 0.9), 0.028, BAND))
         if shown.path:
-            rows.append(ribbon(figure.path, (0.95, 0.85, 0.25), (0.9, 0.25), 0.022, DASHES))
+            rows.append(ribbon(figure.path, AHEAD, (1.0, 0.35), 0.028, DASHES))
         if shown.contacts:
             rows.append(discs(figure))
     return np.concatenate(rows)

@@ -10,24 +10,26 @@ class Preset:
     """What the renderer spends.
 
     samples: per pixel for antialiasing; 0 for none. shadow_size: texels along a side of the shadow map.
-    shadow_taps: 1 or 9 reads of it per pixel. softness: reach of those taps on the ground [m].
-    near: figures nearer than this to the camera [m] get the fine mesh, the others the coarse one.
+    floor_taps, body_taps: 1, 4 or 9 reads of it per pixel. softness: reach of those taps [m].
+    detail: the pixels that a metre must measure for the fine mesh, and for the middle one.
     """
 
     name: str
     samples: int
     shadow_size: int
-    shadow_taps: int
+    floor_taps: int
+    body_taps: int
     softness: float
-    near: float
+    detail: tuple[float, float]
 
     def __post_init__(self):
-        if self.shadow_taps not in (1, 9):
-            raise ValueError(f"shadow_taps must be 1 or 9, got {self.shadow_taps}")
+        for taps in (self.floor_taps, self.body_taps):
+            if taps not in (1, 4, 9):
+                raise ValueError(f"shadow taps must be 1, 4 or 9, got {taps}")
 
 
-FULL = Preset("full", samples=4, shadow_size=2048, shadow_taps=9, softness=0.009, near=9.0)
-FAST = Preset("fast", samples=0, shadow_size=1024, shadow_taps=1, softness=0.0, near=4.0)
+FULL = Preset("full", samples=4, shadow_size=2048, floor_taps=9, body_taps=4, softness=0.009, detail=(320.0, 90.0))
+FAST = Preset("fast", samples=0, shadow_size=1024, floor_taps=1, body_taps=1, softness=0.0, detail=(600.0, 200.0))
 PRESETS = {p.name: p for p in (FULL, FAST)}
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ..scene import Scene
+from ..scene import Figure, Scene
 from . import gl, view
-from .figures import Figures
+from .figures import Figures, drawable
 from .ground import Boxes, Ground, shaded_floor
 from .overlays import OverlayPass
 from .presets import Preset, preset
@@ -27,7 +27,7 @@ class Renderer:
 
     def __init__(self, ctx: Any, size: tuple[int, int], chosen: str | Preset = "full"):
         self.ctx, self.preset = ctx, preset(chosen)
-        taps = self.preset.shadow_taps
+        floor, body = self.preset.floor_taps, self.preset.body_taps
         self.target = gl.Target(ctx, size, self.preset.samples)
         self.shadow_map = ctx.depth_texture((self.preset.shadow_size,) * 2)
         self.shadow_map.compare_func = "<="
@@ -35,8 +35,8 @@ class Renderer:
         self.shadow_map.repeat_x = self.shadow_map.repeat_y = False
         self.shadow_target = ctx.framebuffer(depth_attachment=self.shadow_map)
         self.frame = ctx.buffer(reserve=192, dynamic=True)
-        self.figures, self.boxes = Figures(ctx, taps), Boxes(ctx, taps)
-        self.ground, self.overlays, self.text = Ground(ctx, taps), OverlayPass(ctx), TextPass(ctx)
+        self.figures, self.boxes = Figures(ctx, body), Boxes(ctx, floor)
+        self.ground, self.overlays, self.text = Ground(ctx, floor), OverlayPass(ctx), TextPass(ctx)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -55,12 +55,14 @@ class Renderer:
         ctx, camera = self.ctx, scene.camera
         origin = view.origin_of(camera)
         eye = np.asarray(camera.eye, float) - origin
-        shown = scene.figures if scene.overlays.mesh else ()
+        figures = tuple(figure for figure in scene.figures if drawable(figure))
+        shown = figures if scene.overlays.mesh else ()
         box = view.light_box(camera, shown, scene.boxes, self.preset.shadow_size, origin=origin)
         projection = view.perspective(camera.fov, self.size[0] / self.size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
         self._frame(matrix, eye, box)
-        self.figures.prepare(shown, camera.eye, origin, self.preset.near)
+        metre = self.size[1] / (2.0 * np.tan(0.5 * camera.fov))  # pixels, one metre away
+        self.figures.prepare(shown, camera.eye, origin, [metre / least for least in self.preset.detail])
         self.boxes.prepare(scene.boxes, origin)
         if box is not None:
             self._shadows()
@@ -73,10 +75,10 @@ class Renderer:
         self.figures.draw("body")
         self.boxes.draw("body")
         if scene.overlays.skeleton:
-            self.overlays.draw_bones(scene.figures, origin)
+            self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
         self.ground.draw(shaded_floor(box, shown, scene.boxes, origin), np.linalg.inv(matrix))
-        self._over(scene, origin)
+        self._over(scene, figures, origin)
         self.target.resolve()
 
     def read(self, out: np.ndarray | None = None) -> np.ndarray:
@@ -127,14 +129,14 @@ class Renderer:
         self.figures.draw("shadow")
         self.boxes.draw("shadow")
 
-    def _over(self, scene: Scene, origin: np.ndarray) -> None:
+    def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray) -> None:
         """Marks on the floor, then text over everything."""
         ctx = self.ctx
         ctx.enable(ctx.BLEND)
         ctx.disable(ctx.CULL_FACE)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
         self.target.masked(depth=False)
-        self.overlays.draw_marks(scene.figures, scene.overlays, origin)
+        self.overlays.draw_marks(figures, scene.overlays, origin)
         self.target.masked()
         ctx.disable(ctx.DEPTH_TEST)
         self.text.draw(scene.text, scene.panel, self.size)

@@ -59,6 +59,8 @@ def atlas(size: int) -> Atlas:
     cells, advances, places = {}, {}, {}
     for glyph in PLAIN + "".join(ARROWS):
         advance = float(size) if glyph in ARROWS else font.getlength(glyph)
+        if glyph == " ":  # this font's own is too narrow to part words at small sizes
+            advance = max(advance, 0.32 * size)
         box = int(np.ceil(advance)) + 2 * margin + 2
         if x + box > width:
             x, y = 0, y + height + 2 * margin

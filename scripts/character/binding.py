@@ -43,7 +43,7 @@ def bound(vertices: np.ndarray, faces: np.ndarray, smoothing: int = 4) -> tuple[
 def _half(p: np.ndarray) -> dict[str, np.ndarray]:
     x, y, z = p.T
     # how far a vertex belongs to the arm: past a slanting border through the armpit and the shoulder's top
-    arm = ramp(x + 0.35 * (y - 1.425), 0.115, 0.215) * ramp(y, 1.20, 1.33) * (1.0 - ramp(y, 1.485, 1.53))
+    arm = ramp(x + 0.30 * (y - 1.425), 0.100, 0.225) * ramp(y, 1.20, 1.33) * (1.0 - ramp(y, 1.485, 1.53))
     # … and to the leg: past a border that rises from the crotch to the hip bone
     rise = 0.905 + 0.30 * np.clip(x - 0.02, 0.0, 0.14) - 0.10 * np.clip(-z, 0.0, 0.1)
     leg = 1.0 - ramp(y, rise - 0.075, rise + 0.075)

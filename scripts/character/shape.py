@@ -101,7 +101,7 @@ def leg(p):
     x = 0.0875
     thigh = cone(p, (x + 0.006, 0.900, -0.002), (x, 0.520, 0.004), 0.086, 0.054)
     front = ellipsoid(p, (x + 0.010, 0.740, 0.028), (0.062, 0.175, 0.060))
-    inner = ellipsoid(p, (x - 0.026, 0.830, -0.012), (0.052, 0.130, 0.062))
+    inner = ellipsoid(p, (x - 0.028, 0.800, -0.008), (0.052, 0.170, 0.062))
     hams = ellipsoid(p, (x, 0.720, -0.032), (0.056, 0.165, 0.054))
     d = join(join(thigh, front, 0.05), join(inner, hams, 0.05), 0.05)
     knee = ellipsoid(p, (x, 0.508, 0.016), (0.046, 0.056, 0.046))
@@ -172,36 +172,3 @@ def gradient(points, step=5e-4):
     """The outward unit normal (N, 3) by central differences."""
     g = np.stack([body(points + step * e) - body(points - step * e) for e in np.eye(3)], 1)
     return g / np.maximum(np.linalg.norm(g, axis=1, keepdims=True), 1e-9)
-
-
-def band(t, low, high):
-    """Distance into a strip low < t < high."""
-    return np.minimum(t - low, high - t)
-
-
-def dark(points):
-    """Distance [m] into the dark material: gloves, shoes, elbows, knees, waist, neck and the face plane."""
-    p = np.array(points, np.float64)
-    p[:, 0] = np.abs(p[:, 0])
-    x, y, z = p.T
-    limb, low = x > 0.24, y < 0.80
-    off = np.full(len(p), -1.0)
-    parts = [
-        np.where(limb, x - 0.722 - 0.10 * np.abs(z + 0.015), off),                                   # gloves
-        np.where(limb, band(x + 0.30 * np.clip(z + 0.015, -0.05, 0.05), 0.436, 0.490), off),           # elbows
-        np.where(~limb, 0.098 - 0.22 * np.clip(z, -0.08, 0.06) - y, off),                             # shoes
-        np.where(~limb & low, band(y - 0.25 * np.clip(z, -0.05, 0.05), 0.470, 0.540), off),            # knees
-        np.where(~limb & ~low, band(y - 1.9 * x * x + 0.12 * z, 1.030, 1.088), off),                   # waist
-        np.where((y > 1.3) & (x < 0.10), band(y + 0.35 * np.clip(z, -0.05, 0.10), 1.498, 1.528), off),  # neck
-        -ellipsoid(p, (0, 1.605, 0.120), (0.063, 0.074, 0.085)),                                      # face plane
-    ]
-    return np.max(parts, 0)
-
-
-def seam(points):
-    """Signed distance [m] to the seams where arms and legs are set in; positive on the limb's side."""
-    p = np.array(points, np.float64)
-    x, y, z = np.abs(p[:, 0]), p[:, 1], p[:, 2]
-    arm_side = np.where(y > 1.15, x + 0.25 * (y - 1.425) - 0.150, -1.0)
-    leg_side = np.where(x < 0.24, (0.868 + 0.70 * x - 0.35 * np.clip(-z, 0.0, 0.06) - y) * 0.8, -1.0)
-    return np.maximum(arm_side, leg_side)

@@ -158,6 +158,6 @@ def relaxed(vertices: np.ndarray, faces: np.ndarray, rounds: int = 6) -> np.ndar
 def openness(vertices: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """How open (V,) each vertex is to the sky, 0 … 1, from the distances along its normal."""
     dark = np.zeros(len(vertices))
-    for k, reach in enumerate((0.008, 0.02, 0.04, 0.07, 0.11)):
+    for k, reach in enumerate((0.008, 0.02, 0.04, 0.07, 0.11, 0.16)):
         dark += np.clip(1.0 - shape.body(vertices + reach * normals) / reach, 0.0, 1.0) * 0.62**k
     return np.clip(1.0 - 0.55 * dark, 0.15, 1.0)

@@ -1,0 +1,154 @@
+"""What the renderer draws: golden pictures, and what must hold of any picture."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from poses import CROUCH, STAND, STRIDE, camera, figure
+
+from game.render import FULL, Renderer, preset
+from game.scene import Box, Overlays, Scene
+
+WALKER = figure(heading=0.6, options=dict(
+    contacts=np.array([1, 0, 0, 1], bool),
+    trail=np.stack([-0.8 * np.linspace(2, 0, 20), np.full(20, 0.01), -np.linspace(2, 0, 20) ** 1.2], -1),
+    path=np.stack([np.linspace(0, 1.2, 16), np.full(16, 0.01), np.linspace(0, 1.0, 16)], -1)), **STRIDE)
+ALL = Overlays(mesh=True, skeleton=True, contacts=True, trail=True, path=True)
+GOLDEN = {
+    "stride": Scene(camera(), (WALKER,)),
+    "crouch": Scene(camera(eye=(-2.2, 1.2, 2.4), target=(0, 0.5, 0)), (figure(**CROUCH),)),
+    "overlays": Scene(camera(eye=(-2.6, 2.4, 3.0), target=(0, 0.6, 0)), (WALKER,), overlays=ALL, text=("Walk 1.2 m/s",)),
+    "company": Scene(camera(eye=(0, 2.2, 6.5)), tuple(figure(heading=k, at=(k - 2, -0.8 * (k % 2)), options=dict(
+        tint=(0.2 + 0.15 * k, 0.4, 0.7 - 0.12 * k)), **STAND) for k in range(5)),
+        boxes=(Box((2.6, 0.5, -1.0), (0.6, 1.0, 0.6), 0.4), Box((-2.5, 0.1, 0.5), (1.0, 0.2, 1.0)))),
+    "panel": Scene(camera(), (WALKER,), panel=("        keyboard  gamepad", "walk    W A S D   left stick",
+                                               "run     Shift     right trigger", "turn    ← →       right stick")),
+}
+
+
+@pytest.mark.parametrize("name", GOLDEN)
+def test_golden(draw, compare, name):
+    compare(draw(GOLDEN[name]), name)
+
+
+def test_golden_fast(draw, compare):
+    compare(draw(GOLDEN["stride"], "fast"), "stride_fast", outliers=0.02)
+
+
+def test_the_same_scene_twice_gives_the_same_bytes(draw):
+    first = draw(GOLDEN["overlays"])
+    draw(GOLDEN["company"])
+    draw(GOLDEN["panel"])
+    assert np.array_equal(first, draw(GOLDEN["overlays"]))
+
+
+def test_opaque_and_top_row_first(draw):
+    picture = draw(Scene(camera(eye=(0, 1.6, 5), target=(0, 1.6, 0))))
+    assert (picture[..., 3] == 255).all()
+    sky, floor = picture[:40, :, :3].mean((0, 1)), picture[-40:, :, :3].mean((0, 1))
+    assert sky[2] > sky[0] + 10 and floor.mean() < sky.mean() - 20
+
+
+def test_the_floor_meets_the_sky_without_an_edge(draw):
+    """At the horizon both are fog."""
+    picture = draw(Scene(camera(eye=(0, 1.6, 5), target=(0, 1.6, 0)))).astype(int)
+    rows = picture[..., :3].mean(1)
+    assert np.abs(np.diff(rows[85:96], axis=0)).max() < 12
+
+
+def test_the_floor_does_not_shimmer_far_away(draw):
+    """The pattern's contrast falls with distance instead of turning to noise."""
+    picture = draw(Scene(camera(eye=(0.3, 1.6, 5), target=(0.3, 1.2, 0)))).astype(float)[..., 1]
+    near, far = picture[150:170].std(1).mean(), picture[82:90].std(1).mean()
+    assert near > 5.0 and far < 4.0
+
+
+def test_a_figure_casts_a_shadow_and_only_one(draw):
+    shot = camera(eye=(0.01, 6.0, 0.0), target=(0, 0, 0), fov=0.9)
+    bare, flying = draw(Scene(shot)), draw(Scene(shot, (figure(lift=1.0, **STAND),)))
+    darker = (bare.astype(int) - flying)[..., 1] > 25
+    assert 0.005 < darker.mean() < 0.12
+    one_shadow_each = draw(Scene(shot, (figure(lift=1.0, at=(0.4, 0), **STAND), figure(lift=1.0, at=(0.4, 0), **STAND))))
+    alone = draw(Scene(shot, (figure(lift=1.0, at=(0.4, 0), **STAND),)))
+    assert np.abs(one_shadow_each.astype(int) - alone)[..., :3].mean() < 1.5
+
+
+def test_the_lit_floor_is_the_same_with_and_without_somebody_on_it(draw):
+    """Where no shadow falls, the floor that looks for shadows equals the floor that does not."""
+    shot = camera(eye=(0, 5.0, 2.0), target=(0, 0, 0), fov=0.9)
+    bare, peopled = draw(Scene(shot)).astype(int), draw(Scene(shot, (figure(),))).astype(int)
+    same = np.abs(bare - peopled)[..., :3].max(-1) <= 2
+    assert same.mean() > 0.85
+
+
+def test_the_body_does_not_shadow_itself_into_stripes(draw):
+    """No acne: on the sunlit back, neighbouring pixels differ little."""
+    shot = camera(eye=(1.2, 1.5, -0.6), target=(0, 1.25, 0), fov=0.25)
+    picture = draw(Scene(shot, (figure(**STAND),))).astype(float)[60:110, 120:160, 1]
+    assert np.abs(np.diff(picture, axis=0)).mean() < 4.0
+
+
+def test_text_is_there_and_readable(draw):
+    scene = Scene(camera(eye=(0, 1.6, 5), target=(0, 9.0, 0)))
+    plain, lettered = draw(scene), draw(replace(scene, text=("Gambol",)))
+    away = np.abs(plain.astype(int) - lettered)[..., :3].max(-1) > 60
+    rows, columns = np.nonzero(away)
+    assert 30 < away.sum() < 1500 and rows.max() < 40 and columns.max() < 100
+
+
+def test_bones_show_through_the_body(draw):
+    scene = GOLDEN["stride"]
+    with_bones = draw(replace(scene, overlays=Overlays(skeleton=True)))
+    assert (np.abs(with_bones.astype(int) - draw(scene)).max(-1) > 30).sum() > 150
+
+
+def test_a_figure_that_is_not_finite_is_left_out(draw):
+    broken = figure()
+    broken.positions[3, 1] = np.nan
+    assert np.array_equal(draw(Scene(camera(), (broken,), overlays=ALL)), draw(Scene(camera(), overlays=ALL)))
+
+
+def test_a_figure_of_another_skeleton_is_refused(draw):
+    odd = figure()
+    with pytest.raises(ValueError, match=r"22 joints.*\(21, 3\)"):
+        draw(Scene(camera(), (replace(odd, positions=odd.positions[1:]),)))
+
+
+def test_far_from_the_world_origin_nothing_trembles(draw):
+    here = draw(GOLDEN["stride"])
+    shift = np.array([4000.0, 0.0, -2000.0])
+    there = Scene(replace(GOLDEN["stride"].camera, eye=GOLDEN["stride"].camera.eye + shift,
+                          target=GOLDEN["stride"].camera.target + shift),
+                  (replace(WALKER, positions=WALKER.positions + shift),))
+    assert np.abs(here.astype(int) - draw(there)).mean() < 0.3
+
+
+def test_forty_figures_in_one_frame(draw):
+    crowd = tuple(figure(at=(0.9 * (k % 8 - 4), -1.2 * (k // 8)), **STRIDE) for k in range(40))
+    picture = draw(Scene(camera(eye=(0, 3, 6)), crowd), "fast")
+    assert picture.std() > 20
+
+
+def test_resizing_and_reading_into_a_buffer(ctx):
+    renderer = Renderer(ctx, (64, 48), "fast")
+    renderer.draw(GOLDEN["stride"])
+    out = np.zeros((48, 64, 4), np.uint8)
+    assert renderer.read(out) is out and np.array_equal(out, renderer.read()) and out.any()
+    renderer.resize((33, 21))
+    renderer.draw(GOLDEN["stride"])
+    assert renderer.read().shape == (21, 33, 4)
+    with pytest.raises(ValueError, match=r"\(21, 33, 4\)"):
+        renderer.read(out)
+    with pytest.raises(ValueError, match="0 × 10"):
+        renderer.resize((0, 10))
+    target = ctx.simple_framebuffer((33, 21), 4)
+    renderer.blit(target)
+    assert np.array_equal(np.frombuffer(target.read(components=4), np.uint8).reshape(21, 33, 4)[::-1], renderer.read())
+    target.release()
+    renderer.release()
+
+
+def test_presets_by_name():
+    assert preset("full") is FULL and preset(FULL) is FULL
+    with pytest.raises(ValueError, match="'ultra'.*full, fast"):
+        preset("ultra")
