@@ -19,6 +19,7 @@ from controllers.body.contact import contact_height, contact_points, detect_cont
 from controllers.contract import Intent
 from controllers.locomotion import Library, Locomotion, Settings
 from controllers.locomotion.controller import DEFAULT_LIBRARY
+from controllers.locomotion.cycles import joint_acceleration, screw
 
 FPS = 60
 SCRIPT = (  # name, seconds, (v_f, ω, v_l)
@@ -81,6 +82,22 @@ def report_feet(library: Library) -> None:
               f"   {raw[3]:5.2f} / {final[3]:4.2f}   {final[4]:4.2f}")
 
 
+def report_acceleration(library: Library) -> None:
+    """Peak joint accelerations by segment over the 99th percentile in the motion capture itself."""
+    if not library.accelerations:
+        print("Acceleration: this library does not carry its recordings' own")
+        return
+    locomotion = Locomotion(library)
+    segment, positions, _, _ = play(locomotion)
+    print("Acceleration: largest of any joint over the recordings' own 99th percentile, at 30 Hz (worst joint)")
+    for number, (name, _, _) in enumerate(SCRIPT):
+        natural = library.accelerations.get("run" if name in RUNNING else "walk", library.accelerations["walk"])
+        here = np.flatnonzero(segment == number)
+        here = np.arange(max(here[0] - 4, 0), here[-1] + 1)
+        worst = np.max([np.max(joint_acceleration(positions[here[phase:]], 1 / FPS), 0) for phase in (0, 1)], 0) / natural
+        print(f"  {name:13s} {worst.max():.2f} ({locomotion.skeleton.names[int(worst.argmax())]}), median joint {np.median(worst):.2f}")
+
+
 def report_velocity(library: Library) -> None:
     """Steady velocity error over many wishes, without and with correction of the query."""
     rng = np.random.default_rng(0)
@@ -99,7 +116,6 @@ def report_velocity(library: Library) -> None:
 
 def steady(locomotion: Locomotion, wish: np.ndarray) -> np.ndarray:
     """Velocities (N, 3) achieved over whole cycles, after 4 s, by characters with constant wishes."""
-    from controllers.locomotion.cycles import screw
     state = locomotion.start(np.zeros((len(wish), 3)))
     for _ in range(4 * FPS):
         state, _ = locomotion.step(state, Intent(wish), 1 / FPS)
@@ -165,6 +181,7 @@ def main() -> None:
     library = Library.load(parser.parse_args().library)
     report_space(library)
     report_feet(library)
+    report_acceleration(library)
     report_velocity(library)
     report_response(library)
 

@@ -2,6 +2,6 @@
 
 from .controller import DEFAULT_LIBRARY, Locomotion
 from .library import Library, LibraryError, Primitive
-from .step import Settings
+from .memory import Settings
 
 __all__ = ["DEFAULT_LIBRARY", "Library", "LibraryError", "Locomotion", "Primitive", "Settings"]

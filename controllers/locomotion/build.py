@@ -122,7 +122,20 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
     notes += [f"no cycle for {label}" for label in missing]
     library = assemble(cycles, np.array(actor), walk + run,
                        [t for t, source, _ in tracks if source.rest], provenance)
-    return settle(library, progress), notes
+    return settle(replace(library, accelerations=natural_accelerations(tracks)), progress), notes
+
+
+def natural_accelerations(tracks: list[tuple[Track, Source, str]]) -> dict[str, np.ndarray]:
+    """By family, the 99th percentile (J,) [m/s²] of every joint's acceleration in its recordings.
+
+    What is jerky is judged against it. A source that may hold both families counts as walking.
+    """
+    result = {}
+    for family in ("walk", "run"):
+        found = [t.acceleration for t, source, _ in tracks if source.families[0] == family and len(t.acceleration)]
+        if found:
+            result[family] = np.percentile(np.concatenate(found), 99, axis=0)
+    return result
 
 
 def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], stills: list[Track],

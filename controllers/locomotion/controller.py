@@ -13,8 +13,9 @@ from ..body import Pose, Skeleton
 from ..contract import CharacterState, Intent, Status
 from .kernel import body_tables, series_table, space_tables
 from .library import Library, LibraryError
+from .memory import Settings, legs_of, memory_dtype
 from .steady import space_of
-from .step import Settings, legs_of, memory_dtype, step_kernel
+from .step import step_kernel
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
 

@@ -20,6 +20,8 @@ from ..body.human import CONTACT_HEIGHT, HEEL
 
 RATE = 120.0
 """Frames a second at which clips are analysed."""
+ACCELERATION_RATE = 30.0
+"""Frames a second at which accelerations are compared: the slowest recordings' rate."""
 SAMPLES = 96
 """Samples of one cycle on the common phase."""
 EVENTS = {"walk": np.array([0.0, 0.38, 0.50, 0.88]), "run": np.array([0.0, 0.22, 0.50, 0.72])}
@@ -62,17 +64,20 @@ class Track:
     """A clip prepared for cutting: T frames at RATE on the standard human.
 
     ground: (T, 3) raw x, z, heading of the mid-shoulder point. points: (T, 4, 3) left heel, left
-    ball, right heel, right ball [m]. speeds: (T, 4) of those [m/s].
+    ball, right heel, right ball [m]. speeds: (T, 4) of those [m/s]. acceleration: (F, J) [m/s²] of
+    all joints as recorded, at ACCELERATION_RATE.
     """
 
     clip: Clip
     ground: np.ndarray
     points: np.ndarray
     speeds: np.ndarray
+    acceleration: np.ndarray
 
 
 def track(clip: Clip) -> Track:
     """Ground frame and foot points of a clip that already is on the standard human."""
+    acceleration = joint_acceleration(clip.kinematics()[0], clip.frame_time)
     clip = clip.resample(RATE)
     positions, orientations = clip.kinematics()
     at = clip.skeleton.index
@@ -85,7 +90,17 @@ def track(clip: Clip) -> Track:
         positions[:, at(side + "Toe")])], 1)
     speeds = np.linalg.norm(np.gradient(points, 1 / RATE, axis=0), axis=-1)
     return Track(clip, np.stack([middle[:, 0], middle[:, 2], heading], -1), points,
-                 uniform_filter1d(speeds, 5, axis=0))
+                 uniform_filter1d(speeds, 5, axis=0), acceleration)
+
+
+def joint_acceleration(positions: np.ndarray, frame_time: float) -> np.ndarray:
+    """Accelerations (F, J) [m/s²] of joint positions (T, J, 3), from whole frames about 1/30 s apart.
+
+    Frames are skipped, never made up: interpolation would put its own corners into the figure.
+    """
+    stride = max(1, round(1 / (ACCELERATION_RATE * frame_time)))
+    step = positions[::stride]
+    return np.linalg.norm(np.diff(step, 2, axis=0), axis=-1) / (stride * frame_time) ** 2
 
 
 def stance(track: Track, family: str) -> np.ndarray:

@@ -15,162 +15,217 @@ import math
 import numpy as np
 from numba import njit
 
-from ..body.ik import two_bone_kernel
+from ..body.springs import spring_kernel
+from .kernel import LABELS_AT
+from .legs import (REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
+                   toe_kernel)
+from .memory import WALK
 
 STANDING = 0.06
-"""A point stands where its blended label exceeds this: early, so that no foot creeps into its stance …"""
+"""A point begins to stand where its blended label exceeds this: early, so that no foot creeps in …"""
+LEAVING = (0.08, 0.40)
+"""… and leaves where it falls below this, walking and running: a runner's foot must not be held back …"""
 GATE = 0.035
-"""… but takes hold only when it is lower than this above where it rests [m]."""
+"""… and takes hold only when it is lower than this above where it rests [m]."""
 LAND_HALFLIFE = 0.03
 """A landing point comes down to the floor with this half-life [s]."""
+LIFT_HALFLIFE = 0.02
+"""How fast a swinging foot is lifted over the floor it must clear [s]."""
 OFFSET_HALFLIFE = 0.07
 """A released foot returns to the blend with this half-life [s]."""
 PELVIS_HALFLIFE = 0.08
 """The pelvis follows what the legs need with this half-life [s]."""
 PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
-REACH = 0.995
-"""Legs straighten to this share of their length; the rest would make the knee pop."""
 RELEASE = 0.25
 """A lock further than this from where the blend wants the point lets go [m]."""
-HEEL_RISE = 0.9
-"""The most that a heel may rise about the ball to give a leg length [rad]."""
+ANCHOR_HALFLIFE = 0.03
+"""A foot's weight rolls from heel to ball with this half-life [s]."""
+CLOSE = 0.03
+"""A body comes to rest once its feet are this near to where they belong [m]."""
 
 
 @njit(cache=True)
-def spring_kernel(x, v, halflife, dt):
-    """A critically damped spring towards zero, exact for any dt: the new x and its rate."""
-    y = 2.0 * 0.6931472 / halflife
-    j = v + x * y
-    e = math.exp(-y * dt)
-    return e * (x + j * dt), e * (v - j * y * dt)
-
-
-@njit(cache=True)
-def frame_kernel(bone, side, out):
-    """Write into `out` (3, 3) the frame whose columns are bone, side made orthogonal, and their cross."""
-    size = 1.0 / math.sqrt(bone[0] ** 2 + bone[1] ** 2 + bone[2] ** 2 + 1e-20)
-    for i in range(3):
-        out[i, 0] = bone[i] * size
-    dot = side[0] * out[0, 0] + side[1] * out[1, 0] + side[2] * out[2, 0]
-    total = 0.0
-    for i in range(3):
-        out[i, 1] = side[i] - dot * out[i, 0]
-        total += out[i, 1] ** 2
-    size = 1.0 / math.sqrt(total + 1e-20)
-    for i in range(3):
-        out[i, 1] *= size
-    out[0, 2] = out[1, 0] * out[2, 1] - out[2, 0] * out[1, 1]
-    out[1, 2] = out[2, 0] * out[0, 1] - out[0, 0] * out[2, 1]
-    out[2, 2] = out[0, 0] * out[1, 1] - out[1, 0] * out[0, 1]
-
-
-@njit(cache=True)
-def carry_kernel(before, after, matrix, out):
-    """Write after · beforeᵀ · matrix: `matrix` carried along as one frame became another. All (3, 3)."""
-    for i in range(3):
-        for k in range(3):
-            total = 0.0
-            for a in range(3):
-                turn = 0.0
-                for c in range(3):
-                    turn += before[c, a] * matrix[c, k]
-                total += after[i, a] * turn
-            out[i, k] = total
-
-
-@njit(cache=True)
-def leg_kernel(positions, orientations, hip, target, work):
-    """Bend the leg of joints hip, hip + 1 (knee), hip + 2 (ankle) so that its ankle meets `target`.
-
-    The knee keeps its hinge; positions and orientations of thigh and shank are rewritten.
-    work: (5, 3, 3) scratch. Returns how far the ankle stays from the target [m].
-    """
-    a, b, c = positions[hip], positions[hip + 1], positions[hip + 2]
-    upper = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
-    lower = math.sqrt((c[0] - b[0]) ** 2 + (c[1] - b[1]) ** 2 + (c[2] - b[2]) ** 2)
-    pole, before, after, mid, end = work[0, 0], work[0, 1], work[0, 2], work[1, 0], work[1, 1]
-    for i in range(3):  # the knee bends forward, which is +Z of the thigh
-        pole[i] = orientations[hip, i, 2]
-    two_bone_kernel(a, upper, lower, target, pole, (1.0 - REACH) * (upper + lower), mid, end)
-    _hinge(pole, a, c, before)
-    _hinge(pole, a, end, after)
-    _turn_bone(orientations[hip], a, b, before, a, mid, after, work)
-    _turn_bone(orientations[hip + 1], b, c, before, mid, end, after, work)
-    for i in range(3):
-        b[i], c[i] = mid[i], end[i]
-    return math.sqrt((c[0] - target[0]) ** 2 + (c[1] - target[1]) ** 2 + (c[2] - target[2]) ** 2)
-
-
-@njit(cache=True)
-def _turn_bone(orientation, start, stop, side, new_start, new_stop, new_side, work):
-    """Carry an orientation along as its bone and hinge become the new ones."""
-    bone = work[1, 2]
-    for i in range(3):
-        bone[i] = stop[i] - start[i]
-    frame_kernel(bone, side, work[2])
-    for i in range(3):
-        bone[i] = new_stop[i] - new_start[i]
-    frame_kernel(bone, new_side, work[3])
-    carry_kernel(work[2], work[3], orientation, work[4])
-    for i in range(3):
-        for k in range(3):
-            orientation[i, k] = work[4, i, k]
-
-
-@njit(cache=True)
-def _hinge(pole, start, end, out):
-    x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
-    out[0] = pole[1] * z - pole[2] * y
-    out[1] = pole[2] * x - pole[0] * z
-    out[2] = pole[0] * y - pole[1] * x
-
-
-@njit(cache=True)
-def tilt_kernel(matrix, axis, angle, out):
-    """Write the rotation about the unit `axis` (3,) by `angle`, times `matrix` (3, 3), into `out`."""
-    c, s = math.cos(angle), math.sin(angle)
-    for k in range(3):
-        x, y, z = matrix[0, k], matrix[1, k], matrix[2, k]
-        dot = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - c)
-        out[0, k] = c * x + s * (axis[1] * z - axis[2] * y) + dot * axis[0]
-        out[1, k] = c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1]
-        out[2, k] = c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2]
-
-
-@njit(cache=True)
-def heel_rise_kernel(hip, ball, ankle, axis, reach):
-    """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
-
-    Zero if it is; at most HEEL_RISE. Bisection: the distance falls as the heel rises.
-    """
-    low, high = 0.0, HEEL_RISE
-    if _ankle_distance(hip, ball, ankle, axis, 0.0) <= reach:
-        return 0.0
-    if _ankle_distance(hip, ball, ankle, axis, high) > reach:
-        best, least = 0.0, 1e9
-        for n in range(10):
-            d = _ankle_distance(hip, ball, ankle, axis, n * HEEL_RISE / 9.0)
-            if d < least:
-                best, least = n * HEEL_RISE / 9.0, d
-        if least > reach:
-            return best
-        high = best
-    for _ in range(14):
-        middle = 0.5 * (low + high)
-        if _ankle_distance(hip, ball, ankle, axis, middle) > reach:
-            low = middle
+def place_feet(m, body, legs, clearance, positions, orientations, local, dt, work):
+    """Hold standing feet, land swinging ones, bend the legs after them, settle a body at rest."""
+    ankle = np.empty((2, 3))
+    before = m.offset.copy()
+    _hold_standing(m, legs.height, dt)
+    _hold_free(m, before, dt)
+    need = 0.0
+    for foot in range(2):
+        hip = legs.hip[foot]
+        _turn_foot(m, body, foot, hip + 2, legs.height, clearance, orientations, ankle[foot], dt, work)
+        reach = (REACH - 0.001) * leg_length(body, hip)
+        _give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], work)
+        flat = (positions[hip, 0] - ankle[foot, 0]) ** 2 + (positions[hip, 2] - ankle[foot, 2]) ** 2
+        if flat < reach * reach:
+            need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
         else:
-            high = middle
-    return high
+            need = PELVIS_DROP
+    need = min(need, PELVIS_DROP)
+    drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
+    m.pelvis = min(max(drop, 0.0), PELVIS_DROP)
+    for foot in range(2):
+        hip = legs.hip[foot]
+        for j in range(hip, hip + 3):
+            positions[j, 1] -= m.pelvis
+        leg_kernel(positions, orientations, hip, ankle[foot], work)
+        toe_kernel(body, hip + 2, legs.height, positions, orientations, local, work)
+        localise_kernel(orientations, 0, hip, local)
+        localise_kernel(orientations, hip, hip + 1, local)
+        localise_kernel(orientations, hip + 1, hip + 2, local)
+    if _at_rest(m, legs):
+        m.settled = 1
 
 
 @njit(cache=True)
-def _ankle_distance(hip, ball, ankle, axis, angle):
-    c, s = math.cos(angle), math.sin(angle)
-    x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
-    dot = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - c)
-    px = ball[0] + c * x + s * (axis[1] * z - axis[2] * y) + dot * axis[0] - hip[0]
-    py = ball[1] + c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1] - hip[1]
-    pz = ball[2] + c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2] - hip[2]
-    return math.sqrt(px * px + py * py + pz * pz)
+def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, work):
+    """Turn foot 0 or 1 (joint a) by the smallest rotation that points it from heel to ball as they
+    shall be, and write where its ankle then must be (3,): hung on the ball, or on the heel."""
+    heel, ball = 2 * foot, 2 * foot + 1
+    axis, turned = work[0, 0], work[1]
+    lift = _swing_lift(m, foot, clearance, dt)
+    h, b = _target(m, heel, height, lift), _target(m, ball, height, lift)
+    x, y, z = b[0] - h[0], b[1] - h[1], b[2] - h[2]
+    u = m.points[ball, 0] - m.points[heel, 0]
+    v = m.points[ball, 1] - m.points[heel, 1]
+    w = m.points[ball, 2] - m.points[heel, 2]
+    axis[0], axis[1], axis[2] = v * z - w * y, w * x - u * z, u * y - v * x
+    sine = math.sqrt(axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2)
+    if sine > 1e-12:
+        for i in range(3):
+            axis[i] /= sine
+        tilt_kernel(orientations[a], axis, math.atan2(sine, u * x + v * y + w * z), turned)
+        for i in range(3):
+            for k in range(3):
+                orientations[a, i, k] = turned[i, k]
+    hang = 0.5
+    if m.standing[ball] == 1:
+        hang = 1.0
+    elif m.standing[heel] == 1:
+        hang = 0.0
+    m.anchor[foot] += (hang - m.anchor[foot]) * (1.0 - 2.0 ** (-dt / ANCHOR_HALFLIFE))
+    hang = m.anchor[foot]
+    for i in range(3):
+        from_ball, from_heel = b[i], h[i]
+        for k in range(3):
+            from_ball -= orientations[a, i, k] * body.offsets[a + 1, k]
+            from_heel -= orientations[a, i, k] * body.heel[k]
+        ankle[i] = hang * from_ball + (1.0 - hang) * from_heel
+
+
+@njit(cache=True)
+def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, work):
+    """A leg too short lifts its heel about a standing ball; in the swing it only comes nearer."""
+    a = hip + 2
+    distance = math.sqrt((ankle[0] - positions[hip, 0]) ** 2 + (ankle[1] - positions[hip, 1]) ** 2
+                         + (ankle[2] - positions[hip, 2]) ** 2)
+    wanted = soft_reach(distance, reach)
+    if m.standing[2 * foot + 1] == 1:
+        ball, axis, turned = work[0, 0], work[0, 1], work[1]
+        for i in range(3):
+            axis[i] = orientations[a, i, 0]
+            ball[i] = ankle[i]
+            for k in range(3):
+                ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
+        rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
+        tilt_kernel(orientations[a], axis, rise, turned)
+        for i in range(3):
+            ankle[i] = ball[i]
+            for k in range(3):
+                orientations[a, i, k] = turned[i, k]
+                ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
+    elif m.standing[2 * foot] != 1:
+        for i in range(3):
+            ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * wanted / distance
+
+
+@njit(cache=True)
+def _at_rest(m, legs):
+    """Whether a body that wants to rest may: blended to rest, both feet down and near their places."""
+    if m.weights[legs.rest] < 0.98 or abs(m.command[0]) + abs(m.command[1]) + abs(m.command[2]) > 0.02:
+        return False
+    for foot in range(2):
+        offset = m.offset[2 * foot + 1]
+        if offset[0] ** 2 + offset[2] ** 2 > CLOSE * CLOSE or m.lift[foot] > 0.003:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _swing_lift(m, foot, clearance, dt):
+    """How high foot 0 (left) or 1 must swing [m]: over the stretch of the phase in which it does,
+    and the more the farther it has to go beyond what the blend does by itself."""
+    share = 0.38 if m.family == WALK else 0.72
+    into = ((m.phase - 0.5 * foot) % 1.0) / share
+    wanted = 0.0
+    if into < 1.0 and not m.settled:
+        wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * into)
+    m.lift[foot], m.lift_rate[foot] = spring_kernel(m.lift[foot], m.lift_rate[foot], wanted, LIFT_HALFLIFE, dt)
+    return max(m.lift[foot], 0.0)
+
+
+@njit(cache=True)
+def _hold_standing(m, height, dt):
+    """Lock the points that begin to stand, release those that end, keep the standing on their locks."""
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    for k in range(4):
+        stands = _stands(m, k, height)
+        x = m.ground[0] + c * m.points[k, 0] + s * m.points[k, 2]
+        z = m.ground[1] - s * m.points[k, 0] + c * m.points[k, 2]
+        offset, rate = m.offset[k], m.offset_rate[k]
+        if stands and m.standing[k] != 1:
+            m.standing[k] = 1
+            m.lock[k, 0], m.lock[k, 1], m.lock[k, 2] = x + offset[0], height, z + offset[2]
+        elif not stands and m.standing[k] == 1:
+            m.standing[k] = 2
+            m.swing[k // 2] = math.sqrt(offset[0] ** 2 + offset[2] ** 2)
+        if m.standing[k] == 1:
+            offset[0], offset[2] = m.lock[k, 0] - x, m.lock[k, 2] - z
+            rate[0], rate[2] = 0.0, 0.0
+            below = height - m.points[k, 1]
+            offset[1], rate[1] = spring_kernel(offset[1], rate[1], below, LAND_HALFLIFE, dt)
+            if offset[0] ** 2 + offset[2] ** 2 > RELEASE * RELEASE:
+                m.standing[k] = 2
+
+
+@njit(cache=True)
+def _hold_free(m, before, dt):
+    """Take the free points along with their foot's standing point, or else back to the blend.
+
+    before: (4, 3) the offsets one step ago.
+    """
+    for k in range(4):
+        if m.standing[k] == 1:
+            continue
+        other = k ^ 1
+        for i in range(3):
+            was, goal = 0.0, 0.0
+            if m.standing[other] == 1 and i != 1:
+                was, goal = before[other, i], m.offset[other, i]
+            m.offset[k, i], m.offset_rate[k, i] = spring_kernel(m.offset[k, i] + goal - was, m.offset_rate[k, i],
+                                                                goal, OFFSET_HALFLIFE, dt)
+
+
+@njit(cache=True)
+def _target(m, k, height, lift):
+    """Where contact point k shall be: x, y, z in the ground frame."""
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    least = height if m.standing[k] == 1 else height + lift
+    return (m.points[k, 0] + c * m.offset[k, 0] - s * m.offset[k, 2],
+            max(m.points[k, 1] + m.offset[k, 1], least),
+            m.points[k, 2] + s * m.offset[k, 0] + c * m.offset[k, 2])
+
+
+@njit(cache=True)
+def _stands(m, k, height):
+    """Whether point k stands: always at rest, else by its blended label, and only once it is low."""
+    if m.settled:
+        return True
+    label = m.row[LABELS_AT + k]
+    if m.standing[k] == 1:
+        return label > LEAVING[m.family]
+    if m.standing[k] == 2 and label < STANDING:
+        m.standing[k] = 0  # it has left for good: the next contact may take hold
+    return m.standing[k] == 0 and label > STANDING and m.points[k, 1] + m.offset[k, 1] < height + GATE

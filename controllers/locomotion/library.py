@@ -52,6 +52,7 @@ class Library:
     hips in the ground frame [m], the labels of left heel, left ball, right heel, right ball, and
     the duration dt/dφ [s]. reference: (J, 3, 3) mean local rotations over the library.
     bends: by family, (E, 3) what its control space knows of blends along its edges.
+    accelerations: by family, (J,) [m/s²] the 99th percentile in the recordings, where known.
     """
 
     skeleton: Skeleton
@@ -61,6 +62,7 @@ class Library:
     reference: np.ndarray
     provenance: str = ""
     bends: dict[str, np.ndarray] = field(default_factory=dict)
+    accelerations: dict[str, np.ndarray] = field(default_factory=dict)
 
     def family(self, name: str) -> np.ndarray:
         """The numbers of the primitives of one family; "walk" has rest among them."""
@@ -79,6 +81,7 @@ class Library:
         np.savez_compressed(path, velocities=self.velocities, reference=self.reference,
                             coefficients=self.coefficients.astype(np.float32),
                             **{f"bend_{family}": bend for family, bend in self.bends.items()},
+                            **{f"acceleration_{family}": a for family, a in self.accelerations.items()},
                             about=np.frombuffer(json.dumps(about).encode(), np.uint8))
 
     @staticmethod
@@ -93,7 +96,8 @@ class Library:
                 primitives = tuple(Primitive(**{**p, "events": tuple(p["events"])}) for p in about["primitives"])
                 library = Library(skeleton, primitives, file["velocities"],
                                   file["coefficients"].astype(float), file["reference"], about["provenance"],
-                                  {k[5:]: file[k] for k in file.files if k.startswith("bend_")})
+                                  *({k.removeprefix(start): file[k] for k in file.files if k.startswith(start)}
+                                    for start in ("bend_", "acceleration_")))
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
         except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:

@@ -16,7 +16,8 @@ from .control_space import ControlSpace, thin
 from .cycles import screw
 from .kernel import COLUMNS, SCRATCH, body_tables, pose_kernel, series_table
 from .library import Library
-from .step import Settings, _advance_phase, _blend_series, _move_root, legs_of, memory_dtype
+from .memory import Settings, legs_of, memory_dtype
+from .step import _advance_phase, _blend_series, _move_root
 
 CYCLES = 3
 """Whole cycles over which a velocity is measured, after one to settle."""

@@ -1,0 +1,198 @@
+"""Legs: small rigid-body kernels that bend a leg, lift a heel, turn a foot and bend a toe."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from ..body.ik import two_bone_kernel
+from .kernel import joint_kernel
+
+REACH = 0.999
+"""Legs straighten to this share of their length, and those that must give way a little earlier."""
+SOFTNESS = 0.006
+"""Legs slow down over about this length before they are straight [m]."""
+HEEL_RISE = 0.9
+"""The most that a heel may rise about the ball to give a leg length [rad]."""
+
+
+@njit(cache=True)
+def frame_kernel(bone, side, out):
+    """Write into `out` (3, 3) the frame whose columns are bone, side made orthogonal, and their cross."""
+    size = 1.0 / math.sqrt(bone[0] ** 2 + bone[1] ** 2 + bone[2] ** 2 + 1e-20)
+    for i in range(3):
+        out[i, 0] = bone[i] * size
+    dot = side[0] * out[0, 0] + side[1] * out[1, 0] + side[2] * out[2, 0]
+    total = 0.0
+    for i in range(3):
+        out[i, 1] = side[i] - dot * out[i, 0]
+        total += out[i, 1] ** 2
+    size = 1.0 / math.sqrt(total + 1e-20)
+    for i in range(3):
+        out[i, 1] *= size
+    out[0, 2] = out[1, 0] * out[2, 1] - out[2, 0] * out[1, 1]
+    out[1, 2] = out[2, 0] * out[0, 1] - out[0, 0] * out[2, 1]
+    out[2, 2] = out[0, 0] * out[1, 1] - out[1, 0] * out[0, 1]
+
+
+@njit(cache=True)
+def carry_kernel(before, after, matrix, out):
+    """Write after · beforeᵀ · matrix: `matrix` carried along as one frame became another. All (3, 3)."""
+    for i in range(3):
+        for k in range(3):
+            total = 0.0
+            for a in range(3):
+                turn = 0.0
+                for c in range(3):
+                    turn += before[c, a] * matrix[c, k]
+                total += after[i, a] * turn
+            out[i, k] = total
+
+
+@njit(cache=True)
+def leg_kernel(positions, orientations, hip, target, work):
+    """Bend the leg of joints hip, hip + 1 (knee), hip + 2 (ankle) so that its ankle meets `target`.
+
+    The knee keeps its hinge; positions and orientations of thigh and shank are rewritten.
+    work: (5, 3, 3) scratch. Returns how far the ankle stays from the target [m].
+    """
+    a, b, c = positions[hip], positions[hip + 1], positions[hip + 2]
+    upper = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
+    lower = math.sqrt((c[0] - b[0]) ** 2 + (c[1] - b[1]) ** 2 + (c[2] - b[2]) ** 2)
+    pole, before, after, mid, end = work[0, 0], work[0, 1], work[0, 2], work[1, 0], work[1, 1]
+    for i in range(3):  # the knee bends forward, which is +Z of the thigh
+        pole[i] = orientations[hip, i, 2]
+    two_bone_kernel(a, upper, lower, target, pole, (1.0 - REACH) * (upper + lower), mid, end)
+    _hinge(pole, a, c, before)
+    _hinge(pole, a, end, after)
+    _turn_bone(orientations[hip], a, b, before, a, mid, after, work)
+    _turn_bone(orientations[hip + 1], b, c, before, mid, end, after, work)
+    for i in range(3):
+        b[i], c[i] = mid[i], end[i]
+    return math.sqrt((c[0] - target[0]) ** 2 + (c[1] - target[1]) ** 2 + (c[2] - target[2]) ** 2)
+
+
+@njit(cache=True)
+def _turn_bone(orientation, start, stop, side, new_start, new_stop, new_side, work):
+    """Carry an orientation along as its bone and hinge become the new ones."""
+    bone = work[1, 2]
+    for i in range(3):
+        bone[i] = stop[i] - start[i]
+    frame_kernel(bone, side, work[2])
+    for i in range(3):
+        bone[i] = new_stop[i] - new_start[i]
+    frame_kernel(bone, new_side, work[3])
+    carry_kernel(work[2], work[3], orientation, work[4])
+    for i in range(3):
+        for k in range(3):
+            orientation[i, k] = work[4, i, k]
+
+
+@njit(cache=True)
+def _hinge(pole, start, end, out):
+    x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    out[0] = pole[1] * z - pole[2] * y
+    out[1] = pole[2] * x - pole[0] * z
+    out[2] = pole[0] * y - pole[1] * x
+
+
+@njit(cache=True)
+def tilt_kernel(matrix, axis, angle, out):
+    """Write the rotation about the unit `axis` (3,) by `angle`, times `matrix` (3, 3), into `out`."""
+    c, s = math.cos(angle), math.sin(angle)
+    for k in range(3):
+        x, y, z = matrix[0, k], matrix[1, k], matrix[2, k]
+        dot = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - c)
+        out[0, k] = c * x + s * (axis[1] * z - axis[2] * y) + dot * axis[0]
+        out[1, k] = c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1]
+        out[2, k] = c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2]
+
+
+@njit(cache=True)
+def leg_length(body, hip):
+    """Thigh and shank of the leg whose hip joint that is, together [m]."""
+    return -body.offsets[hip + 1, 1] - body.offsets[hip + 2, 1]
+
+
+@njit(cache=True)
+def soft_reach(distance, reach):
+    """The length [m] of a leg asked for `distance`: itself while short, smoothly up to `reach`.
+
+    A knee's angle changes infinitely fast where its leg runs into a hard limit.
+    """
+    return distance - SOFTNESS * math.log1p(math.exp((distance - reach) / SOFTNESS))
+
+
+@njit(cache=True)
+def heel_rise_kernel(hip, ball, ankle, axis, reach):
+    """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
+
+    Zero if it is; at most HEEL_RISE. Bisection: the distance falls as the heel rises.
+    """
+    low, high = 0.0, HEEL_RISE
+    if _ankle_distance(hip, ball, ankle, axis, 0.0) <= reach:
+        return 0.0
+    if _ankle_distance(hip, ball, ankle, axis, high) > reach:
+        best, least = 0.0, 1e9
+        for n in range(10):
+            d = _ankle_distance(hip, ball, ankle, axis, n * HEEL_RISE / 9.0)
+            if d < least:
+                best, least = n * HEEL_RISE / 9.0, d
+        if least > reach:
+            return best
+        high = best
+    for _ in range(14):
+        middle = 0.5 * (low + high)
+        if _ankle_distance(hip, ball, ankle, axis, middle) > reach:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@njit(cache=True)
+def _ankle_distance(hip, ball, ankle, axis, angle):
+    c, s = math.cos(angle), math.sin(angle)
+    x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
+    dot = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - c)
+    px = ball[0] + c * x + s * (axis[1] * z - axis[2] * y) + dot * axis[0] - hip[0]
+    py = ball[1] + c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1] - hip[1]
+    pz = ball[2] + c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2] - hip[2]
+    return math.sqrt(px * px + py * py + pz * pz)
+
+
+
+@njit(cache=True)
+def toe_kernel(body, a, height, positions, orientations, local, work):
+    """Bend the toe joint a + 1 up about the foot's lateral axis until the toe's end is not below the floor."""
+    joint_kernel(body, a + 1, local, positions, orientations)
+    t = a + 1
+    rise, size, length = 0.0, 0.0, 0.0
+    for k in range(3):
+        rise += orientations[t, 1, k] * body.toe_end[k]
+        length += body.toe_end[k] ** 2
+    length = math.sqrt(length)
+    low = (height - positions[t, 1]) / length
+    now = rise / length
+    if now < low:
+        angle = math.asin(min(max(low, -1.0), 1.0)) - math.asin(min(max(now, -1.0), 1.0))
+        axis, turned = work[0, 0], work[1]
+        for i in range(3):
+            axis[i] = orientations[a, i, 0]
+        tilt_kernel(orientations[t], axis, -angle, turned)
+        for i in range(3):
+            for k in range(3):
+                orientations[t, i, k] = turned[i, k]
+        localise_kernel(orientations, a, t, local)
+
+
+@njit(cache=True)
+def localise_kernel(orientations, parent, joint, local):
+    """Write a joint's local rotation from its own and its parent's orientation."""
+    for i in range(3):
+        for k in range(3):
+            total = 0.0
+            for a in range(3):
+                total += orientations[parent, a, i] * orientations[joint, a, k]
+            local[joint, i, k] = total

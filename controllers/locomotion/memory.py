@@ -1,0 +1,89 @@
+"""What a walking character remembers, and what one may tune.
+
+A character's memory is one record of a structured array, so a crowd is a longer array, and
+keeping, copying or rewinding a state is copying a record.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..body.human import CONTACT_HEIGHT, human
+from .kernel import COLUMNS
+from .library import Library
+
+WALK, RUN = 0, 1
+"""Gait families, as memory and kernels number them."""
+
+
+class Settings(NamedTuple):
+    """What one may tune. Times in seconds, lengths in metres, speeds in m/s.
+
+    command_halflife, acceleration: how fast a wish is taken up, and the most legs can push [m/s²].
+    weight_halflife: smoothing of the blend's weights. drift_halflife: of the standing foot's say in
+    the root's velocity. switch_halflife: of the hand-over between walking and running, which
+    happens above run_above and below walk_below. correct: fixed-point corrections of the query.
+    footing: whether feet are held. clearance: how high feet swing at least. breath: how deeply a
+    body at rest breathes [rad].
+    """
+
+    command_halflife: float = 0.10
+    acceleration: float = 4.5
+    weight_halflife: float = 0.06
+    drift_halflife: float = 0.03
+    switch_halflife: float = 0.10
+    run_above: float = 1.85
+    walk_below: float = 1.70
+    correct: int = 3
+    footing: bool = True
+    clearance: float = 0.018
+    breath: float = 0.012
+
+
+class Legs(NamedTuple):
+    """What the step must know of body and library: joint numbers (hip: (2,), left and right;
+    shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive."""
+
+    hip: np.ndarray
+    chest: int
+    neck: int
+    shoulder: np.ndarray
+    height: float
+    rest: int
+
+
+def legs_of(library: Library) -> Legs:
+    """What the step must know of a library."""
+    at = library.skeleton.index
+    scale = library.skeleton.offsets[0, 1] / human().offsets[0, 1]
+    return Legs(np.array([at("LeftUpLeg"), at("RightUpLeg")]), at("Spine2"), at("Neck"),
+                np.array([at("LeftShoulder"), at("RightShoulder")]), CONTACT_HEIGHT * scale, library.rest)
+
+
+def memory_dtype(primitives: int) -> np.dtype:
+    """The record of one character over a library of that many primitives.
+
+    The four contact points are left heel, left ball, right heel, right ball; feet are left, right.
+    """
+    return np.dtype([
+        ("ground", "f8", 3),  # x, z [m], θ [rad]
+        ("velocity", "f4", 3),  # achieved (v_f, ω, v_l)
+        ("command", "f4", 3), ("rate", "f4", 3),  # the shaped wish and its rate
+        ("family", "i4"), ("simplex", "i4", 2),  # WALK or RUN; last simplex in each one's space
+        ("weights", "f4", primitives), ("phase", "f4"),
+        ("settled", "i4"),  # at rest, both feet in place
+        ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
+        ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame
+        ("standing", "i4", 4),  # 0 free, 1 locked, 2 let go until its label has fallen
+        ("lock", "f8", (4, 3)),  # where each point is locked, in the world
+        ("offset", "f4", (4, 3)), ("offset_rate", "f4", (4, 3)),  # shown minus blended, in the world
+        ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
+        ("swing", "f4", 2),  # how far each foot had to go when it left
+        ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
+        ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis
+        ("row", "f4", COLUMNS), ("row_rate", "f4", COLUMNS),  # the blended series and its rate
+        ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
+        ("breath", "f4"),  # phase of breathing
+    ], align=True)
