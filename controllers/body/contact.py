@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 from .human import CONTACT_HEIGHT, HEEL, human
 from .skeleton import Skeleton
@@ -110,7 +110,7 @@ def _foot_size(skeleton):
     return float(skeleton.offsets[toe, 1] / human().offsets[human().index("LeftToe"), 1])
 
 
-@njit(cache=True)
+@kernel
 def _hold(excess, release, shortest, standing):
     for k in range(excess.shape[1]):
         on, since = False, 0

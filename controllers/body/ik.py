@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 EPSILON = 1e-5
 """The least distance kept from both ends of the reach, as a share of l1 + l2."""
@@ -81,7 +81,7 @@ def _swap(matrix):
     return np.swapaxes(matrix, -1, -2)
 
 
-@njit(cache=True)
+@kernel
 def two_bone_kernel(root, upper, lower, target, pole, buffer, mid, end):
     """Write the middle and end joint (3,) [m] of a limb with bones `upper` and `lower` [m] long.
 
@@ -118,7 +118,7 @@ def two_bone_kernel(root, upper, lower, target, pole, buffer, mid, end):
     end[0], end[1], end[2] = root[0] + distance * dx, root[1] + distance * dy, root[2] + distance * dz
 
 
-@njit(cache=True)
+@kernel
 def _two_bones(root, mid, end, target, pole, buffer, new_mid, new_end):
     for n in range(len(root)):
         upper = math.sqrt((mid[n, 0] - root[n, 0]) ** 2 + (mid[n, 1] - root[n, 1]) ** 2

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 from scipy.spatial.transform import Rotation
 
 
@@ -82,7 +82,7 @@ def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return exp(axis * np.arctan2(sine, dot))
 
 
-@njit(cache=True, fastmath=True)
+@kernel(fastmath=True)
 def exp_kernel(x, y, z, out):
     """Write exp of the rotation vector (x, y, z) [rad] into `out` (3, 3); any float type."""
     angle2 = x * x + y * y + z * z
@@ -104,7 +104,7 @@ def exp_kernel(x, y, z, out):
     out[2, 2] = 1.0 - b * (x * x + y * y)
 
 
-@njit(cache=True, fastmath=True)
+@kernel(fastmath=True)
 def log_kernel(r, out):
     """Write the rotation vector of matrix `r` (3, 3) into `out` (3,); |v| ≤ π, any float type."""
     x, y, z = r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ def local_rotations(skeleton: Skeleton, orientations: np.ndarray) -> np.ndarray:
     return local
 
 
-@njit(cache=True, fastmath=True)
+@kernel(fastmath=True)
 def _kinematics(parents, offsets, root, local, positions, orientations):
     for n in range(local.shape[0]):
         for j in range(local.shape[1]):

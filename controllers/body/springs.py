@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 _LN2 = math.log(2.0)
 _EPSILON = 1e-9  # s: keeps a half-life of 0 from dividing by 0
@@ -64,13 +64,13 @@ def cubic(x: np.ndarray, v: np.ndarray, duration: float, time: np.ndarray) -> tu
     return offset, velocity
 
 
-@njit(cache=True)
+@kernel
 def damp_kernel(x, goal, halflife, dt):
     """`damp` of one number."""
     return goal + (x - goal) * math.exp(-_LN2 * dt / (halflife + _EPSILON))
 
 
-@njit(cache=True)
+@kernel
 def spring_kernel(x, v, goal, halflife, dt):
     """`spring` of one number: its position and velocity."""
     y = 2.0 * _LN2 / (halflife + _EPSILON)

@@ -7,7 +7,7 @@ series (eq. 5 and 6), pose the joints. The controller adds command shaping, root
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 from .kernel import COLUMNS, SCRATCH, pose_kernel, query_kernel, series_kernel
 
@@ -38,7 +38,7 @@ class Blender:
         return output
 
 
-@njit(cache=True)
+@kernel
 def _blend(body, space, table, count, correct, velocity, phase, simplex, positions, orientations, local):
     b, target, moved = np.empty(4), np.empty(3), np.empty(3)
     weights, row = np.zeros(count, np.float32), np.empty(COLUMNS, np.float32)

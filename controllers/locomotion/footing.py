@@ -13,14 +13,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 from ..body.springs import spring_kernel
+from .cycles import EVENTS
 from .kernel import LABELS_AT
 from .legs import (REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
-from .memory import WALK
 
+SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
+"""The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 STANDING = 0.06
 """A point begins to stand where its blended label exceeds this: early, so that no foot creeps in …"""
 LEAVING = (0.08, 0.40)
@@ -45,7 +47,7 @@ CLOSE = 0.03
 """A body comes to rest once its feet are this near to where they belong [m]."""
 
 
-@njit(cache=True)
+@kernel
 def place_feet(m, body, legs, clearance, positions, orientations, local, dt, work):
     """Hold standing feet, land swinging ones, bend the legs after them, settle a body at rest."""
     ankle = np.empty((2, 3))
@@ -79,7 +81,7 @@ def place_feet(m, body, legs, clearance, positions, orientations, local, dt, wor
         m.settled = 1
 
 
-@njit(cache=True)
+@kernel
 def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, work):
     """Turn foot 0 or 1 (joint a) by the smallest rotation that points it from heel to ball as they
     shall be, and write where its ankle then must be (3,): hung on the ball, or on the heel."""
@@ -115,7 +117,7 @@ def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, wor
         ankle[i] = hang * from_ball + (1.0 - hang) * from_heel
 
 
-@njit(cache=True)
+@kernel
 def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, work):
     """A leg too short lifts its heel about a standing ball; in the swing it only comes nearer."""
     a = hip + 2
@@ -141,7 +143,7 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, work):
             ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * wanted / distance
 
 
-@njit(cache=True)
+@kernel
 def _at_rest(m, legs):
     """Whether a body that wants to rest may: blended to rest, both feet down and near their places."""
     if m.weights[legs.rest] < 0.98 or abs(m.command[0]) + abs(m.command[1]) + abs(m.command[2]) > 0.02:
@@ -153,20 +155,24 @@ def _at_rest(m, legs):
     return True
 
 
-@njit(cache=True)
+@kernel
+def _swing_progress(m, foot):
+    """How far through its swing foot 0 (left) or 1 is, by the phase: 0 … 1, beyond while it stands."""
+    return ((m.phase - 0.5 * foot) % 1.0) / SWING[m.family]
+
+
+@kernel
 def _swing_lift(m, foot, clearance, dt):
-    """How high foot 0 (left) or 1 must swing [m]: over the stretch of the phase in which it does,
+    """How high a foot is held over the floor [m]: over the stretch of the phase in which it swings,
     and the more the farther it has to go beyond what the blend does by itself."""
-    share = 0.38 if m.family == WALK else 0.72
-    into = ((m.phase - 0.5 * foot) % 1.0) / share
-    wanted = 0.0
-    if into < 1.0 and not m.settled:
-        wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * into)
+    wanted, progress = 0.0, _swing_progress(m, foot)
+    if progress < 1.0 and not m.settled:
+        wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * progress)
     m.lift[foot], m.lift_rate[foot] = spring_kernel(m.lift[foot], m.lift_rate[foot], wanted, LIFT_HALFLIFE, dt)
     return max(m.lift[foot], 0.0)
 
 
-@njit(cache=True)
+@kernel
 def _hold_standing(m, height, dt):
     """Lock the points that begin to stand, release those that end, keep the standing on their locks."""
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
@@ -190,7 +196,7 @@ def _hold_standing(m, height, dt):
                 m.standing[k] = 2
 
 
-@njit(cache=True)
+@kernel
 def _hold_free(m, before, dt):
     """Take the free points along with their foot's standing point, or else back to the blend.
 
@@ -208,7 +214,7 @@ def _hold_free(m, before, dt):
                                                                 goal, OFFSET_HALFLIFE, dt)
 
 
-@njit(cache=True)
+@kernel
 def _target(m, k, height, lift):
     """Where contact point k shall be: x, y, z in the ground frame."""
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
@@ -218,14 +224,14 @@ def _target(m, k, height, lift):
             m.points[k, 2] + s * m.offset[k, 0] + c * m.offset[k, 2])
 
 
-@njit(cache=True)
+@kernel
 def _stands(m, k, height):
     """Whether point k stands: always at rest, else by its blended label, and only once it is low."""
     if m.settled:
         return True
     label = m.row[LABELS_AT + k]
     if m.standing[k] == 1:
-        return label > LEAVING[m.family]
-    if m.standing[k] == 2 and label < STANDING:
+        return label > LEAVING[m.family] or m.row_rate[LABELS_AT + k] > 0.0
+    if m.standing[k] == 2 and 0.3 < _swing_progress(m, k // 2) < 1.0:
         m.standing[k] = 0  # it has left for good: the next contact may take hold
     return m.standing[k] == 0 and label > STANDING and m.points[k, 1] + m.offset[k, 1] < height + GATE

@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 from ..body.human import HEEL, human
 from .control_space import EDGES, INSIDE, SCALE, ControlSpace
@@ -83,7 +83,7 @@ def series_table(library: Library) -> np.ndarray:
     return table
 
 
-@njit(cache=True)
+@kernel
 def locate_kernel(space, p, start, b):
     """The simplex around the scaled point `p` (3,), its barycentric weights into `b` (4,): eq. (4).
 
@@ -118,7 +118,7 @@ def locate_kernel(space, p, start, b):
     return simplex
 
 
-@njit(cache=True)
+@kernel
 def clamp_kernel(space, p):
     """Move the scaled point `p` (3,) towards the anchor until it is in the hull; whether it was not."""
     reach = 1.0
@@ -134,7 +134,7 @@ def clamp_kernel(space, p):
     return reach > 1.0
 
 
-@njit(cache=True)
+@kernel
 def query_kernel(space, velocity, start, correct, b, target, moved):
     """The simplex and weights `b` (4,) whose blend moves at `velocity` (3,) SI.
 
@@ -155,7 +155,7 @@ def query_kernel(space, velocity, start, correct, b, target, moved):
     return simplex
 
 
-@njit(cache=True, fastmath=True)
+@kernel(fastmath=True)
 def series_kernel(table, weights, phase, row):
     """Write into `row` (80,) the weighted sum of all primitives' series at `phase`: eq. (5) and (6)."""
     rows = table.shape[1]
@@ -189,7 +189,7 @@ SCRATCH = (18, LANES)
 """Shape of the float32 scratch of `pose_kernel`."""
 
 
-@njit(cache=True, fastmath=True)
+@kernel(fastmath=True)
 def pose_kernel(body, row, local, positions, orientations, scratch):
     """Local rotations (J, 3, 3), positions (J, 3) and orientations (J, 3, 3) of a series row.
 
@@ -232,7 +232,7 @@ def pose_kernel(body, row, local, positions, orientations, scratch):
         joint_kernel(body, j, local, positions, orientations)
 
 
-@njit(cache=True, fastmath=True)
+@kernel(fastmath=True)
 def joint_kernel(body, j, local, positions, orientations):
     """Place joint j from its parent's place and its own local rotation."""
     p = body.parents[j]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from ..compiled import kernel
 
 from ..body.ik import two_bone_kernel
 from .kernel import joint_kernel
@@ -17,7 +17,7 @@ HEEL_RISE = 0.9
 """The most that a heel may rise about the ball to give a leg length [rad]."""
 
 
-@njit(cache=True)
+@kernel
 def frame_kernel(bone, side, out):
     """Write into `out` (3, 3) the frame whose columns are bone, side made orthogonal, and their cross."""
     size = 1.0 / math.sqrt(bone[0] ** 2 + bone[1] ** 2 + bone[2] ** 2 + 1e-20)
@@ -36,7 +36,7 @@ def frame_kernel(bone, side, out):
     out[2, 2] = out[0, 0] * out[1, 1] - out[1, 0] * out[0, 1]
 
 
-@njit(cache=True)
+@kernel
 def carry_kernel(before, after, matrix, out):
     """Write after · beforeᵀ · matrix: `matrix` carried along as one frame became another. All (3, 3)."""
     for i in range(3):
@@ -50,7 +50,7 @@ def carry_kernel(before, after, matrix, out):
             out[i, k] = total
 
 
-@njit(cache=True)
+@kernel
 def leg_kernel(positions, orientations, hip, target, work):
     """Bend the leg of joints hip, hip + 1 (knee), hip + 2 (ankle) so that its ankle meets `target`.
 
@@ -73,7 +73,7 @@ def leg_kernel(positions, orientations, hip, target, work):
     return math.sqrt((c[0] - target[0]) ** 2 + (c[1] - target[1]) ** 2 + (c[2] - target[2]) ** 2)
 
 
-@njit(cache=True)
+@kernel
 def _turn_bone(orientation, start, stop, side, new_start, new_stop, new_side, work):
     """Carry an orientation along as its bone and hinge become the new ones."""
     bone = work[1, 2]
@@ -89,7 +89,7 @@ def _turn_bone(orientation, start, stop, side, new_start, new_stop, new_side, wo
             orientation[i, k] = work[4, i, k]
 
 
-@njit(cache=True)
+@kernel
 def _hinge(pole, start, end, out):
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     out[0] = pole[1] * z - pole[2] * y
@@ -97,7 +97,7 @@ def _hinge(pole, start, end, out):
     out[2] = pole[0] * y - pole[1] * x
 
 
-@njit(cache=True)
+@kernel
 def tilt_kernel(matrix, axis, angle, out):
     """Write the rotation about the unit `axis` (3,) by `angle`, times `matrix` (3, 3), into `out`."""
     c, s = math.cos(angle), math.sin(angle)
@@ -109,13 +109,13 @@ def tilt_kernel(matrix, axis, angle, out):
         out[2, k] = c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2]
 
 
-@njit(cache=True)
+@kernel
 def leg_length(body, hip):
     """Thigh and shank of the leg whose hip joint that is, together [m]."""
     return -body.offsets[hip + 1, 1] - body.offsets[hip + 2, 1]
 
 
-@njit(cache=True)
+@kernel
 def soft_reach(distance, reach):
     """The length [m] of a leg asked for `distance`: itself while short, smoothly up to `reach`.
 
@@ -124,7 +124,7 @@ def soft_reach(distance, reach):
     return distance - SOFTNESS * math.log1p(math.exp((distance - reach) / SOFTNESS))
 
 
-@njit(cache=True)
+@kernel
 def heel_rise_kernel(hip, ball, ankle, axis, reach):
     """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
 
@@ -151,7 +151,7 @@ def heel_rise_kernel(hip, ball, ankle, axis, reach):
     return high
 
 
-@njit(cache=True)
+@kernel
 def _ankle_distance(hip, ball, ankle, axis, angle):
     c, s = math.cos(angle), math.sin(angle)
     x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
@@ -163,7 +163,7 @@ def _ankle_distance(hip, ball, ankle, axis, angle):
 
 
 
-@njit(cache=True)
+@kernel
 def toe_kernel(body, a, height, positions, orientations, local, work):
     """Bend the toe joint a + 1 up about the foot's lateral axis until the toe's end is not below the floor."""
     joint_kernel(body, a + 1, local, positions, orientations)
@@ -187,7 +187,7 @@ def toe_kernel(body, a, height, positions, orientations, local, work):
         localise_kernel(orientations, a, t, local)
 
 
-@njit(cache=True)
+@kernel
 def localise_kernel(orientations, parent, joint, local):
     """Write a joint's local rotation from its own and its parent's orientation."""
     for i in range(3):

@@ -76,7 +76,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("settled", "i4"),  # at rest, both feet in place
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame
-        ("standing", "i4", 4),  # 0 free, 1 locked, 2 let go until its label has fallen
+        ("standing", "i4", 4),  # 0 free, 1 locked, 2 let go until the foot is well into its swing
         ("lock", "f8", (4, 3)),  # where each point is locked, in the world
         ("offset", "f4", (4, 3)), ("offset_rate", "f4", (4, 3)),  # shown minus blended, in the world
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel

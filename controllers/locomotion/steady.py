@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 from .control_space import ControlSpace, thin
 from .cycles import screw
@@ -36,7 +36,7 @@ def steady_velocities(library: Library, weights: np.ndarray) -> np.ndarray:
     return screw(frames[:, 0], frames[:, 1], time[:, None])
 
 
-@njit(cache=True)
+@kernel
 def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velocities):
     joints = body.parents.shape[0]
     local, orientations = np.empty((joints, 3, 3), np.float32), np.empty((joints, 3, 3), np.float32)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 from ..body.springs import spring_kernel
 from .footing import place_feet
@@ -14,7 +14,7 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
 from .memory import RUN, WALK
 
 
-@njit(cache=True)
+@kernel
 def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, velocities, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
@@ -40,7 +40,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
         _to_world(m, fresh, root[n], local[n])
 
 
-@njit(cache=True)
+@kernel
 def _shape_command(m, wish, dt, settings):
     """The wish, smoothed: an exact critically damped spring, no faster than legs can push."""
     for i in range(3):
@@ -54,7 +54,7 @@ def _shape_command(m, wish, dt, settings):
         m.command[i], m.rate[i] = before + step, v
 
 
-@njit(cache=True)
+@kernel
 def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
     """Choose the family, locate the command in its space, low-pass the weights."""
     common = 0.25 < m.phase < 0.42 or 0.75 < m.phase < 0.92  # the same foot stands in both families
@@ -98,7 +98,7 @@ def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
             m.blend[d] = m.row[d] - fresh[d]
 
 
-@njit(cache=True)
+@kernel
 def _advance_phase(m, wish, legs, dt):
     """Run the phase on at dφ/dt = 1 / duration(φ); at rest it waits, and starts with a swing."""
     if m.settled:
@@ -111,7 +111,7 @@ def _advance_phase(m, wish, legs, dt):
     m.phase = (m.phase + dt / max(m.row[DURATION_AT], 0.3)) % 1.0
 
 
-@njit(cache=True)
+@kernel
 def _blend_series(m, settings, table, fresh, legs, dt):
     """The series of the weighted primitives, with inertialisation and breath, into `fresh` and m.row."""
     series_kernel(table, m.weights, m.phase, fresh)
@@ -133,7 +133,7 @@ def _blend_series(m, settings, table, fresh, legs, dt):
     fresh[HIPS_AT] += 0.3 * sway
 
 
-@njit(cache=True)
+@kernel
 def _foot_points(body, legs, positions, orientations, out):
     for foot in range(2):
         a = legs.hip[foot] + 2
@@ -145,7 +145,7 @@ def _foot_points(body, legs, positions, orientations, out):
             out[2 * foot + 1, i] = positions[a + 1, i]
 
 
-@njit(cache=True)
+@kernel
 def _move_root(m, settings, body, legs, positions, orientations, velocities, dt):
     """Move the ground frame so that the standing foot stays: the blend's own mean velocity plus
     what the standing points say beyond it, low-passed."""
@@ -183,7 +183,7 @@ def _move_root(m, settings, body, legs, positions, orientations, velocities, dt)
     m.ground[2] = math.pi - (math.pi - m.ground[2] - turn) % (2.0 * math.pi)
 
 
-@njit(cache=True)
+@kernel
 def _to_world(m, row, root, local):
     """Place the pose of the ground frame in the world."""
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 from scipy.spatial.transform import Rotation
 
 from ..body import Clip
@@ -143,7 +143,7 @@ def _frames(data: bytes, start: int, bones: list[tuple[str, int]], path) -> np.n
     fail(path, line, f"{what} needs {counts[bone]} values in its line")
 
 
-@njit(cache=True)
+@kernel
 def _fill(buffer, i, names, bounds, counts, out):
     """Fill `out`; return (frames, code, the byte that the code speaks of, which bone)."""
     n, frame = len(buffer), 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numba import njit
+from ..compiled import kernel
 
 _TENS = 10.0 ** np.arange(23)  # exactly representable: one division or product rounds only once
 LIMIT = 1e15
@@ -111,13 +111,13 @@ def table(data: bytes, start: int, columns: int, claimed: int, path) -> np.ndarr
     return out
 
 
-@njit(cache=True)
+@kernel
 def is_space(byte):
     """Space, tab, carriage return and their like, but not a line's end."""
     return byte == 32 or (9 <= byte <= 13 and byte != 10)
 
 
-@njit(cache=True)
+@kernel
 def parse_number(buffer, i):
     """(value, position behind it, whether it is a number within LIMIT) of the decimal at byte i.
 
@@ -171,7 +171,7 @@ def parse_number(buffer, i):
     return (-value if negative else value), i, ended and value <= LIMIT
 
 
-@njit(cache=True)
+@kernel
 def _rows(buffer, i, out):
     """Fill `out`; return (rows, code, the byte that the code speaks of, values read in its row)."""
     n, columns = len(buffer), out.shape[1]
@@ -199,7 +199,7 @@ def _rows(buffer, i, out):
         row += 1
 
 
-@njit(cache=True)
+@kernel
 def turns(table, columns, joints, axes, joint_count):
     """Local rotations (T, J, 4), quaternions x, y, z, w, from angles in a table of numbers.
 

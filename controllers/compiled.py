@@ -1,0 +1,46 @@
+"""Compiling hot loops with numba, with a cache that is never stale.
+
+Numba keys its cache of a function on that function's own file alone, so a change in a kernel that
+another file calls would go unseen. Here the cache's folder is named after all of our sources.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+from functools import lru_cache
+from pathlib import Path
+
+import numba
+from numba import njit
+
+_PACKAGE = Path(__file__).parent
+
+
+@lru_cache
+def cache_folder() -> Path:
+    """Where compiled kernels of exactly these sources are kept; older ones beside it are removed."""
+    stamp = hashlib.sha1(numba.__version__.encode())
+    for path in sorted(_PACKAGE.rglob("*.py")):
+        about = path.stat()
+        stamp.update(f"{path.relative_to(_PACKAGE)} {about.st_mtime_ns} {about.st_size}\n".encode())
+    home = _PACKAGE / "__pycache__"
+    if not os.access(home if home.exists() else _PACKAGE, os.W_OK):
+        home = Path.home() / ".cache" / "gambol"
+    folder = home / f"kernels-{stamp.hexdigest()[:12]}"
+    for old in home.glob("kernels-*"):
+        if old != folder:
+            shutil.rmtree(old, ignore_errors=True)
+    return folder
+
+
+def kernel(function=None, **options):
+    """Decorate a function for compilation by numba in no-Python mode, cached. Options are njit's."""
+    if function is None:
+        return lambda f: kernel(f, **options)
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+    try:
+        return njit(cache=True, **options)(function)
+    finally:
+        numba.config.CACHE_DIR = before
