@@ -1,5 +1,5 @@
 #include frame.glsl
-#if SHADOWED
+#if SUNLIT == 1
 #include shadow.glsl
 #endif
 in vec3 v_at;
@@ -25,9 +25,11 @@ void main() {
     tone *= 1.0 - 0.22 * lines(p * 5.0, w * 5.0, 0.04);
     tone *= 1.0 - 0.42 * lines(p, w, 0.018);
     vec3 base = tone * vec3(0.96, 1.0, 1.05);
-    vec3 light_in = SKY_LIGHT + SUN * sun.y;
-#if SHADOWED
-    light_in = SKY_LIGHT + SUN * (sun.y * sunlight(v_at));
+    vec3 light_in = SKY_LIGHT;
+#if SUNLIT == 1     // perhaps in somebody's shadow (0: certainly in a box's, 2: in the open)
+    light_in += SUN * (sun.y * sunlight(v_at));
+#elif SUNLIT == 2
+    light_in += SUN * sun.y;
 #endif
     colour = vec4(display(mix(base * light_in, HORIZON, fog(v_at))), 1.0);
 }

@@ -17,5 +17,7 @@ float sunlight(vec3 at) {
     for (int i = 0; i < TAPS; i++) lit += texture(shadow_map, vec3(p.xy + DISC[i] * shade.xy, p.z));
     lit *= 1.0 / float(TAPS);
 #endif
-    return lit;
+    // beyond the map nobody casts a shadow
+    vec3 off = abs(p - 0.5);
+    return max(off.x, max(off.y, off.z)) < 0.5 ? lit : 1.0;
 }

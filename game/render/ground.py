@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from controllers.body import end_positions
-from controllers.body.rotations import yaw
 
 from ..scene import Box, Figure
 from . import gl, skin
-from .view import LightBox, outlines, scale_of
+from .view import box_shadows, outlines, scale_of
 
 EXTENT = 250.0
 """How far the floor reaches [m]: beyond, it would be all fog."""
@@ -23,60 +22,61 @@ _GIRTH = np.concatenate([[0.17 if n in ("Hips", "Spine", "Spine1", "Spine2", "He
                           for n in skin.STANDARD.names], [0.09] * len(skin.STANDARD.end_parents)])
 
 
-def shaded_floor(box: LightBox | None, figures: Sequence[Figure], boxes: Sequence[Box], origin: np.ndarray
-                 ) -> np.ndarray:
-    """Triangles (K, 3) [m] of the floor on which shadows may fall; only these pay for looking.
+def shaded_floor(figures: Sequence[Figure], origin: np.ndarray) -> np.ndarray:
+    """Where on the floor figures' shadows may fall; only there are they looked for.
 
-    They may overlap, as all of them are drawn alike. Counted from `origin`.
+    Triangles (K, 3) [m] counted from `origin`. They may overlap, as all of them are drawn alike.
     """
-    if box is None:
+    if not figures:
         return np.zeros((0, 3))
-    found = []
-    if figures:
-        at = np.stack([f.positions for f in figures]).astype(float)
-        turn = np.stack([f.orientations for f in figures]).astype(float)
-        scale = scale_of(at, skin.REST, skin.STANDARD.parents).max()
-        tips = end_positions(skin.STANDARD, at, turn)
-        found.append(outlines(np.concatenate([at, tips], 1) - origin, _GIRTH * max(scale, 1.0) * 1.1, box.axes))
-    if boxes:
-        half = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        corners = np.stack([(half * b.size) @ yaw(b.heading).T + b.centre for b in boxes])
-        found.append(outlines(corners - origin, np.full(8, 0.02), box.axes))
-    fans = [rows[:, [0, i, i + 1]] for rows in found for i in range(1, rows.shape[1] - 1)]
-    return np.concatenate(fans).reshape(-1, 3)
+    at = np.stack([f.positions for f in figures]).astype(float)
+    tips = end_positions(skin.STANDARD, at, np.stack([f.orientations for f in figures]).astype(float))
+    scale = scale_of(at, skin.REST, skin.STANDARD.parents).max()
+    return _fans(outlines(np.concatenate([at, tips], 1) - origin, _GIRTH * max(scale, 1.0) * 1.1))
+
+
+def dark_floor(boxes: Sequence[Box], origin: np.ndarray) -> np.ndarray:
+    """The boxes' own shadows on the floor: triangles (K, 3) [m] counted from `origin`."""
+    return _fans(box_shadows(boxes) - [origin[0], 0.0, origin[2]])
+
+
+def _fans(rims):
+    """Triangles (K, 3) of convex outlines (N, S, 3)."""
+    sides = rims.shape[1]
+    return rims[:, [c for i in range(1, sides - 1) for c in (0, i, i + 1)]].reshape(-1, 3)
 
 
 class Ground:
     """Draws the floor and the sky; made once per context."""
 
     def __init__(self, ctx: Any, taps: int):
-        self.programs = [gl.program(ctx, "floor.vert", "floor.frag", TAPS=taps, SHADOWED=1),
-                         gl.program(ctx, "floor.vert", "floor.frag", TAPS=taps, SHADOWED=0),
-                         gl.program(ctx, "sky.vert", "sky.frag")]
-        self.ctx, self.stream = ctx, gl.Stream(ctx)
-        corners = EXTENT * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [-1, 0, -1], [1, 0, 1], [1, 0, -1]], "f4")
-        self.plain = ctx.buffer(corners.tobytes())
-        self.arrays = [ctx.vertex_array(program, [(buffer, "3f", "position")])
-                       for program, buffer in zip(self.programs, (self.stream.buffer, self.plain))]
-        self.sky = ctx.vertex_array(self.programs[2], [])
+        self.floors = [gl.program(ctx, "floor.vert", "floor.frag", TAPS=taps, SUNLIT=n) for n in range(3)]
+        self.above = gl.program(ctx, "sky.vert", "sky.frag")
+        self.ctx, self.streams = ctx, [gl.Stream(ctx), gl.Stream(ctx), gl.Stream(ctx)]
+        self.arrays = [ctx.vertex_array(program, [(stream.buffer, "3f", "position")])
+                       for program, stream in zip(self.floors, self.streams)]
+        self.plain = EXTENT * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [-1, 0, -1], [1, 0, 1], [1, 0, -1]], "f4")
+        self.sky = ctx.vertex_array(self.above, [])
 
-    def draw(self, shaded: np.ndarray, inverse: np.ndarray) -> None:
+    def draw(self, dark: np.ndarray, shaded: np.ndarray, inverse: np.ndarray) -> None:
         """Fill what the bodies leave of the picture.
 
-        shaded: (K, 3) triangles from `shaded_floor`. inverse: (4, 4) of the view-projection.
+        dark, shaded: triangles of the floor in a box's shadow, and where figures' shadows may be.
+        inverse: (4, 4) of the view-projection.
         """
-        if len(shaded):
-            self.stream.write(shaded.astype(np.float32).tobytes())
-            self.arrays[0].render(vertices=len(shaded))
-        # the plain floor lies a hair behind, and so loses wherever the other is
-        self.ctx.polygon_offset = 1.0, 4.0
-        self.arrays[1].render(vertices=6)
+        # each layer lies a hair behind the one before, and so loses wherever they overlap
+        for array, stream, triangles, behind in zip(self.arrays, self.streams, (dark, shaded, self.plain),
+                                                    ((0.0, -4.0), (0.0, 0.0), (1.0, 4.0))):
+            if len(triangles):
+                stream.write(triangles.astype(np.float32).tobytes())
+                self.ctx.polygon_offset = behind
+                array.render(vertices=len(triangles))
         self.ctx.polygon_offset = 0.0, 0.0
-        self.programs[2]["inverse_view_projection"].write(inverse.T.astype(np.float32).tobytes())
+        self.above["inverse_view_projection"].write(inverse.T.astype(np.float32).tobytes())
         self.sky.render(vertices=3)
 
     def release(self) -> None:
-        for part in (*self.arrays, self.sky, *self.programs, self.stream, self.plain):
+        for part in (*self.arrays, self.sky, *self.floors, self.above, *self.streams):
             part.release()
 
 

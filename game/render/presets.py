@@ -28,7 +28,7 @@ class Preset:
                 raise ValueError(f"shadow taps must be 1, 4 or 9, got {taps}")
 
 
-FULL = Preset("full", samples=4, shadow_size=2048, floor_taps=9, body_taps=4, softness=0.009, detail=(320.0, 90.0))
+FULL = Preset("full", samples=4, shadow_size=2048, floor_taps=9, body_taps=4, softness=0.009, detail=(320.0, 140.0))
 FAST = Preset("fast", samples=0, shadow_size=1024, floor_taps=1, body_taps=1, softness=0.0, detail=(600.0, 200.0))
 PRESETS = {p.name: p for p in (FULL, FAST)}
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..scene import Figure, Scene
 from . import gl, view
 from .figures import Figures, drawable
-from .ground import Boxes, Ground, shaded_floor
+from .ground import Boxes, Ground, dark_floor, shaded_floor
 from .overlays import OverlayPass
 from .presets import Preset, preset
 from .text import TextPass
@@ -57,7 +57,7 @@ class Renderer:
         eye = np.asarray(camera.eye, float) - origin
         figures = tuple(figure for figure in scene.figures if drawable(figure))
         shown = figures if scene.overlays.mesh else ()
-        box = view.light_box(camera, shown, scene.boxes, self.preset.shadow_size, origin=origin)
+        box = view.light_box(camera, shown, scene.boxes, self.preset.shadow_size, origin)
         projection = view.perspective(camera.fov, self.size[0] / self.size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
         self._frame(matrix, eye, box)
@@ -77,7 +77,8 @@ class Renderer:
         if scene.overlays.skeleton:
             self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
-        self.ground.draw(shaded_floor(box, shown, scene.boxes, origin), np.linalg.inv(matrix))
+        self.ground.draw(dark_floor(scene.boxes, origin), shaded_floor(shown if box else (), origin),
+                         np.linalg.inv(matrix))
         self._over(scene, figures, origin)
         self.target.resolve()
 

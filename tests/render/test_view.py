@@ -5,7 +5,7 @@ import pytest
 from poses import STAND, STRIDE, camera, figure
 
 from game.render import overlays, view
-from game.render.ground import shaded_floor
+from game.render.ground import dark_floor, shaded_floor
 from game.scene import Box, Camera, Overlays
 
 
@@ -31,7 +31,7 @@ def test_the_light_box_holds_the_figure_and_its_shadow():
     for posed in (figure(**STAND), figure(**STRIDE, at=(3.3, -7.7)), figure()):
         shot = camera(eye=posed.positions[0] + [1, 1, 4], target=posed.positions[0])
         box = view.light_box(shot, (posed,), (), 1024)
-        for points in (posed.positions, shaded_floor(box, (posed,), (), np.zeros(3))):
+        for points in (posed.positions, shaded_floor((posed,), np.zeros(3))):
             inside = seen(box.matrix, points)
             assert inside.min() > -0.1 and inside.max() < 1.1
         at = seen(box.matrix, posed.positions)
@@ -62,7 +62,7 @@ def test_no_light_box_where_nothing_near_casts_a_shadow():
 def test_the_outline_of_a_shadow_holds_the_shadow_and_little_more():
     posed = figure(**STAND)
     box = view.light_box(camera(), (posed,), (), 1024)
-    triangles = shaded_floor(box, (posed,), (), np.zeros(3)).reshape(-1, 3, 3)
+    triangles = shaded_floor((posed,), np.zeros(3)).reshape(-1, 3, 3)
     area = 0.5 * np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])[:, 1]
     assert (area > -1e-9).all() and area.sum() < 0.35 * box.size.prod() / view.SUN[1]
     shadow = posed.positions - view.SUN * (posed.positions[:, 1:2] / view.SUN[1])
@@ -101,7 +101,20 @@ def test_every_bone_runs_from_joint_to_joint():
     assert np.allclose(ends[:21], posed.positions[1:]) and len(rows) == 26
 
 
-def test_boxes_cast_shadows_too():
-    box = Box((0, 0.5, 0), (1, 1, 1), heading=0.5)
-    light = view.light_box(camera(), (), (box,), 1024)
-    assert len(shaded_floor(light, (), (box,), np.zeros(3))) == 30
+@pytest.mark.parametrize("box", [Box((0, 0.5, 0), (1, 1, 1)), Box((3, 1.2, -2), (0.2, 1.0, 9.0), 0.7),
+                                 Box((0, 0.05, 0), (2, 0.1, 2), -2.0)])
+def test_a_box_shadow_is_the_hull_of_its_corners_shadows(box):
+    rim = view.box_shadows((box,))[0]
+    corners = view.box_corners(box)
+    flat = corners - view.SUN * (corners[:, 1:2] / view.SUN[1])
+    side = np.cross(np.roll(rim, -1, 0) - rim, flat[:, None] - rim)[..., 1]
+    assert side.min() > -1e-9
+    assert all(np.linalg.norm(flat - corner, axis=1).min() < 1e-9 for corner in rim)
+
+
+def test_a_wall_does_not_make_shadows_coarse():
+    wall = Box((0, 1.5, -2), (14, 3, 0.2))
+    plain, walled = (view.light_box(camera(), (figure(),), boxes, 1024) for boxes in ((), (wall,)))
+    assert plain.texel == walled.texel
+    assert seen(walled.matrix, view.box_corners(wall))[:, 2].min() > 0.0
+    assert dark_floor((wall,), np.zeros(3)).shape == (12, 3)
