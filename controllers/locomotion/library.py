@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+import zlib
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -100,13 +101,24 @@ class Library:
                                     for start in ("bend_", "acceleration_")))
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
-        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
+                RuntimeError, zipfile.BadZipFile, zlib.error) as error:  # all that a damaged zip has in store
             raise LibraryError(f"{path}: not a gait library ({error})") from None
-        shape = (len(primitives), library.coefficients.shape[1], 3 * len(skeleton) + 8)
-        if library.coefficients.shape != shape or not np.isfinite(library.coefficients).all():
-            raise LibraryError(f"{path}: coefficients of shape {library.coefficients.shape} do not fit "
-                               f"{shape[0]} primitives on {len(skeleton)} joints")
+        library._check(path)
         return library
+
+    def _check(self, path: str | Path) -> None:
+        """LibraryError, naming the file, unless the arrays fit each other."""
+        count, joints = len(self.primitives), len(self.skeleton)
+        rows = self.coefficients.shape[1] if self.coefficients.ndim == 3 and self.coefficients.shape[1] % 2 else -1
+        wanted = {"coefficients": (count, rows, 3 * joints + 8), "velocities": (count, 3), "reference": (joints, 3, 3)}
+        for name, shape in wanted.items():
+            array = getattr(self, name)
+            if array.shape != shape or array.dtype.kind != "f" or not np.isfinite(array).all():
+                raise LibraryError(f"{path}: {name} of shape {array.shape} do not fit {count} primitives "
+                                   f"on {joints} joints, or are not finite numbers")
+        if sum(p.family == "rest" for p in self.primitives) != 1:
+            raise LibraryError(f"{path}: a library needs one primitive of rest")
 
 
 def reference_rotations(cycles: list[Cycle]) -> np.ndarray:

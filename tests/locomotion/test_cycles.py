@@ -1,0 +1,198 @@
+"""Screws, frames, warps and stances: the planar geometry that gait cycles are made with."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from controllers.body import human
+from controllers.body.human import CONTACT_HEIGHT
+from controllers.locomotion.cycles import (CONTACT_SPEED, EVENTS, RATE, Track, advance, compose, relative, screw,
+                                           stance, steady_frame, warp)
+
+law = settings(max_examples=40, deadline=None)
+BATCHES = ((), (1,), (3, 1, 2, 1))
+places = st.tuples(*[st.floats(-20, 20)] * 2, st.floats(-7, 7)).map(np.array)
+speeds = st.one_of(st.floats(-4, 4), st.floats(-1e-6, 1e-6), st.just(0.0))
+velocities = st.tuples(speeds, speeds, speeds).map(np.array)
+times = st.floats(0.05, 1.5)
+
+
+def matrix(ground):
+    """A ground frame as a homogeneous matrix over (x, z): columns left, forward, place."""
+    x, z, heading = ground
+    return np.array([[np.cos(heading), np.sin(heading), x], [-np.sin(heading), np.cos(heading), z], [0, 0, 1]])
+
+
+def twist(velocity):
+    v_f, omega, v_l = velocity
+    return np.array([[0, omega, v_l], [-omega, 0, v_f], [0, 0, 0]])
+
+
+@law
+@given(places, velocities, times)
+def test_advancing_is_the_exponential_of_the_twist(ground, velocity, time):
+    after = advance(ground, velocity, time)
+    np.testing.assert_allclose(matrix(after), matrix(ground) @ expm(twist(velocity) * time), atol=1e-9)
+    assert after[2] - ground[2] == pytest.approx(velocity[1] * time, abs=1e-12)  # headings are not wrapped
+
+
+@law
+@given(places, velocities, times)
+def test_a_screw_undoes_advancing(ground, velocity, time):
+    """Up to a whole turn, where every screw of that turn leads back to where it began."""
+    velocity = velocity * [1, min(1, 6 / max(abs(velocity[1] * time), 1e-9)), 1]
+    np.testing.assert_allclose(screw(ground, advance(ground, velocity, time), time), velocity, atol=1e-8)
+
+
+@law
+@given(places, places, times)
+def test_advancing_undoes_a_screw(first, last, time):
+    last = last * [1, 1, 0] + [0, 0, first[2] + np.clip(last[2] - first[2], -6, 6)]
+    np.testing.assert_allclose(advance(first, screw(first, last, time), time), last, atol=1e-8)
+
+
+@law
+@given(places, velocities, times, times)
+def test_advancing_twice_is_advancing_longer(ground, velocity, a, b):
+    np.testing.assert_allclose(advance(advance(ground, velocity, a), velocity, b),
+                               advance(ground, velocity, a + b), atol=1e-9)
+
+
+def test_straight_curve_and_side():
+    """Signs: heading 0 faces +Z, left is +X, and turning left brings +X to the front."""
+    at = np.zeros(3)
+    np.testing.assert_allclose(advance(at, np.array([2.0, 0, 0]), 1.0), [0, 2, 0], atol=1e-12)
+    np.testing.assert_allclose(advance(at, np.array([0, 0, 0.5]), 1.0), [0.5, 0, 0], atol=1e-12)
+    half_circle = advance(at, np.array([1.0, np.pi, 0]), 1.0)
+    np.testing.assert_allclose(half_circle, [2 / np.pi, 0, np.pi], atol=1e-12)
+
+
+@law
+@given(places, places)
+def test_composing_undoes_seeing_from(frame, ground):
+    np.testing.assert_allclose(compose(frame, relative(frame, ground)), ground, atol=1e-10)
+    np.testing.assert_allclose(relative(frame, compose(frame, ground)), ground, atol=1e-10)
+    np.testing.assert_allclose(relative(frame, frame), 0, atol=1e-12)
+    np.testing.assert_allclose(matrix(compose(frame, ground)), matrix(frame) @ matrix(ground), atol=1e-10)
+
+
+@law
+@given(places, places, velocities, times)
+def test_motion_looks_the_same_from_everywhere(frame, ground, velocity, time):
+    np.testing.assert_allclose(compose(frame, advance(ground, velocity, time)),
+                               advance(compose(frame, ground), velocity, time), atol=1e-9)
+
+
+@pytest.mark.parametrize("batch", BATCHES, ids=str)
+def test_any_batch_axes(batch):
+    rng = np.random.default_rng(0)
+    a, b, v = (rng.normal(size=batch + (3,)) for _ in range(3))
+    for result, one in ((screw(a, b, 0.7), lambda i: screw(a[i], b[i], 0.7)),
+                        (advance(a, v, np.full(batch, 0.7)), lambda i: advance(a[i], v[i], 0.7)),
+                        (relative(a, b), lambda i: relative(a[i], b[i])),
+                        (compose(a, b), lambda i: compose(a[i], b[i]))):
+        assert result.shape == batch + (3,)
+        for i in np.ndindex(batch):
+            np.testing.assert_allclose(result[i], one(i), atol=1e-14)
+
+
+@law
+@given(places, velocities, st.floats(0.4, 2.0), st.integers(0, 2**32 - 1))
+def test_a_steady_frame_sees_through_the_sway(first, velocity, period, seed):
+    """Shoulders that sway evenly about a steady walk: the walk comes back, and where it began."""
+    velocity = velocity * [1, 0.5, 0.3]
+    rng = np.random.default_rng(seed)
+    frames = 121
+    phase = np.linspace(0, 1, frames)
+    sway = sum(rng.normal(size=3) * np.array([0.02, 0.02, 0.08]) / k * np.sin(2 * np.pi * (k * phase[:, None] + rng.random(3)))
+               for k in (1, 2, 3))
+    sway -= sway[:-1].mean(0)
+    path = compose(advance(first, velocity, phase * period), sway)
+    found, speed = steady_frame(path, period)
+    np.testing.assert_allclose(speed, velocity, atol=1e-3)
+    np.testing.assert_allclose(found, first, atol=1e-3)
+
+
+gaps = st.lists(st.floats(0.05, 1), min_size=4, max_size=4).map(
+    lambda parts: np.concatenate([[0.0], np.cumsum(parts)[:3]]) / np.sum(parts))
+"""When four events fall in a cycle: from 0, in order, none at once."""
+
+
+@law
+@given(gaps, gaps, st.floats(-1, 0))
+def test_a_warp_puts_events_on_the_common_phase_and_never_turns_back(events, canonical, start):
+    time, _ = warp(events, canonical, canonical)
+    np.testing.assert_allclose(time, events, atol=1e-12)
+    phase = np.linspace(start, start + 1, 400)
+    time, slope = warp(events, canonical, phase)
+    assert np.all(np.diff(time) > 0) and np.all(slope >= 0)
+    np.testing.assert_allclose(time[-1], time[0] + 1, atol=1e-9)
+    np.testing.assert_allclose(warp(events, canonical, phase + 1)[1], slope, atol=1e-9)
+    h = 1e-6
+    ahead, behind = (warp(events, canonical, phase + d)[0] for d in (h, -h))
+    np.testing.assert_allclose((ahead - behind) / (2 * h), slope, atol=1e-3)
+
+
+@law
+@given(gaps)
+def test_events_already_in_place_are_not_warped(events):
+    phase = np.linspace(0, 1, 50)
+    time, slope = warp(events, events, phase)
+    np.testing.assert_allclose(time, phase, atol=1e-12)
+    np.testing.assert_allclose(slope, 1.0, atol=1e-9)
+
+
+def test_half_a_cycle_on_the_other_foot_does_the_same():
+    """The common phases are symmetric, so a mirrored cycle needs no other warp."""
+    for phases in EVENTS.values():
+        np.testing.assert_allclose(np.sort((phases + 0.5) % 1), phases, atol=1e-12)
+
+
+def stepping(mask, family):
+    """A track whose feet stand still on the floor where `mask` (T, 2) says, and else fly fast and high."""
+    points = np.zeros((len(mask), 4, 3))
+    stands = np.repeat(mask, 2, axis=1)
+    points[..., 1] = np.where(stands, CONTACT_HEIGHT, CONTACT_HEIGHT + 0.2)
+    return Track(None, np.zeros((len(mask), 3)), points, np.where(stands, 0.0, 2 * CONTACT_SPEED[family]),
+                 np.zeros((0, len(human()))))
+
+
+def lengths(mask):
+    """(value, length) of the inner runs of a mask."""
+    edges = np.flatnonzero(np.diff(mask)) + 1
+    return [(bool(mask[a]), b - a) for a, b in zip(edges[:-1], edges[1:])]
+
+
+@law
+@given(st.sampled_from(("walk", "run")), st.lists(st.integers(1, 40), min_size=2, max_size=20), st.booleans())
+def test_stances_have_no_chatter(family, runs, first):
+    """Gaps under 60 ms are closed, then contacts under 100 (running 60) ms dropped; longer ones stay."""
+    foot = np.concatenate([np.full(n, first ^ bool(i % 2)) for i, n in enumerate(runs)])
+    feet = stance(stepping(np.stack([foot, ~foot], 1), family), family)
+    least = {True: (0.06 if family == "run" else 0.10) * RATE - 1, False: 0.06 * RATE - 1}
+    for side in feet.T:
+        assert all(length >= least[value] for value, length in lengths(side))
+    if all(n >= 0.1 * RATE for n in runs):
+        np.testing.assert_array_equal(feet, np.stack([foot, ~foot], 1))
+
+
+def test_a_gap_goes_before_a_contact_does():
+    """Two short contacts with a shorter gap between them are one contact."""
+    foot = np.zeros(60, bool)
+    foot[20:29] = foot[32:41] = True
+    feet = stance(stepping(np.stack([foot, foot], 1), "walk"), "walk")
+    assert feet[20:41].all() and feet.sum() == 2 * 21
+
+
+def test_one_point_makes_a_foot_stand():
+    """The heel at the strike, the ball at the push-off; height or speed alone do not."""
+    mask = np.ones((60, 2), bool)
+    one = stepping(mask, "walk")
+    one.points[:, 1, 1] = 0.3  # ball up: the heel stands
+    one.speeds[:, 2] = 2.0  # heel fast: the ball stands
+    assert stance(one, "walk").all()
+    one.points[:, 0, 1] = 0.3
+    one.speeds[:, 3] = 2.0
+    assert not stance(one, "walk").any()
