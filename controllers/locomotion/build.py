@@ -97,14 +97,20 @@ def _same_skeleton(clip: Clip) -> tuple:
     return clip.skeleton.names, tuple(np.round(clip.skeleton.offsets[1:], 3).ravel())
 
 
-def build_library(folder: str | Path, recipe: str | Path | None = None,
-                  progress: Progress | None = None) -> tuple[Library, list[str]]:
-    """A library from a folder of BVH and ASF/AMC files, and notes on what was missing or unreadable.
+@dataclass(frozen=True, eq=False)
+class Collection:
+    """What a folder yields. rank, actor: (C,) of each cycle: its source's handicap, its folder."""
 
-    LibraryError if the folder yields no walk that spans the control space.
-    """
-    sources, provenance = read_recipe(recipe) if recipe else ([Source()], "")
-    tracks, notes = gather(Path(folder), sources, progress)
+    tracks: list[tuple[Track, Source, str]]
+    cycles: list[Cycle]
+    rank: np.ndarray
+    actor: np.ndarray
+    problems: list[str]
+
+
+def collect(folder: str | Path, sources: list[Source], progress: Progress | None = None) -> Collection:
+    """All gait cycles of a folder. LibraryError if there are no motion files in it."""
+    tracks, problems = gather(Path(folder), sources, progress)
     cycles, rank, actor = [], [], []
     for number, (one, source, parent) in enumerate(tracks):
         for family in source.families:
@@ -114,15 +120,26 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
                 actor.append(parent)
         if progress:
             progress("cutting cycles", number + 1, len(tracks))
-    walk, missing = select(cycles, np.array(rank), "walk")
-    run, _ = select(cycles, np.array(rank), "run")
+    return Collection(tracks, cycles, np.array(rank), np.array(actor), problems)
+
+
+def build_library(folder: str | Path, recipe: str | Path | None = None,
+                  progress: Progress | None = None) -> tuple[Library, list[str]]:
+    """A library from a folder of BVH and ASF/AMC files, and notes on what was missing or unreadable.
+
+    LibraryError if the folder yields no walk that spans the control space.
+    """
+    sources, provenance = read_recipe(recipe) if recipe else ([Source()], "")
+    found = collect(folder, sources, progress)
+    walk, missing = select(found.cycles, found.rank, "walk")
+    run, _ = select(found.cycles, found.rank, "run")
     if len(walk) < 8:
         raise LibraryError(f"{folder}: only {len(walk)} usable walking cycles; a library needs steady walking "
                            "in several directions (forward, turning, sideways)")
-    notes += [f"no cycle for {label}" for label in missing]
-    library = assemble(cycles, np.array(actor), walk + run,
-                       [t for t, source, _ in tracks if source.rest], provenance)
-    return settle(replace(library, accelerations=natural_accelerations(tracks)), progress), notes
+    stills = [one for one, source, _ in found.tracks if source.rest]
+    library = assemble(found.cycles, found.actor, walk + run, stills, provenance)
+    library = replace(library, accelerations=natural_accelerations(found.tracks))
+    return settle(library, progress), found.problems + [f"no cycle for {label}" for label in missing]
 
 
 def natural_accelerations(tracks: list[tuple[Track, Source, str]]) -> dict[str, np.ndarray]:

@@ -21,6 +21,8 @@ REACH = 0.6
 """A protocol target counts as met by a cycle nearer than this in scaled velocity."""
 SPACING = 0.45
 """Gap filling adds cycles until every usable one is this near to a primitive."""
+RIDGE = 0.1
+"""Regularisation of the local regression, in squared kernel widths: sparse corners stay plain means."""
 
 
 @dataclass(frozen=True)
@@ -108,17 +110,22 @@ def select(cycles: list[Cycle], rank: np.ndarray, family: str) -> tuple[list[Cho
     return chosen, missing
 
 
-def neighbours(cycles: list[Cycle], group: np.ndarray, seed: int, family: str, width: float = 0.2
+def neighbours(cycles: list[Cycle], group: np.ndarray, seed: int, family: str, width: float = 0.3
                ) -> tuple[np.ndarray, np.ndarray]:
     """Cycles near a chosen one, by the same actor, and their weights: what it is averaged with.
 
-    A single cycle carries one step's accidents; the kernel-weighted mean of its neighbours in
-    velocity halves them. group: (C,) actor of each cycle. width: of the kernel, scaled velocity.
+    A single cycle carries one step's accidents; its neighbours in velocity average them out. The
+    weights are those of a local linear regression evaluated at the chosen cycle's velocity: they
+    sum to one, and unlike a plain mean they do not pull the outermost cycles inwards. group: (C,)
+    actor of each cycle. width: of the kernel, scaled velocity.
     """
     limit = CLOSURE if family == "walk" else RUN_CLOSURE
     near = np.array([i for i, c in enumerate(cycles)
                      if c.family == family and group[i] == group[seed] and (c.closure < limit or i == seed)])
-    velocity = np.array([cycles[i].velocity for i in near]) / SCALE
-    weight = np.exp(-0.5 * np.sum((velocity - cycles[seed].velocity / SCALE) ** 2, -1) / width**2)
-    keep = weight > 0.05
-    return near[keep], weight[keep] / weight[keep].sum()
+    away = np.array([cycles[i].velocity - cycles[seed].velocity for i in near]) / SCALE
+    kernel = np.exp(-0.5 * np.sum(away**2, -1) / width**2)
+    near, away, kernel = near[kernel > 0.05], away[kernel > 0.05], kernel[kernel > 0.05]
+    kernel /= kernel.sum()
+    centre = kernel @ away
+    spread = (away - centre).T @ (kernel[:, None] * (away - centre)) + RIDGE * width**2 * np.eye(3)
+    return near, kernel * (1 - (away - centre) @ np.linalg.solve(spread, centre))
