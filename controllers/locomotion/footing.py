@@ -119,7 +119,7 @@ def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, wor
 
 @kernel
 def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, work):
-    """A leg too short lifts its heel about a standing ball; in the swing it only comes nearer."""
+    """A leg too short lifts its heel about a standing ball; any other foot only comes nearer."""
     a = hip + 2
     distance = math.sqrt((ankle[0] - positions[hip, 0]) ** 2 + (ankle[1] - positions[hip, 1]) ** 2
                          + (ankle[2] - positions[hip, 2]) ** 2)
@@ -138,7 +138,7 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, work):
             for k in range(3):
                 orientations[a, i, k] = turned[i, k]
                 ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
-    elif m.standing[2 * foot] != 1:
+    else:
         for i in range(3):
             ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * wanted / distance
 
