@@ -38,7 +38,7 @@ class Blender:
         return output
 
 
-@kernel
+@kernel(nogil=True)
 def _blend(body, space, table, count, correct, velocity, phase, simplex, positions, orientations, local):
     b, target, moved = np.empty(4), np.empty(3), np.empty(3)
     weights, row = np.zeros(count, np.float32), np.empty(COLUMNS, np.float32)

@@ -14,11 +14,12 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
 from .memory import RUN, WALK
 
 
-@kernel
+@kernel(nogil=True)
 def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, velocities, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
-    root: (N, 3) [m]. local: (N, J, 3, 3). Both float32, in the world.
+    root: (N, 3) [m]. local: (N, J, 3, 3). Both float32, in the world. Runs without the interpreter's
+    lock, so threads may step parts of a crowd side by side.
     """
     joints = local.shape[1]
     positions = np.empty((joints, 3), np.float32)
