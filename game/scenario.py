@@ -186,7 +186,7 @@ def shipped() -> tuple[str, ...]:
 def load(name: str | File) -> Scenario:
     """A scenario by the name of a shipped one, or from a file. ScenarioError says what is wrong."""
     file = File(name)
-    if file.suffix != ".toml" and not file.exists():
+    if file.suffix != ".toml" and not file.is_file():  # a folder of that name shadows nothing
         if str(name) not in shipped():
             raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}")
         file = asset("scenarios", f"{name}.toml")

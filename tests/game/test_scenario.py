@@ -78,6 +78,12 @@ def test_several_faults_are_several_lines(tmp_path):
     assert len(str(error.value).splitlines()) == 2
 
 
+def test_a_folder_of_a_scenarios_name_shadows_nothing(tmp_path, monkeypatch):
+    (tmp_path / "demo").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert load("demo").title
+
+
 def test_files_that_are_none(tmp_path):
     with pytest.raises(ScenarioError, match="no scenario is called 'nowhere'.*corridor"):
         load("nowhere")
