@@ -135,7 +135,8 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
     run, _ = select(found.cycles, found.rank, "run")
     if len(walk) < 8:
         raise LibraryError(f"{folder}: only {len(walk)} usable walking cycles; a library needs steady walking "
-                           "in several directions (forward, turning, sideways)")
+                           "in several directions (forward, turning, sideways)"
+                           + "".join(f"\n{problem}" for problem in found.problems))
     stills = [one for one, source, _ in found.tracks if source.rest]
     library = assemble(found.cycles, found.actor, walk + run, stills, provenance)
     library = replace(library, accelerations=natural_accelerations(found.tracks))
