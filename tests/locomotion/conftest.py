@@ -1,9 +1,12 @@
 """The shipped library and its controller, loaded once, and what they were played through."""
 
+import numpy as np
 import pytest
 
 from controllers.locomotion import Library, Locomotion
 from controllers.locomotion.controller import DEFAULT_LIBRARY
+
+from playing import play, whims
 
 
 @pytest.fixture(scope="session")
@@ -14,3 +17,9 @@ def library():
 @pytest.fixture(scope="session")
 def locomotion(library):
     return Locomotion(library)
+
+
+@pytest.fixture(scope="session")
+def whimsical(locomotion):
+    """Twelve characters for fifteen seconds, their wishes changed at a whim."""
+    return play(locomotion, whims(np.random.default_rng(5), 15, 12))

@@ -1,0 +1,111 @@
+"""The house rules: controllers know no window, importing opens nothing, and every room says what it is for."""
+
+import ast
+import importlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCES = sorted(p for wing in ("controllers", "game", "assets", "scripts", "tests") for p in (ROOT / wing).rglob("*.py")
+                 if "__pycache__" not in p.parts)
+MODULES = [p for p in SOURCES if p.relative_to(ROOT).parts[0] in ("controllers", "game")]
+
+
+def dotted(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def in_a_fresh_interpreter(code):
+    """What some code prints, line by line, in a new process without a display."""
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_controllers_know_no_window_and_no_game():
+    names = [dotted(p) for p in MODULES if dotted(p).startswith("controllers")]
+    loaded = in_a_fresh_interpreter(f"import importlib, sys\nfor n in {names}: importlib.import_module(n)\n"
+                                    "print(*sys.modules)")
+    assert {"controllers.locomotion.step", "controllers.mocap.bvh"} <= set(loaded)
+    foreign = {"moderngl", "glfw", "game", "imgui_bundle", "OpenGL", "av", "PIL", "matplotlib", "tkinter"}
+    assert not foreign & {name.split(".")[0] for name in loaded}
+
+
+def test_importing_the_game_opens_no_window_and_no_context():
+    """Whatever would open one is made to fail first."""
+    names = [dotted(p) for p in MODULES if dotted(p).startswith("game") and not dotted(p).endswith("__main__")]
+    assert names
+    in_a_fresh_interpreter(
+        "import importlib\n"
+        "def never(*a, **k): raise AssertionError('opened at import')\n"
+        "import glfw, moderngl\n"
+        "glfw.init = glfw.create_window = moderngl.create_context = moderngl.create_standalone_context = never\n"
+        f"for n in {names}: importlib.import_module(n)\n")
+
+
+def test_imports_run_one_way():
+    """Game → controllers, never back; told from the sources, whatever is imported when."""
+    for path in MODULES:
+        if dotted(path).startswith("controllers"):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                names = [a.name for a in node.names] if isinstance(node, ast.Import) else \
+                    [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
+                assert not any(n.split(".")[0] in ("game", "moderngl", "glfw") for n in names), path
+
+
+ABSOLUTE = re.compile(r"""["'\s(=](/(?:home|work|Users|root|tmp|mnt|opt|srv|data|var)/|[A-Z]:\\\\)""")
+
+
+def test_no_file_knows_a_machine():
+    """No absolute path of anybody's disk in sources, recipes and scenarios."""
+    files = [*SOURCES, *(ROOT / "assets").rglob("*.toml"), *(ROOT / "assets").rglob("*.md"), *ROOT.glob("*.toml"), *ROOT.glob("*.md")]
+    mine = Path(__file__).resolve()
+    found = [f"{path.relative_to(ROOT)}:{number}" for path in files if path.resolve() != mine
+             for number, line in enumerate(path.read_text("utf-8").splitlines(), 1)
+             if ABSOLUTE.search(line) or str(ROOT) in line]
+    assert not found
+
+
+def test_a_machines_path_would_be_seen():
+    for line in ('path = "/home/someone/x"', "open('/work/main')", r'p = "C:\\Users"', "see /Users/me/file"):
+        assert ABSOLUTE.search(line)
+    for line in ("# metres/second", "https://host/home/", "a / b", '"../shared/mocap"'):
+        assert not ABSOLUTE.search(line)
+
+
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_every_module_says_what_it_is_for(path):
+    tree = ast.parse(path.read_text("utf-8"))
+    assert ast.get_docstring(tree), "no docstring"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_public_functions_and_classes_say_what_they_do(path):
+    tree = ast.parse(path.read_text("utf-8"))
+    silent = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
+              and not node.name.startswith("_") and not ast.get_docstring(node)]
+    assert not silent
+
+
+ROOMS = [p for p in MODULES if p.name == "__init__.py"]
+
+
+@pytest.mark.parametrize("path", ROOMS, ids=dotted)
+def test_rooms_hand_out_what_they_promise(path):
+    room = importlib.import_module(dotted(path))
+    names = getattr(room, "__all__", ())
+    assert len(set(names)) == len(names)
+    assert all(hasattr(room, name) for name in names)
+
+
+@pytest.mark.parametrize("path", ROOMS, ids=dotted)
+def test_rooms_promise_what_they_import(path):
+    """Whatever an `__init__` imports from its own files is in `__all__`: nothing is handed out by accident."""
+    names = [alias.asname or alias.name for node in ast.parse(path.read_text("utf-8")).body
+             if isinstance(node, ast.ImportFrom) and node.level for alias in node.names]
+    assert set(names) <= set(getattr(importlib.import_module(dotted(path)), "__all__", ()))
