@@ -43,7 +43,6 @@ BINDINGS = (
     Binding("orbit", "turn the camera", ("LEFT_BUTTON", "RIGHT_BUTTON"), ("LB",), analog="mouse · right stick", held=True),
     Binding("zoom", "camera nearer or farther", analog="mouse wheel"),
     Binding("recentre", "camera behind the character", ("C",), ("RS",)),
-    Binding("jump", "jump (not yet)", ("SPACE",), ("A",)),
     Binding("pause", "pause", ("P",), ("START",)),
     Binding("step", "one step while paused", ("PERIOD",), ("DOWN",)),
     Binding("reset", "start again", ("R",), ("BACK",)),
