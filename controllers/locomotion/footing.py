@@ -41,6 +41,8 @@ PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
 RELEASE = 0.25
 """A lock further than this from where the blend wants the point lets go [m]."""
+RISE_HALFLIFE = 0.04
+"""A heel lifted for its leg's sake sinks back with this half-life once its ball is free [s]."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 CLOSE = 0.03
@@ -59,7 +61,7 @@ def place_feet(m, body, legs, clearance, positions, orientations, local, dt, wor
         hip = legs.hip[foot]
         _turn_foot(m, body, foot, hip + 2, legs.height, clearance, orientations, ankle[foot], dt, work)
         reach = (REACH - 0.001) * leg_length(body, hip)
-        _give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], work)
+        _give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], dt, work)
         flat = (positions[hip, 0] - ankle[foot, 0]) ** 2 + (positions[hip, 2] - ankle[foot, 2]) ** 2
         if flat < reach * reach:
             need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
@@ -118,29 +120,40 @@ def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, wor
 
 
 @kernel
-def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, work):
-    """A leg too short lifts its heel about a standing ball; any other foot only comes nearer."""
+def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work):
+    """A leg too short lifts its heel about a standing ball; any other foot only comes nearer.
+
+    A heel that was lifted when its ball left sinks back gently.
+    """
     a = hip + 2
-    distance = math.sqrt((ankle[0] - positions[hip, 0]) ** 2 + (ankle[1] - positions[hip, 1]) ** 2
-                         + (ankle[2] - positions[hip, 2]) ** 2)
-    wanted = soft_reach(distance, reach)
-    if m.standing[2 * foot + 1] == 1:
-        ball, axis, turned = work[0, 0], work[0, 1], work[1]
-        for i in range(3):
-            axis[i] = orientations[a, i, 0]
-            ball[i] = ankle[i]
-            for k in range(3):
-                ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
-        rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
-        tilt_kernel(orientations[a], axis, rise, turned)
-        for i in range(3):
-            ankle[i] = ball[i]
-            for k in range(3):
-                orientations[a, i, k] = turned[i, k]
-                ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
+    ball, axis, turned = work[0, 0], work[0, 1], work[1]
+    for i in range(3):
+        axis[i] = orientations[a, i, 0]
+        ball[i] = ankle[i]
+        for k in range(3):
+            ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
+    stands = m.standing[2 * foot + 1] == 1
+    if stands:
+        wanted = soft_reach(_distance(positions[hip], ankle), reach)
+        m.rise[foot] = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
     else:
+        m.rise[foot] *= 2.0 ** (-dt / RISE_HALFLIFE)
+    tilt_kernel(orientations[a], axis, m.rise[foot], turned)
+    for i in range(3):
+        ankle[i] = ball[i]
+        for k in range(3):
+            orientations[a, i, k] = turned[i, k]
+            ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
+    if not stands:
+        distance = _distance(positions[hip], ankle)
+        share = soft_reach(distance, reach) / distance
         for i in range(3):
-            ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * wanted / distance
+            ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * share
+
+
+@kernel
+def _distance(a, b):
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
 @kernel

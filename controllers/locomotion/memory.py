@@ -82,6 +82,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("swing", "f4", 2),  # how far each foot had to go when it left
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
+        ("rise", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
         ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis
         ("row", "f4", COLUMNS), ("row_rate", "f4", COLUMNS),  # the blended series and its rate
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch

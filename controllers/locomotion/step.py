@@ -8,8 +8,9 @@ import numpy as np
 from ..compiled import kernel
 
 from ..body.springs import spring_kernel
+from .control_space import SCALE
 from .footing import place_feet
-from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, pose_kernel,
+from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, pose_kernel,
                      query_kernel, series_kernel)
 from .memory import RUN, WALK
 
@@ -30,7 +31,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
     b, p, q = np.empty(4), np.empty(3), np.empty(3)
     for n in range(memory.shape[0]):
         m = memory[n]
-        _shape_command(m, wish[n], dt, settings)
+        _shape_command(m, wish[n], dt, settings, walk, run, p)
         _weigh(m, settings, dt, walk, run, table, fresh, b, p, q)
         _advance_phase(m, wish[n], legs, dt)
         _blend_series(m, settings, table, fresh, legs, dt)
@@ -42,11 +43,18 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
 
 
 @kernel
-def _shape_command(m, wish, dt, settings):
-    """The wish, smoothed: an exact critically damped spring, no faster than legs can push."""
+def _shape_command(m, wish, dt, settings, walk, run, p):
+    """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
+    no faster than legs can push."""
+    for i in range(3):
+        p[i] = wish[i] / SCALE[i]
+    if wish[0] > (settings.run_above if m.family == WALK else settings.walk_below):
+        clamp_kernel(run, p)
+    else:
+        clamp_kernel(walk, p)
     for i in range(3):
         before = m.command[i]
-        x, v = spring_kernel(before, m.rate[i], wish[i], settings.command_halflife, dt)
+        x, v = spring_kernel(before, m.rate[i], p[i] * SCALE[i], settings.command_halflife, dt)
         most = settings.acceleration if i != 1 else 4.0 * settings.acceleration
         step = x - before
         if abs(step) > most * dt:
