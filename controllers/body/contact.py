@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from ..compiled import kernel
 
+from ..compiled import kernel
 from .human import CONTACT_HEIGHT, HEEL, human
 from .skeleton import Skeleton
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
 from ..compiled import kernel
 
 EPSILON = 1e-5

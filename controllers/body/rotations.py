@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from ..compiled import kernel
 from scipy.spatial.transform import Rotation
+
+from ..compiled import kernel
 
 
 def exp(rotvec: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
 from ..compiled import kernel
 
 _LN2 = math.log(2.0)

@@ -7,8 +7,8 @@ series (eq. 5 and 6), pose the joints. The controller adds command shaping, root
 from __future__ import annotations
 
 import numpy as np
-from ..compiled import kernel
 
+from ..compiled import kernel
 from .kernel import COLUMNS, SCRATCH, pose_kernel, query_kernel, series_kernel
 
 

@@ -14,9 +14,7 @@ from ..body import Clip, human
 from ..body import rotations as rot
 from ..body.clip import mirror_index
 from ..body.human import CONTACT_HEIGHT
-from ..mocap import MotionFileError, load
-from ..mocap.calibration import calibrate
-from ..mocap.retarget import retarget
+from ..mocap import MotionFileError, calibrate, load, retarget
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, relative, track
 from .library import Library, LibraryError, Primitive, channels, reference_rotations

@@ -13,9 +13,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from ..compiled import kernel
 
 from ..body.springs import spring_kernel
+from ..compiled import kernel
 from .cycles import EVENTS
 from .kernel import LABELS_AT
 from .legs import (REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,

@@ -11,9 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from ..compiled import kernel
 
 from ..body.human import HEEL, human
+from ..compiled import kernel
 from .control_space import EDGES, INSIDE, SCALE, ControlSpace
 from .library import HIPS, Library
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import kernel
 
 from ..body.ik import two_bone_kernel
+from ..compiled import kernel
 from .kernel import joint_kernel
 
 REACH = 0.999

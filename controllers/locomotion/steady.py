@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from ..compiled import kernel
 
+from ..compiled import kernel
 from .control_space import ControlSpace, thin
 from .cycles import screw
 from .kernel import COLUMNS, SCRATCH, body_tables, pose_kernel, series_table

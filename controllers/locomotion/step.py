@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from ..compiled import kernel
 
 from ..body.springs import spring_kernel
+from ..compiled import kernel
 from .control_space import SCALE
 from .footing import place_feet
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, pose_kernel,

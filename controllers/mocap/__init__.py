@@ -3,8 +3,10 @@
 from .acclaim import AcclaimSkeleton, read_asf
 from .acclaim_motion import read_amc
 from .bvh import read_bvh, write_bvh
+from .calibration import Calibration, calibrate
 from .detect import Detected, detect, load, read, standardise
+from .retarget import retarget
 from .text import MotionFileError
 
-__all__ = ["AcclaimSkeleton", "Detected", "MotionFileError", "detect", "load", "read", "read_amc",
-           "read_asf", "read_bvh", "standardise", "write_bvh"]
+__all__ = ["AcclaimSkeleton", "Calibration", "Detected", "MotionFileError", "calibrate", "detect", "load", "read", "read_amc",
+           "read_asf", "read_bvh", "retarget", "standardise", "write_bvh"]

@@ -6,10 +6,10 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from ..compiled import kernel
 from scipy.spatial.transform import Rotation
 
 from ..body import Clip
+from ..compiled import kernel
 from .acclaim import AcclaimSkeleton, angle_unit, read_asf
 from .text import fail, is_space, line_at, parse_number, read_bytes, token_at, turns
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+
 from ..compiled import kernel
 
 _TENS = 10.0 ** np.arange(23)  # exactly representable: one division or product rounds only once
