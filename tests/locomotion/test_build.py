@@ -1,9 +1,11 @@
 """From motion to cycles to a library: what the controller plays, cut and built again, is what was played."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation, Slerp
 
 from controllers.body import human
 from controllers.body.clip import mirror_index
@@ -63,6 +65,27 @@ def test_a_cycle_is_what_it_says(recorded):
         assert cycle.labels[SAMPLES // 5, :2].max() < 0.5, "the left foot swings first"
         assert cycle.labels[SAMPLES // 5, 2:].max() > 0.5, "while the right one stands"
         assert np.abs(cycle.hips[:, 0]).max() < 0.1 and 0.8 < cycle.hips[:, 1].mean() < 1.05
+
+
+def test_events_are_aligned_whenever_they_fall(recorded):
+    """The same walk, hurrying through a part of each cycle and dawdling through the rest, has the same
+    poses at the same phases: other times of the events, and no other cycle."""
+    clip, _ = recorded["forward"]
+    even = cycles_of(clip, "walk")[0]
+    times = np.arange(len(clip)) / FPS
+    rhythm = times + 0.07 * even.period * np.sin(2 * np.pi * (times - even.start) / even.period)
+    rhythm = np.clip(rhythm, 0, times[-1])
+    turned = [Slerp(times, Rotation.from_quat(clip.quaternions[:, j]))(rhythm).as_quat() for j in range(len(clip.skeleton))]
+    root = np.stack([np.interp(rhythm, times, x) for x in clip.root.T], -1)
+    uneven = cycles_of(replace(clip, root=root, quaternions=np.stack(turned, 1)), "walk")[0]
+    assert np.abs(uneven.events - even.events).max() > 0.04
+    np.testing.assert_allclose(uneven.velocity, even.velocity, atol=0.03)
+
+    def apart(a, b):
+        return np.sqrt(np.mean(np.sum(log(a.swapaxes(-1, -2) @ b)**2, -1)))
+    shifted = np.roll(even.rotations, round(0.07 * SAMPLES), axis=0)
+    assert apart(uneven.rotations, even.rotations) < 0.35 * apart(shifted, even.rotations)
+    assert np.ptp(uneven.duration) > 0.2 * uneven.period, "and the series knows where it hurries"
 
 
 def test_standing_still_is_no_gait(locomotion):

@@ -223,15 +223,15 @@ def test_correction_inverts_the_bend(seed):
     points = points[thin(points, np.zeros(30, bool), 5.0)]
     assume(len(points) > 8)
     space = ControlSpace.build(points)
-    space = space.with_bend(rng.normal(size=(len(space.edges()[0]), 3)) * 0.02 * SCALE)
+    space = space.with_bend(rng.normal(size=(len(space.edges()[0]), 3)) * 0.01 * SCALE)
     query = space.anchor + 0.6 * (inner(points, rng, 20) - space.anchor)
 
     def error(correct):
         weights = space.weights(query, correct)
         nominal = weights @ points
         return np.abs((nominal + space.deviation(nominal) - query) / SCALE).max()
-    assert error(12) < 1e-4
-    assert error(12) < error(2) < error(0) or error(0) < 1e-6
+    assert error(20) < 1e-4
+    assert error(20) < error(2) < error(0) or error(0) < 1e-6
 
 
 @law

@@ -118,7 +118,6 @@ def test_no_wish_makes_a_broken_pose(locomotion, wishes, dt):
     assert np.abs(state.velocity).max() < 0.02, "and it can still stop"
 
 
-@pytest.mark.xfail(reason="the shaped command runs ahead beyond what the library holds, and has to come back", strict=False)
 @pytest.mark.parametrize("wish", ((0, 0, 17.0), (-15.0, 0, 0), (20.0, 0, 0)), ids=str)
 def test_too_much_is_forgotten_as_soon_as_enough(locomotion, wish):
     """Stopping takes no longer after an absurd wish than after one that could be met."""
@@ -435,7 +434,6 @@ def test_no_joint_jumps(locomotion, steadily, whimsical):
         assert step[at("Head")] < 0.03 and step[at("LeftHand")] < 0.08 and step[at("RightHand")] < 0.08
 
 
-@pytest.mark.xfail(reason="a heel that had risen to give a leg length drops at once when the ball is let go", strict=False)
 def test_letting_a_foot_go_is_seamless(whimsical):
     """No joint changes its speed by more than 5 m/s from one frame to the next."""
     apart = whimsical.positions - whimsical.positions[:, :, :1]
