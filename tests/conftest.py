@@ -1,8 +1,11 @@
 """Where the recorded motion lies that some tests read; it is no part of the project."""
 
+import os
 from pathlib import Path
 
 import pytest
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # threads cost small matrices far more than they save
 
 SHARED = Path(__file__).resolve().parents[1].parent / "shared"
 

@@ -111,8 +111,11 @@ class ControlSpace:
         return unique, number.reshape(-1, 6)
 
     def with_bend(self, bend: np.ndarray) -> ControlSpace:
-        """The same space, knowing the deviation (E, 3) measured at the middle of each of `edges()`."""
-        return replace(self, bend=np.asarray(bend, float)[self.edges()[1]])
+        """The same space, knowing the deviations (E, 5) of its edges: two points and what their
+        half-and-half blend has beyond the mean (v_f, ω, v_l). Edges not told of count as straight."""
+        known = {(int(i), int(j)): deviation for i, j, *deviation in bend}
+        pairs, number = self.edges()
+        return replace(self, bend=np.array([known.get((i, j), (0.0, 0.0, 0.0)) for i, j in pairs.tolist()])[number])
 
     def quality(self) -> np.ndarray:
         """How round each simplex is (S,): 1 regular, 0 flat (3 · inradius / circumradius)."""

@@ -70,7 +70,7 @@ class Locomotion:
         for name, value in (("ground", ground), ("breath", 0.0), ("drift", 0.0), ("velocity", 0.0),
                             ("row_rate", 0.0), ("standing", 0)):
             memory[name] = value
-        return replace(state, ground=ground, velocity=np.zeros(ground.shape), memory=memory)
+        return replace(state, ground=memory["ground"], velocity=np.zeros(ground.shape), memory=memory)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise).

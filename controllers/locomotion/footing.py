@@ -117,6 +117,12 @@ def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, wor
             from_ball -= orientations[a, i, k] * body.offsets[a + 1, k]
             from_heel -= orientations[a, i, k] * body.heel[k]
         ankle[i] = hang * from_ball + (1.0 - hang) * from_heel
+    # where heel and ball could not both be met, the other must not sink
+    under_heel, under_ball = ankle[1], ankle[1]
+    for k in range(3):
+        under_heel += orientations[a, 1, k] * body.heel[k]
+        under_ball += orientations[a, 1, k] * body.offsets[a + 1, k]
+    ankle[1] += max(0.0, height - min(under_heel, under_ball))
 
 
 @kernel

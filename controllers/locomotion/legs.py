@@ -165,26 +165,27 @@ def _ankle_distance(hip, ball, ankle, axis, angle):
 
 @kernel
 def toe_kernel(body, a, height, positions, orientations, local, work):
-    """Bend the toe joint a + 1 up about the foot's lateral axis until the toe's end is not below the floor."""
-    joint_kernel(body, a + 1, local, positions, orientations)
+    """Bend the toe joint a + 1 up about the foot's lateral axis until the toe's end is not below the floor.
+
+    Twice, since on a rolled foot the first turn falls short.
+    """
     t = a + 1
-    rise, size, length = 0.0, 0.0, 0.0
-    for k in range(3):
-        rise += orientations[t, 1, k] * body.toe_end[k]
-        length += body.toe_end[k] ** 2
-    length = math.sqrt(length)
-    low = (height - positions[t, 1]) / length
-    now = rise / length
-    if now < low:
-        angle = math.asin(min(max(low, -1.0), 1.0)) - math.asin(min(max(now, -1.0), 1.0))
-        axis, turned = work[0, 0], work[1]
-        for i in range(3):
-            axis[i] = orientations[a, i, 0]
-        tilt_kernel(orientations[t], axis, -angle, turned)
-        for i in range(3):
-            for k in range(3):
-                orientations[t, i, k] = turned[i, k]
-        localise_kernel(orientations, a, t, local)
+    joint_kernel(body, t, local, positions, orientations)
+    length = math.sqrt(body.toe_end[0] ** 2 + body.toe_end[1] ** 2 + body.toe_end[2] ** 2)
+    axis, turned = work[0, 0], work[1]
+    for i in range(3):
+        axis[i] = orientations[a, i, 0]
+    for _ in range(2):
+        now = (orientations[t, 1, 0] * body.toe_end[0] + orientations[t, 1, 1] * body.toe_end[1]
+               + orientations[t, 1, 2] * body.toe_end[2]) / length
+        least = (height - positions[t, 1]) / length
+        if now < least:
+            angle = math.asin(min(max(least, -1.0), 1.0)) - math.asin(min(max(now, -1.0), 1.0))
+            tilt_kernel(orientations[t], axis, -angle, turned)
+            for i in range(3):
+                for k in range(3):
+                    orientations[t, i, k] = turned[i, k]
+    localise_kernel(orientations, a, t, local)
 
 
 @kernel

@@ -52,7 +52,7 @@ class Library:
     rotation vectors of all joints relative to `reference` (the root's in the ground frame), the
     hips in the ground frame [m], the labels of left heel, left ball, right heel, right ball, and
     the duration dt/dφ [s]. reference: (J, 3, 3) mean local rotations over the library.
-    bends: by family, (E, 3) what its control space knows of blends along its edges.
+    bends: by family, (E, 5) what its control space knows of blends along its edges.
     accelerations: by family, (J,) [m/s²] the 99th percentile in the recordings, where known.
     """
 
@@ -117,6 +117,9 @@ class Library:
             if array.shape != shape or array.dtype.kind != "f" or not np.isfinite(array).all():
                 raise LibraryError(f"{path}: {name} of shape {array.shape} do not fit {count} primitives "
                                    f"on {joints} joints, or are not finite numbers")
+        for name, bend in self.bends.items():
+            if bend.ndim != 2 or bend.shape[1] != 5 or not np.isfinite(bend).all():
+                raise LibraryError(f"{path}: bend_{name} must be finite (E, 5), not {bend.shape}")
         if sum(p.family == "rest" for p in self.primitives) != 1:
             raise LibraryError(f"{path}: a library needs one primitive of rest")
 

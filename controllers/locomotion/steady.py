@@ -100,12 +100,14 @@ def _without_slivers(library: Library) -> Library:
 
 
 def measure_bend(library: Library, members: np.ndarray, space: ControlSpace) -> np.ndarray:
-    """What half-and-half blends along the space's edges (E,) have beyond the mean of their ends (E, 3)."""
+    """What half-and-half blends along the space's edges (E,) have beyond the mean of their ends (E, 5):
+    the two points and (v_f, ω, v_l), as `ControlSpace.with_bend` takes it."""
     pairs, _ = space.edges()
     weights = np.zeros((len(pairs), len(library.primitives)))
     for k in range(2):
         weights[np.arange(len(pairs)), members[pairs[:, k]]] = 0.5
-    return steady_velocities(library, weights) - 0.5 * space.points[pairs].sum(1)
+    bend = steady_velocities(library, weights) - 0.5 * space.points[pairs].sum(1)
+    return np.concatenate([pairs, bend], -1)
 
 
 def space_of(library: Library, family: str) -> ControlSpace:
