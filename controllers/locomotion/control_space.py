@@ -64,11 +64,11 @@ class ControlSpace:
             raise ValueError(f"{(~sound).sum()} simplices are flat: thin out the velocities")
         return space
 
-    def clamp(self, query: np.ndarray) -> np.ndarray:
-        """Queries (..., 3) brought into the hull along the ray to the anchor."""
-        origin = self.anchor / SCALE
+    def clamp(self, query: np.ndarray, towards: np.ndarray | None = None) -> np.ndarray:
+        """Queries (..., 3) brought into the hull along the ray to a point (..., 3) in it: the anchor."""
+        origin = (self.anchor if towards is None else towards) / SCALE
         ray = np.asarray(query, float) / SCALE - origin
-        room = -(self.hull[:, :3] @ origin + self.hull[:, 3])
+        room = np.maximum(-(origin @ self.hull[:, :3].T + self.hull[:, 3]), 1e-12)
         reach = np.max(ray @ self.hull[:, :3].T / room, axis=-1)
         return (origin + ray / np.maximum(reach / INSIDE, 1.0)[..., None]) * SCALE
 
@@ -92,7 +92,7 @@ class ControlSpace:
         target = self.clamp(query)
         moved = target
         for _ in range(correct):
-            moved = self.clamp(target - self.deviation(moved))
+            moved = self.clamp(target - self.deviation(moved), target)
         simplex, part = self.locate(moved)
         dense = np.zeros(simplex.shape + (len(self.points),))
         np.put_along_axis(dense, self.simplices[simplex], part, -1)

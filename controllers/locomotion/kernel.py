@@ -45,7 +45,6 @@ class Space(NamedTuple):
     neighbours: np.ndarray
     transform: np.ndarray
     hull: np.ndarray
-    room: np.ndarray
     anchor: np.ndarray
     bend: np.ndarray
 
@@ -64,11 +63,9 @@ def body_tables(library: Library) -> Body:
 
 def space_tables(space: ControlSpace, members: np.ndarray) -> Space:
     """The kernel's view of a control space over the library's primitives `members` (Q,)."""
-    origin = space.anchor / SCALE
-    room = -(space.hull[:, :3] @ origin + space.hull[:, 3])
     return Space(*(np.ascontiguousarray(a) for a in (
         members[space.simplices].astype(np.int64), space.neighbours, space.transform,
-        space.hull[:, :3].copy(), room, origin, space.bend / SCALE)))
+        space.hull, space.anchor / SCALE, space.bend / SCALE)))
 
 
 def series_table(library: Library) -> np.ndarray:
@@ -84,11 +81,12 @@ def series_table(library: Library) -> np.ndarray:
 
 
 @kernel
-def locate_kernel(space, p, start, b):
+def locate_kernel(space, p, towards, start, b):
     """The simplex around the scaled point `p` (3,), its barycentric weights into `b` (4,): eq. (4).
 
     Walks from simplex `start` across the face opposite to the most negative weight. A point
-    outside the hull is moved to it (`p` is rewritten) when the walk leaves the triangulation.
+    outside the hull is moved to it, `towards` (3,) a point inside (`p` is rewritten), when the walk
+    leaves the triangulation.
     """
     simplex = start
     for _ in range(2 * space.neighbours.shape[0]):
@@ -107,7 +105,7 @@ def locate_kernel(space, p, start, b):
             break
         if space.neighbours[simplex, worst] >= 0:
             simplex = space.neighbours[simplex, worst]
-        elif not clamp_kernel(space, p):
+        elif not clamp_kernel(space, p, towards):
             break
     total = 0.0
     for i in range(4):
@@ -119,18 +117,20 @@ def locate_kernel(space, p, start, b):
 
 
 @kernel
-def clamp_kernel(space, p):
-    """Move the scaled point `p` (3,) towards the anchor until it is in the hull; whether it was not."""
+def clamp_kernel(space, p, towards):
+    """Move the scaled point `p` (3,) towards an inner one until it is in the hull; whether it was not."""
     reach = 1.0
-    for h in range(space.room.shape[0]):
-        along = 0.0
+    for h in range(space.hull.shape[0]):
+        along, room = 0.0, -space.hull[h, 3]
         for i in range(3):
-            along += space.hull[h, i] * (p[i] - space.anchor[i])
-        if along > reach * space.room[h] * INSIDE:
-            reach = along / (space.room[h] * INSIDE)
+            along += space.hull[h, i] * (p[i] - towards[i])
+            room -= space.hull[h, i] * towards[i]
+        room = max(room, 1e-12) * INSIDE
+        if along > reach * room:
+            reach = along / room
     if reach > 1.0:
         for i in range(3):
-            p[i] = space.anchor[i] + (p[i] - space.anchor[i]) / reach
+            p[i] = towards[i] + (p[i] - towards[i]) / reach
     return reach > 1.0
 
 
@@ -143,7 +143,7 @@ def query_kernel(space, velocity, start, correct, b, target, moved):
     """
     for i in range(3):
         target[i] = velocity[i] / SCALE[i]
-    simplex = locate_kernel(space, target, start, b)
+    simplex = locate_kernel(space, target, space.anchor, start, b)
     for _ in range(correct):
         for i in range(3):
             moved[i] = target[i]
@@ -151,7 +151,7 @@ def query_kernel(space, velocity, start, correct, b, target, moved):
             pair = 4.0 * b[EDGES[e, 0]] * b[EDGES[e, 1]]
             for i in range(3):
                 moved[i] -= pair * space.bend[simplex, e, i]
-        simplex = locate_kernel(space, moved, simplex, b)
+        simplex = locate_kernel(space, moved, target, simplex, b)
     return simplex
 
 

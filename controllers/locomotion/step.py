@@ -49,9 +49,9 @@ def _shape_command(m, wish, dt, settings, walk, run, p):
     for i in range(3):
         p[i] = wish[i] / SCALE[i]
     if wish[0] > (settings.run_above if m.family == WALK else settings.walk_below):
-        clamp_kernel(run, p)
+        clamp_kernel(run, p, run.anchor)
     else:
-        clamp_kernel(walk, p)
+        clamp_kernel(walk, p, walk.anchor)
     for i in range(3):
         before = m.command[i]
         x, v = spring_kernel(before, m.rate[i], p[i] * SCALE[i], settings.command_halflife, dt)

@@ -78,7 +78,7 @@ def test_searching_agrees_with_looking_everywhere(locomotion, seed, far, family)
     for velocity in space.anchor + velocities(rng, 10, far):
         part, weights = np.empty(4), np.zeros(len(space.points))
         start = int(rng.integers(len(space.simplices)))
-        simplex = locate_kernel(tables, velocity / SCALE, start, part)
+        simplex = locate_kernel(tables, velocity / SCALE, tables.anchor, start, part)
         weights[space.simplices[simplex]] = part
         np.testing.assert_allclose(weights, space.weights(velocity, correct=0), atol=1e-5)
 
@@ -92,7 +92,8 @@ def test_corrected_queries_agree(locomotion, seed, correct):
         part, weights = np.empty(4), np.zeros(len(space.points))
         simplex = query_kernel(tables, velocity, 0, correct, part, np.empty(3), np.empty(3))
         weights[space.simplices[simplex]] = part
-        np.testing.assert_allclose(weights, space.weights(velocity, correct), atol=1e-5)
+        # both keep a millionth off the hull, times the steepest weight
+        np.testing.assert_allclose(weights, space.weights(velocity, correct), atol=1e-4)
 
 
 def test_any_numbering_of_the_primitives(locomotion):
@@ -148,6 +149,6 @@ def test_a_space_of_a_single_simplex():
     tables = space_tables(space, np.arange(4))
     for p in np.random.default_rng(0).normal(size=(20, 3)) * 2:
         part, weights = np.empty(4), np.zeros(4)
-        simplex = locate_kernel(tables, p.copy(), 0, part)
+        simplex = locate_kernel(tables, p.copy(), tables.anchor, 0, part)
         weights[space.simplices[simplex]] = part
         np.testing.assert_allclose(weights, space.weights(p * SCALE, correct=0), atol=1e-5)
