@@ -18,7 +18,7 @@ from ..body.springs import spring_kernel
 from ..compiled import kernel
 from .cycles import EVENTS
 from .kernel import LABELS_AT
-from .legs import (REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
+from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
@@ -41,8 +41,10 @@ PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
 RELEASE = 0.25
 """A lock further than this from where the blend wants the point lets go [m]."""
+RISE_RATE = 8.0
+"""A heel rises for its leg's sake no faster than this [rad/s] …"""
 RISE_HALFLIFE = 0.04
-"""A heel lifted for its leg's sake sinks back with this half-life once its ball is free [s]."""
+"""… and sinks back with this half-life once its ball is free [s]."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 CLOSE = 0.03
@@ -141,7 +143,10 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
     stands = m.standing[2 * foot + 1] == 1
     if stands:
         wanted = soft_reach(_distance(positions[hip], ankle), reach)
-        m.rise[foot] = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
+        rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
+        if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
+            m.standing[2 * foot], m.standing[2 * foot + 1] = 2, 2
+        m.rise[foot] = min(rise, m.rise[foot] + RISE_RATE * dt)
     else:
         m.rise[foot] *= 2.0 ** (-dt / RISE_HALFLIFE)
     tilt_kernel(orientations[a], axis, m.rise[foot], turned)
