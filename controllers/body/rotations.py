@@ -1,8 +1,7 @@
 """Rotations: the exponential chart, headings, and the alignments that motion data needs.
 
-`scipy.spatial.transform.Rotation` does the general work (it takes any batch shape); here stand
-only the few pieces the rest of the library shares. The scalar kernels at the end are compiled
-by numba and are what the per-frame loops call; they are tested against scipy.
+`scipy.spatial.transform.Rotation` does the general work (it takes any batch shape);
+here stand only the few pieces the rest of the library shares.
 """
 
 from __future__ import annotations
@@ -11,8 +10,6 @@ import math
 
 import numpy as np
 from scipy.spatial.transform import Rotation
-
-from ..compiled import kernel
 
 
 def exp(rotvec: np.ndarray) -> np.ndarray:
@@ -81,56 +78,3 @@ def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     axis = np.where(sine > 1e-9, cross / np.maximum(sine, 1e-12),
                     spare / np.linalg.norm(spare, axis=-1, keepdims=True))
     return exp(axis * np.arctan2(sine, dot))
-
-
-@kernel(fastmath=True)
-def exp_kernel(x, y, z, out):
-    """Write exp of the rotation vector (x, y, z) [rad] into `out` (3, 3); any float type."""
-    angle2 = x * x + y * y + z * z
-    if angle2 < 1e-6:  # Taylor: below this the quotients lose half their digits in float32
-        a = 1.0 - angle2 / 6.0
-        b = 0.5 - angle2 / 24.0
-    else:
-        angle = math.sqrt(angle2)
-        a = math.sin(angle) / angle
-        b = (1.0 - math.cos(angle)) / angle2
-    out[0, 0] = 1.0 - b * (y * y + z * z)
-    out[0, 1] = b * x * y - a * z
-    out[0, 2] = b * x * z + a * y
-    out[1, 0] = b * x * y + a * z
-    out[1, 1] = 1.0 - b * (x * x + z * z)
-    out[1, 2] = b * y * z - a * x
-    out[2, 0] = b * x * z - a * y
-    out[2, 1] = b * y * z + a * x
-    out[2, 2] = 1.0 - b * (x * x + y * y)
-
-
-@kernel(fastmath=True)
-def log_kernel(r, out):
-    """Write the rotation vector of matrix `r` (3, 3) into `out` (3,); |v| ≤ π, any float type."""
-    x, y, z = r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]
-    sine = 0.5 * math.sqrt(x * x + y * y + z * z)
-    cosine = 0.5 * (r[0, 0] + r[1, 1] + r[2, 2] - 1.0)
-    angle = math.atan2(sine, cosine)
-    if cosine > -0.5 and sine > 1e-4:
-        scale = 0.5 * angle / sine
-        out[0], out[1], out[2] = scale * x, scale * y, scale * z
-    elif cosine > 0.0:
-        out[0], out[1], out[2] = 0.5 * x, 0.5 * y, 0.5 * z
-    else:  # near π the antisymmetric part vanishes; the symmetric one, less cos·I, is (1 − cos)·axis·axisᵀ
-        k = 0
-        if r[1, 1] > r[0, 0]:
-            k = 1
-        if r[2, 2] > r[k, k]:
-            k = 2
-        a, b, c = 0.5 * (r[0, k] + r[k, 0]), 0.5 * (r[1, k] + r[k, 1]), 0.5 * (r[2, k] + r[k, 2])
-        if k == 0:
-            a -= cosine
-        elif k == 1:
-            b -= cosine
-        else:
-            c -= cosine
-        scale = angle / math.sqrt(a * a + b * b + c * c)
-        if a * x + b * y + c * z < 0.0:
-            scale = -scale
-        out[0], out[1], out[2] = scale * a, scale * b, scale * c

@@ -66,12 +66,6 @@ def cubic(x: np.ndarray, v: np.ndarray, duration: float, time: np.ndarray) -> tu
 
 
 @kernel
-def damp_kernel(x, goal, halflife, dt):
-    """`damp` of one number."""
-    return goal + (x - goal) * math.exp(-_LN2 * dt / (halflife + _EPSILON))
-
-
-@kernel
 def spring_kernel(x, v, goal, halflife, dt):
     """`spring` of one number: its position and velocity."""
     y = 2.0 * _LN2 / (halflife + _EPSILON)
