@@ -1,7 +1,7 @@
 """Dampers and springs that are exact for any step: half a step twice is the same as a whole one.
 
 Their stiffness is said as a half-life [s]: how long until half of what is left is gone. A
-half-life of 0 jumps to the goal. READINGS F; the critically damped spring's own rate is
+half-life of 0 jumps to the goal. The critically damped spring's own rate is
 y = 2·ln 2 / half-life, so that spring and damper of one half-life take about equally long.
 Arrays of any shape; the scalar kernels do the same inside compiled loops.
 """
