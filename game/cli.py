@@ -164,9 +164,9 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
         tasks = {}
 
         def progress(what: str, done: int, total: int) -> None:
-            task = tasks.setdefault(what, None) or bar.add_task(what)
-            tasks[what] = task
-            bar.update(task, completed=done, total=total)
+            if what not in tasks:
+                tasks[what] = bar.add_task(what)
+            bar.update(tasks[what], completed=done, total=total)
 
         made, notes = build_library(folder, recipe, progress=progress)
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -51,7 +51,8 @@ def main() -> None:
         tasks = {}
 
         def progress(what, done, total):
-            tasks.setdefault(what, bar.add_task(what))
+            if what not in tasks:
+                tasks[what] = bar.add_task(what)
             bar.update(tasks[what], completed=done, total=total)
         found = collect(arguments.folder, sources, progress)
     chosen, _ = select(found.cycles, found.rank, "walk")

@@ -39,6 +39,20 @@ class Source:
     rank: float = 0.0
     rest: bool = True
 
+    def check(self, number: int) -> None:
+        """ValueError, naming source and field, unless every field is of its kind."""
+        for field, sound, wanted in (
+                ("glob", isinstance(self.glob, str) and self.glob and not Path(self.glob).is_absolute(),
+                 "a pattern below the folder"),
+                ("families", isinstance(self.families, tuple) and self.families
+                 and set(self.families) <= set(EVENTS), 'a list of "walk" and "run"'),
+                ("skip", isinstance(self.skip, tuple) and all(isinstance(s, str) for s in self.skip),
+                 "a list of patterns"),
+                ("rank", isinstance(self.rank, (int, float)) and 0 <= self.rank < 10, "a number from 0 to 10"),
+                ("rest", isinstance(self.rest, bool), "true or false")):
+            if not sound:
+                raise ValueError(f"source {number}, {field}: needs {wanted}, got {getattr(self, field)!r}")
+
 
 def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
@@ -46,7 +60,9 @@ def read_recipe(path: str | Path) -> tuple[list[Source], str]:
         recipe = tomllib.loads(Path(path).read_text("utf-8"))
         sources = [Source(**{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()})
                    for s in recipe.get("source", [])]
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError) as error:
+        for number, source in enumerate(sources, 1):
+            source.check(number)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError, ValueError) as error:
         raise LibraryError(f"{path}: not a library recipe: {error}") from None
     if not sources:
         raise LibraryError(f"{path}: a recipe needs at least one [[source]]")
@@ -71,6 +87,9 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
     for (number, parent), paths in found.items():
         groups: dict[tuple, list[Clip]] = {}
         for path in paths:
+            done += 1
+            if progress:
+                progress("reading", done, total)
             try:
                 clip = load(path)
                 if len(clip) * clip.frame_time > 0.6:
@@ -85,9 +104,6 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
                 continue
             for clip in clips:
                 tracks.append((track(retarget(clip, calibration=calibration)), sources[number], parent))
-                done += 1
-                if progress:
-                    progress("reading", done, total)
     return tracks, problems
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import ConvexHull, Delaunay
+from scipy.spatial import ConvexHull, Delaunay, QhullError
 
 SCALE = np.array([0.54, 0.99, 0.25])
 """Spread of (v_f, ω, v_l) in human walking [m/s, rad/s, m/s]: one unit of distance in the space."""
@@ -46,16 +46,26 @@ class ControlSpace:
 
     @staticmethod
     def build(points: np.ndarray, anchor: np.ndarray | None = None) -> ControlSpace:
-        """Triangulate velocities (Q, 3). ValueError if they do not span the space."""
+        """Triangulate velocities (Q, 3). ValueError if they do not span the space.
+
+        anchor: (3,) the mean by default; one that is not well inside is moved towards the mean.
+        """
         scaled = np.asarray(points, float) / SCALE
         if len(scaled) < 4 or np.linalg.matrix_rank(scaled - scaled[0], tol=1e-3) < 3:
             raise ValueError("the velocities must span all three of v_f, ω and v_l: "
                              f"{len(scaled)} points given")
-        mesh, hull = Delaunay(scaled), ConvexHull(scaled)
+        try:
+            mesh, hull = Delaunay(scaled), ConvexHull(scaled)
+        except QhullError as error:
+            raise ValueError(f"the velocities can't be triangulated: {str(error).splitlines()[0]}") from None
         sound = np.isfinite(mesh.transform).all((1, 2))
-        inner = scaled.mean(0) * SCALE if anchor is None else np.asarray(anchor, float)
-        if not np.all(hull.equations @ np.append(inner / SCALE, 1.0) < 0):
-            raise ValueError(f"the anchor {inner} lies outside the velocities' hull")
+        middle = scaled.mean(0)
+        inner = middle if anchor is None else np.asarray(anchor, float) / SCALE
+        for _ in range(40):  # an anchor on the hull's rim (rest, where nobody walks backward) moves inwards
+            if np.all(hull.equations @ np.append(inner, 1.0) < -1e-3):
+                break
+            inner = inner + 0.1 * (middle - inner)
+        inner = inner * SCALE
         space = ControlSpace(np.asarray(points, float), inner, mesh.simplices.astype(np.int64),
                              mesh.neighbors.astype(np.int64), mesh.transform,
                              np.unique(np.round(hull.equations, 12), axis=0),
@@ -144,7 +154,10 @@ def thin(points: np.ndarray, keep: np.ndarray, steepest: float = STEEPEST) -> np
     """
     left = np.arange(len(points))
     while len(left) > 5:
-        mesh = Delaunay(points[left] / SCALE)
+        try:
+            mesh = Delaunay(points[left] / SCALE)
+        except QhullError:  # flat altogether: whoever triangulates it says so
+            break
         rows = np.concatenate([mesh.transform[:, :3], -mesh.transform[:, :3].sum(1, keepdims=True)], 1)
         slope = np.nan_to_num(np.linalg.norm(rows, axis=-1), nan=np.inf)
         slope[keep[left][mesh.simplices]] = 0.0

@@ -32,7 +32,7 @@ class Locomotion:
         self.settings = settings
         self.walk = space_of(library, "walk")
         runs = library.family("run")
-        self.run = space_of(library, "run") if len(runs) >= 5 else None
+        self.run = space_of(library, "run")
         if self.run is None:  # no runs recorded: walking serves at any speed
             self.settings = settings._replace(run_above=np.inf)
         self.tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
@@ -76,7 +76,8 @@ class Locomotion:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise).
 
         intent.velocity broadcasts against the state's batch axes. A wish that is not finite counts
-        as no wish; one beyond what the library holds is walked as fast as it can on the same arc.
+        as no wish. One beyond what the library holds is walked slower on the same arc; a run
+        moves towards the mean run.
         """
         if not 0.0 < dt <= 0.1:
             raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")

@@ -76,10 +76,19 @@ class Library:
         return next(i for i, p in enumerate(self.primitives) if p.family == "rest")
 
     def save(self, path: str | Path) -> None:
-        """Write a compressed .npz; reading it back gives the same library."""
+        """Write a compressed .npz under exactly that name; reading it back gives the same library.
+
+        It appears whole or not at all: what stood there before stays until the new one is complete.
+        """
         about = {"format": 1, "height": float(self.skeleton.offsets[0, 1]),
                  "primitives": [asdict(p) for p in self.primitives], "provenance": self.provenance}
-        np.savez_compressed(path, velocities=self.velocities, reference=self.reference,
+        part = Path(f"{path}.part")
+        with open(part, "wb") as file:
+            self._write(file, about)
+        part.replace(path)
+
+    def _write(self, file, about: dict) -> None:
+        np.savez_compressed(file, velocities=self.velocities, reference=self.reference,
                             coefficients=self.coefficients.astype(np.float32),
                             **{f"bend_{family}": bend for family, bend in self.bends.items()},
                             **{f"acceleration_{family}": a for family, a in self.accelerations.items()},

@@ -15,7 +15,7 @@ from ..compiled import kernel
 from .control_space import ControlSpace, thin
 from .cycles import screw
 from .kernel import COLUMNS, SCRATCH, body_tables, pose_kernel, series_table
-from .library import Library
+from .library import Library, LibraryError
 from .memory import Settings, legs_of, memory_dtype
 from .step import _advance_phase, _blend_series, _move_root
 
@@ -78,9 +78,9 @@ def settle(library: Library, progress=None) -> Library:
         progress("measuring velocities", 1, 2)
     bends = {}
     for family in ("walk", "run"):
-        members = library.family(family)
-        if len(members) >= 5:
-            bends[family] = measure_bend(library, members, space_of(library, family))
+        space = space_of(library, family)
+        if space is not None:
+            bends[family] = measure_bend(library, library.family(family), space)
     if progress:
         progress("measuring velocities", 2, 2)
     return replace(library, bends=bends)
@@ -110,10 +110,19 @@ def measure_bend(library: Library, members: np.ndarray, space: ControlSpace) -> 
     return np.concatenate([pairs, bend], -1)
 
 
-def space_of(library: Library, family: str) -> ControlSpace:
-    """The control space of one family, anchored at rest for walking, at the mean for running."""
+def space_of(library: Library, family: str) -> ControlSpace | None:
+    """The control space of one family, anchored at rest for walking, at the mean for running.
+
+    None for runs too few or too alike to span one: walking then serves at any speed. LibraryError
+    if that is so of walking.
+    """
     members = library.family(family)
-    anchor = np.zeros(3) if family == "walk" else None
-    space = ControlSpace.build(library.velocities[members], anchor)
+    try:
+        space = ControlSpace.build(library.velocities[members], np.zeros(3) if family == "walk" else None)
+    except ValueError as error:
+        if family == "run":
+            return None
+        raise LibraryError(f"this library can't be walked: {error}; it takes steady walking forward, turning to "
+                           "both sides and sideways") from None
     bend = library.bends.get(family)
     return space if bend is None else space.with_bend(bend)

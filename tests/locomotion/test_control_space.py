@@ -274,6 +274,9 @@ def test_velocities_that_do_not_span_the_space_are_refused(points):
         ControlSpace.build(points)
 
 
-def test_an_anchor_outside_is_refused():
-    with pytest.raises(ValueError, match="anchor"):
-        ControlSpace.build(TETRAHEDRON * SCALE, np.array([2.0, 2, 2]))
+def test_an_anchor_not_well_inside_moves_in():
+    points, _ = cloud(4)
+    for anchor in (points[0], 10 * points[0]):
+        space = ControlSpace.build(points, anchor)
+        assert space.inside(space.anchor)
+        assert np.all(space.inside(space.clamp(5 * points)))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from controllers.body import Pose, end_positions, forward_kinematics
 from controllers.body.contact import contact_height, detect_contacts, foot_drift
 from controllers.contract import CharacterState, Intent
-from controllers.locomotion import Library, Locomotion, Settings
+from controllers.locomotion import Library, LibraryError, Locomotion, Settings
 from controllers.locomotion.cycles import compose
 from playing import FPS, hold, mean_velocity, play, whims
 
@@ -438,3 +438,19 @@ def test_letting_a_foot_go_is_seamless(whimsical):
     """No joint changes its speed by more than 5 m/s from one frame to the next."""
     apart = whimsical.positions - whimsical.positions[:, :, :1]
     assert np.linalg.norm(np.diff(apart, 2, axis=0), axis=-1).max() * FPS < 5.0
+
+
+def test_nobody_has_to_have_walked_backward(locomotion, tmp_path):
+    """Without backward walking rest lies on the hull's rim: it still walks, and what is missing stays still."""
+    library = locomotion.library
+    keep = [i for i, v in enumerate(library.velocities) if v[0] >= 0 and library.primitives[i].family != "run"]
+    forward = replace(library, primitives=tuple(library.primitives[i] for i in keep), bends={},
+                      velocities=library.velocities[keep], coefficients=library.coefficients[keep])
+    forward.save(tmp_path / "forward")  # and the name is kept as it was given
+    walker = Locomotion.load(tmp_path / "forward")
+    motion = play(walker, np.concatenate([hold(4, (1.0, 0, 0)), hold(3, (-1.0, 0, 0))]))
+    assert np.mean([s.velocity[..., 0] for s in motion.states[120:240]]) == pytest.approx(1.0, abs=0.1)
+    assert np.abs(motion.states[-1].velocity).max() < 0.1
+    sideways = replace(forward, velocities=forward.velocities * [1.0, 1.0, 0.0])
+    with pytest.raises(LibraryError, match="can't be walked"):
+        Locomotion(sideways)
