@@ -203,7 +203,7 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
         try:
             draw(made, picture)
         except ImportError:
-            raise Mistake("--picture needs matplotlib: pip install gambol[report]") from None
+            raise Mistake('--picture needs matplotlib: .venv/bin/pip install -e ".[report]"') from None
         _say(str(picture))
 
 

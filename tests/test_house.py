@@ -72,7 +72,7 @@ def test_no_file_knows_a_machine():
 
 
 def test_a_machines_path_would_be_seen():
-    for line in ('path = "/home/someone/x"', "open('/work/main')", r'p = "C:\\Users"', "see /Users/me/file"):
+    for line in ('path = "/home/someone/x"', "open('/srv/somewhere')", r'p = "C:\\Users"', "see /Users/me/file"):
         assert ABSOLUTE.search(line)
     for line in ("# metres/second", "https://host/home/", "a / b", '"../shared/mocap"'):
         assert not ABSOLUTE.search(line)

@@ -67,7 +67,7 @@ def report(library: Library) -> list[str]:
 def picture(library: Library, path) -> None:
     """Draw the control space as three planes, the hull filled and primitives as points, into a PNG.
 
-    Needs matplotlib (`pip install gambol[report]`).
+    Needs matplotlib (`.venv/bin/pip install -e ".[report]"`).
     """
     import matplotlib
     matplotlib.use("Agg")
