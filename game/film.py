@@ -38,7 +38,7 @@ class Frame:
 
 def opening(scenario: Scenario, controller: Any) -> World:
     """The world before the first step, every actor under the same controller."""
-    return World(boxes=tuple(prop.box() for prop in scenario.props), characters=tuple(
+    return World(props=tuple(prop.box() for prop in scenario.props), characters=tuple(
         Character(actor.name, controller, tint=actor.tint,
                   state=controller.start(ground=(actor.start[0], actor.start[1], math.radians(actor.start[2]))))
         for actor in scenario.actors))
@@ -80,7 +80,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None) -
         until = min([s.at for s in scenario.shots if s.at > shot.at], default=scenario.duration)
         camera = operator.view((frame.time - shot.at) / max(until - shot.at, 1e-9))
         text = (scenario.title,) if frame.time < TITLE_SECONDS else ()
-        yield frame, Scene(camera, figures(frame.before, frame.after, frame.alpha), frame.after.boxes,
+        yield frame, Scene(camera, figures(frame.before, frame.after, frame.alpha), frame.after.props,
                            shown, text)
 
 

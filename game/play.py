@@ -97,7 +97,7 @@ class Play:
         state = self._hero.state
         velocity = in_world(state.ground, state.velocity) if running else np.zeros(2)
         ground = ground_between(self.before.characters[0].state, state, self.clock.alpha)
-        self.camera = self.camera.step(ground, velocity, frame, self.after.boxes)
+        self.camera = self.camera.step(ground, velocity, frame, self.after.props)
 
     def _wish(self) -> Wish:
         return self.keyboard.wish().merged(pad_wish(self.pad))
@@ -113,7 +113,7 @@ class Play:
 
     def scene(self, size: tuple[int, int]) -> Scene:
         """What to draw now; size: of the frame in pixels."""
-        return Scene(self.camera.view(), figures(self.before, self.after, self.clock.alpha), self.after.boxes,
+        return Scene(self.camera.view(), figures(self.before, self.after, self.clock.alpha), self.after.props,
                      self.overlays, self._text(), self._panel())
 
     def _text(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class Camera:
 class Figure:
     """One character to draw.
 
-    positions, orientations: (J, 3) [m], (J, 3, 3) world transforms of the standard human's joints.
+    body: the mesh it wears (`game.render.mesh.Mesh`); None for Gambol's mannequin. positions, orientations: (J, 3) [m], (J, 3, 3) world transforms of the standard human's joints.
     tint: (3,) linear RGB. contacts: (4,) bool, left heel, left ball, right heel, right ball.
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
     """
@@ -32,6 +33,7 @@ class Figure:
     contacts: np.ndarray = field(default_factory=lambda: np.zeros(4, bool))
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    body: Any = None
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,37 @@ class Box:
     size: tuple[float, float, float]
     heading: float = 0.0
     tint: tuple[float, float, float] = (0.55, 0.56, 0.60)
+
+
+@dataclass(frozen=True)
+class Pillar:
+    """A solid upright cylinder: the middle of its foot [m], radius [m], height [m]."""
+
+    foot: tuple[float, float, float]
+    radius: float = 0.25
+    height: float = 2.5
+    tint: tuple[float, float, float] = (0.55, 0.56, 0.60)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A place to reach, which nothing bumps into: a ring on the floor (or a platform) and a faint column of light."""
+
+    place: tuple[float, float, float]
+    radius: float = 0.4
+    tint: tuple[float, float, float] = (0.95, 0.62, 0.15)
+
+
+Prop = Box | Pillar | Goal
+
+
+@dataclass(frozen=True)
+class Caption:
+    """The title of a film or a shot: a large line, a smaller one under it. opacity: 0 … 1."""
+
+    text: str
+    under: str = ""
+    opacity: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -57,11 +90,17 @@ class Overlays:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """All of one frame. text: lines for the top-left corner; panel: lines of a centred sheet (help, pause)."""
+    """All of one frame, or of one part of it where several views stand side by side.
+
+    text: lines for the top-left corner; panel: lines of a centred sheet (help, pause).
+    part: left, top, width, height of where it is shown, in parts of the picture.
+    """
 
     camera: Camera
     figures: tuple[Figure, ...] = ()
-    boxes: tuple[Box, ...] = ()
+    props: tuple[Prop, ...] = ()
     overlays: Overlays = Overlays()
     text: tuple[str, ...] = ()
     panel: tuple[str, ...] = ()
+    caption: Caption | None = None
+    part: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)

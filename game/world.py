@@ -18,7 +18,7 @@ from controllers.body.rotations import wrap
 from controllers.contract import CharacterState, Intent
 from controllers.navigation import drift
 
-from .scene import Box, Figure
+from .scene import Figure, Prop
 
 RATE = 60
 """Simulation steps a second, whatever the display does."""
@@ -59,7 +59,7 @@ class World:
     """All that is simulated at one moment. number: steps made since the start."""
 
     characters: tuple[Character, ...] = ()
-    boxes: tuple[Box, ...] = ()
+    props: tuple[Prop, ...] = ()
     number: int = 0
 
     @property

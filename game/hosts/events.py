@@ -59,7 +59,8 @@ class Focus:
 
 @dataclass(frozen=True)
 class PadState:
-    """A gamepad in this frame. name: "" where none is plugged in (its sticks then rest).
+    """A gamepad in this frame. slot: 0 for the first pad, 1 for the second. name: "" where none is
+    plugged in (its sticks then rest).
 
     axes: left x, left y, right x, right y (−1 … 1, y downwards), left and right trigger
     (−1 released … 1 pressed). buttons: the names of those that are down.
@@ -68,6 +69,7 @@ class PadState:
     name: str = ""
     axes: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, -1.0, -1.0)
     buttons: frozenset[str] = frozenset()
+    slot: int = 0
 
     @property
     def left(self) -> tuple[float, float]:

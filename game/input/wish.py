@@ -12,7 +12,9 @@ class Wish:
 
     move, look: (x to the right, y away from the camera) within the unit circle; look is (0, 0)
     when no direction is to be faced. turn: −1 … 1, positive to the left. run: 0 … 1.
-    orbit: rates −1 … 1 at which the camera turns (left, up).
+    orbit: rates −1 … 1 at which the camera turns (left, up). drag: angles [rad] by which the mouse
+    turned it (left, up) since the last moment, zoom: notches of the wheel, positive nearer.
+    pressed: the actions that were set off since then, in order; "name=value" sets a setting.
     """
 
     move: tuple[float, float] = (0.0, 0.0)
@@ -22,6 +24,9 @@ class Wish:
     slow: bool = False
     strafe: bool = False
     orbit: tuple[float, float] = (0.0, 0.0)
+    drag: tuple[float, float] = (0.0, 0.0)
+    zoom: float = 0.0
+    pressed: tuple[str, ...] = ()
 
     def merged(self, other: Wish) -> Wish:
         """Two devices in one pair of hands: of each control the one that is further out."""
@@ -29,7 +34,9 @@ class Wish:
             return a if math.hypot(*a) >= math.hypot(*b) else b
         return Wish(further(self.move, other.move), further(self.look, other.look),
                     max(self.turn, other.turn, key=abs), max(self.run, other.run),
-                    self.slow or other.slow, self.strafe or other.strafe, further(self.orbit, other.orbit))
+                    self.slow or other.slow, self.strafe or other.strafe, further(self.orbit, other.orbit),
+                    (self.drag[0] + other.drag[0], self.drag[1] + other.drag[1]), self.zoom + other.zoom,
+                    self.pressed + other.pressed)
 
 
 def unit_disc(x: float, y: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene import Figure, Scene
+from ..scene import Box, Figure, Scene
 from . import gl, view
 from .figures import Figures, drawable
 from .ground import Boxes, Ground, dark_floor, shaded_floor
@@ -56,14 +56,15 @@ class Renderer:
         origin = view.origin_of(camera)
         eye = np.asarray(camera.eye, float) - origin
         figures = tuple(figure for figure in scene.figures if drawable(figure))
+        boxes = tuple(prop for prop in scene.props if isinstance(prop, Box))
         shown = figures if scene.overlays.mesh else ()
-        box = view.light_box(camera, shown, scene.boxes, self.preset.shadow_size, origin)
+        box = view.light_box(camera, shown, boxes, self.preset.shadow_size, origin)
         projection = view.perspective(camera.fov, self.size[0] / self.size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
         self._frame(matrix, eye, box)
         metre = self.size[1] / (2.0 * np.tan(0.5 * camera.fov))  # pixels, one metre away
         self.figures.prepare(shown, camera.eye, origin, [metre / least for least in self.preset.detail])
-        self.boxes.prepare(scene.boxes, origin)
+        self.boxes.prepare(boxes, origin)
         if box is not None:
             self._shadows()
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
@@ -77,7 +78,7 @@ class Renderer:
         if scene.overlays.skeleton:
             self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
-        self.ground.draw(dark_floor(scene.boxes, origin), shaded_floor(shown if box else (), origin),
+        self.ground.draw(dark_floor(boxes, origin), shaded_floor(shown if box else (), origin),
                          np.linalg.inv(matrix))
         self._over(scene, figures, origin)
         self.target.resolve()

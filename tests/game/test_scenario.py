@@ -139,7 +139,7 @@ kind = "follow"
 actor = "B"''')
     scenario = load(written(tmp_path, text))
     pictures = [scene for _, scene in film.scenes(scenario, Glide())]
-    assert len(pictures) == scenario.frames and len(pictures[0].figures) == 2 and len(pictures[0].boxes) == 1
+    assert len(pictures) == scenario.frames and len(pictures[0].figures) == 2 and len(pictures[0].props) == 1
     assert pictures[0].overlays == Overlays(mesh=False, skeleton=True, trail=True)
     assert pictures[0].camera.eye == pytest.approx([5, 2, 0]) and pictures[0].text == ("Test",)
     assert np.linalg.norm(pictures[60].camera.eye - pictures[59].camera.eye) > 0.5

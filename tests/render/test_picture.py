@@ -20,7 +20,7 @@ GOLDEN = {
     "overlays": Scene(camera(eye=(-2.6, 2.4, 3.0), target=(0, 0.6, 0)), (WALKER,), overlays=ALL, text=("Walk 1.2 m/s",)),
     "company": Scene(camera(eye=(0, 2.2, 6.5)), tuple(figure(heading=k, at=(k - 2, -0.8 * (k % 2)), options=dict(
         tint=(0.2 + 0.15 * k, 0.4, 0.7 - 0.12 * k)), **STAND) for k in range(5)),
-        boxes=(Box((2.6, 0.5, -1.0), (0.6, 1.0, 0.6), 0.4), Box((-2.5, 0.1, 0.5), (1.0, 0.2, 1.0)))),
+        props=(Box((2.6, 0.5, -1.0), (0.6, 1.0, 0.6), 0.4), Box((-2.5, 0.1, 0.5), (1.0, 0.2, 1.0)))),
     "panel": Scene(camera(), (WALKER,), panel=("        keyboard  gamepad", "walk    W A S D   left stick",
                                                "run     Shift     right trigger", "turn    ← →       right stick")),
 }
