@@ -89,7 +89,7 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
            out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")],
            size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default.")] = None,
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default.")] = None,
-           preset: Quality = Preset.full,
+           preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
            overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path.")] = None,
            library: Library = None) -> None:
     """Film a scenario without a display, or write its motion as BVH."""
@@ -98,6 +98,9 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
     film = scenarios.load(scenario)
     film = film if fps is None else film.at_fps(fps)
     if out.lower().endswith(".bvh"):
+        for option, given in (("--size", size), ("--preset", preset), ("--overlay", overlay)):
+            if given is not None:
+                raise Mistake(f"{option} means nothing for {out}: BVH holds the motion, not pictures of it")
         _write_motion(film, out, library)
         return
     from .film import scenes
@@ -105,37 +108,39 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
 
     width, height = film.size if size is None else _size(size)
     shown = scenarios.overlays(film.overlays if overlay is None else _overlays(overlay))
-    target, controller = recorder(out, (width, height), film.fps), _controller(library)
+    controller = _controller(library)
+    target = recorder(out, (width, height), film.fps)
 
     from .hosts import GraphicsError, Offscreen
 
     try:
-        with Offscreen((width, height), preset.value) as stage, target, _progress() as bar:
+        with Offscreen((width, height), (preset or Preset.full).value) as stage, target, _progress() as bar:
             for _, scene in bar.track(scenes(film, controller, shown), film.frames, description=film.title):
                 target.write(stage.frame(scene))
-    except KeyboardInterrupt:
-        _say(f"what was drawn is in {target.part}")
+    except BaseException as error:
+        if target.count:
+            _say(f"gambol: what was drawn so far is in {target.part}")
+        if isinstance(error, GraphicsError):
+            raise Mistake(str(error)) from None
         raise
-    except GraphicsError as error:
-        raise OSError(str(error)) from None
     _say(f"{target.path}: {film.frames} frames, {film.duration:g} s, {width} × {height}")
 
 
 def _write_motion(film, out: str, library: Path | None) -> None:
     from .film import run
+    from .output import output_file
     from .recorder import motion_clip, write_motion
     from .world import pose_between
 
-    controller = _controller(library)
+    controller, whole = _controller(library), Path(out)
+    names = [whole.name] if len(film.actors) == 1 else [f"{whole.stem}-{a.name}{whole.suffix}" for a in film.actors]
+    paths = [output_file(whole.with_name(name), ".bvh") for name in names]
     poses = [[] for _ in film.actors]
     with _progress() as bar:
         for frame in bar.track(run(film, controller), film.frames, description=film.title):
             for kept, before, after in zip(poses, frame.before.characters, frame.after.characters):
                 kept.append(pose_between(before.state.pose, after.state.pose, frame.alpha))
-    for actor, kept in zip(film.actors, poses):
-        path = Path(out)
-        if len(poses) > 1:
-            path = path.with_name(f"{path.stem}-{actor.name}{path.suffix}")
+    for actor, kept, path in zip(film.actors, poses, paths):
         write_motion(motion_clip(actor.name, controller.skeleton, kept, film.fps), path)
         _say(f"{path}: {len(kept)} frames, {film.duration:g} s")
 
@@ -160,6 +165,9 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
     """Cut gait cycles out of motion capture and make a library of them."""
     from controllers.locomotion.build import build_library
 
+    from .output import named, output_file
+
+    output_file(out, ".npz")
     with _progress() as bar:
         tasks = {}
 
@@ -169,8 +177,8 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
             bar.update(tasks[what], completed=done, total=total)
 
         made, notes = build_library(folder, recipe, progress=progress)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    made.save(out)
+    with named(out):
+        made.save(out)
 
     from controllers.locomotion.coverage import report as in_words
 
@@ -192,6 +200,10 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
     from controllers.locomotion.coverage import picture as draw
     from controllers.locomotion.coverage import report as in_words
 
+    from .output import named, output_file
+
+    if picture:
+        output_file(picture, ".png")
     for line in in_words(made):
         typer.echo(line)
     if primitives:
@@ -201,7 +213,8 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
                        f"{one.clip} at {one.start:.2f} s{', mirrored' if one.mirrored else ''}")
     if picture:
         try:
-            draw(made, picture)
+            with named(picture):
+                draw(made, picture)
         except ImportError:
             raise Mistake('--picture needs matplotlib: .venv/bin/pip install -e ".[report]"') from None
         _say(str(picture))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Protocol
@@ -17,6 +18,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from controllers.body import Clip, Pose, Skeleton
+
+from .output import named, output_file, output_folder
 
 PICTURE = re.compile(r"frame_\d{5,}\.png")
 
@@ -29,10 +32,12 @@ class Recorder(Protocol):
     """Takes frames. Used in a `with`; leaving it without an error completes the recording.
 
     path: where the recording will be. part: where what there is so far lies until then.
+    count: how many frames that is.
     """
 
     path: Path
     part: Path
+    count: int
 
     def write(self, frame: np.ndarray) -> None:
         """Add a frame (H, W, 3 or 4) uint8, top row first."""
@@ -45,7 +50,8 @@ class Recorder(Protocol):
 def recorder(path: str | Path, size: tuple[int, int], fps: int) -> Recorder:
     """The recorder for a path: a .mp4 file, or a folder of PNG frames where there is no suffix.
 
-    size: width and height in pixels. RecordingError for any other suffix.
+    size: width and height in pixels. RecordingError for any other suffix, OutputError where nothing
+    can be written.
     """
     text, path = str(path), Path(path)
     if path.suffix.lower() == ".mp4":
@@ -56,12 +62,15 @@ def recorder(path: str | Path, size: tuple[int, int], fps: int) -> Recorder:
 
 
 class Film:
-    """An H.264 film. size: width, height; odd ones lose their last row or column. fps: frames a second."""
+    """An H.264 film. size: width, height; odd ones lose their last row or column. fps: frames a second.
+
+    OutputError where it can't be written: at once if that can be known, else when it happens.
+    """
 
     def __init__(self, path: str | Path, size: tuple[int, int], fps: int):
-        self.path = Path(path)
+        self.path = output_file(path, ".mp4")
         self.part = self.path.with_name(f"{self.path.stem}.part{self.path.suffix}")
-        self.size, self.fps = size, fps
+        self.size, self.fps, self.count = size, fps, 0
         self._even = size[0] - size[0] % 2, size[1] - size[1] % 2
         self._container: Any = None
 
@@ -69,9 +78,9 @@ class Film:
         import av
         from av.video.reformatter import ColorRange, Colorspace
 
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        self._container = av.open(str(self.part), "w", format="mp4", options={
-            "movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"})
+        with named(self.part):
+            self._container = av.open(str(self.part), "w", format="mp4", options={
+                "movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"})
         self._stream = self._container.add_stream("libx264", rate=Fraction(self.fps))
         self._stream.width, self._stream.height = self._even
         self._stream.pix_fmt = "yuv420p"
@@ -82,7 +91,6 @@ class Film:
         # say which matrix the colours went through: players guess differently for small films
         self._stream.codec_context.colorspace = Colorspace.ITU709
         self._stream.codec_context.color_range = ColorRange.MPEG
-        self._count = 0
         return self
 
     def write(self, frame: np.ndarray) -> None:
@@ -96,26 +104,35 @@ class Film:
         picture = av.VideoFrame.from_ndarray(pixels, format="rgba" if frame.shape[2] == 4 else "rgb24")
         picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709,
                                    dst_color_range=ColorRange.MPEG)
-        picture.pts, picture.time_base = self._count, Fraction(1, self.fps)
-        self._count += 1
-        self._container.mux(self._stream.encode(picture))
+        picture.pts, picture.time_base = self.count, Fraction(1, self.fps)
+        with named(self.part):
+            self._container.mux(self._stream.encode(picture))
+        self.count += 1
 
     def __exit__(self, kind, *rest) -> None:
-        self._container.mux(self._stream.encode(None))
-        self._container.close()
-        if kind is None:
-            _whole(self.part, self.path)
+        if kind is not None:
+            with suppress(Exception):  # what went wrong first is what the user has to hear
+                self._close()
+            return
+        self._close()
+        _whole(self.part, self.path)
+
+    def _close(self) -> None:
+        with named(self.part):
+            try:
+                self._container.mux(self._stream.encode(None))
+            finally:
+                self._container.close()
 
 
 class Pictures:
     """A folder of frame_00000.png, frame_00001.png, …; frames of an earlier, longer recording are removed."""
 
     def __init__(self, folder: str | Path, size: tuple[int, int]):
-        self.path = self.part = Path(folder)
-        self.size, self._count = size, 0
+        self.path = self.part = output_folder(folder)
+        self.size, self.count = size, 0
 
     def __enter__(self) -> Pictures:
-        self.path.mkdir(parents=True, exist_ok=True)
         return self
 
     def write(self, frame: np.ndarray) -> None:
@@ -123,14 +140,15 @@ class Pictures:
         from PIL import Image
 
         _check(frame, self.size)
-        part = self.path / "frame.part"
-        Image.fromarray(frame[..., :3]).save(part, format="png", compress_level=1)
-        os.replace(part, self.path / f"frame_{self._count:05d}.png")
-        self._count += 1
+        part, file = self.path / "frame.part", self.path / f"frame_{self.count:05d}.png"
+        with named(file):
+            Image.fromarray(frame[..., :3]).save(part, format="png", compress_level=1)
+            os.replace(part, file)
+        self.count += 1
 
     def __exit__(self, kind, *rest) -> None:
         if kind is None:
-            kept = {f"frame_{i:05d}.png" for i in range(self._count)}
+            kept = {f"frame_{i:05d}.png" for i in range(self.count)}
             for file in self.path.iterdir():
                 if PICTURE.fullmatch(file.name) and file.name not in kept:
                     file.unlink()
@@ -144,14 +162,17 @@ def motion_clip(name: str, skeleton: Skeleton, poses: Sequence[Pose], fps: float
 
 
 def write_motion(clip: Clip, path: str | Path) -> None:
-    """Write a clip as BVH; the file appears whole or not at all."""
+    """Write a clip as BVH; the file appears whole or not at all. OutputError where it can't be written."""
     from controllers.mocap import write_bvh
 
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path = output_file(path, ".bvh")
     part = path.with_name(f"{path.stem}.part{path.suffix}")
-    write_bvh(clip, part)
-    os.replace(part, path)
+    with named(path):
+        try:
+            write_bvh(clip, part)
+            os.replace(part, path)
+        finally:
+            part.unlink(missing_ok=True)
 
 
 def _whole(part: Path, path: Path) -> None:
@@ -159,14 +180,18 @@ def _whole(part: Path, path: Path) -> None:
     import av
 
     done = path.with_name(f"{path.stem}.done{path.suffix}")
-    with av.open(str(part)) as source, av.open(str(done), "w", format="mp4",
-                                               options={"movflags": "faststart"}) as target:
-        stream = target.add_stream_from_template(source.streams.video[0])
-        for packet in source.demux(video=0):
-            if packet.dts is not None:
-                packet.stream = stream
-                target.mux(packet)
-    os.replace(done, path)
+    with named(path):
+        try:
+            with av.open(str(part)) as source, av.open(str(done), "w", format="mp4",
+                                                       options={"movflags": "faststart"}) as target:
+                stream = target.add_stream_from_template(source.streams.video[0])
+                for packet in source.demux(video=0):
+                    if packet.dts is not None:
+                        packet.stream = stream
+                        target.mux(packet)
+            os.replace(done, path)
+        finally:
+            done.unlink(missing_ok=True)
     part.unlink()
 
 

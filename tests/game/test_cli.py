@@ -92,6 +92,11 @@ def test_motion(short, tmp_path):
     (("render", "demo", "-o", "a.mp4", "--library", "no.npz"), "no.npz"),
     (("library", "build", "no_such_folder", "-o", "x.npz"), "no_such_folder"),
     (("library", "report", "no.npz"), "no.npz"),
+    (("library", "report", "--picture", "x.xyz"), "x.xyz: needs a name that ends in .png"),
+    (("library", "build", ".", "-o", "x.toml"), "x.toml: needs a name that ends in .npz"),
+    (("render", "demo", "-o", "a.bvh", "--size", "64x48"), "--size means nothing for a.bvh"),
+    (("render", "demo", "-o", "a.BVH", "--overlay", "trail"), "--overlay means nothing for a.BVH"),
+    (("render", "demo", "-o", "a.bvh", "--preset", "full"), "--preset means nothing for a.bvh"),
 ])
 def test_a_mistake_is_one_line_and_code_2(arguments, says, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -108,15 +113,45 @@ def test_a_wrong_call_has_code_2_too(arguments):
     assert gambol(*arguments).exit_code == 2
 
 
-def test_an_interrupted_film_is_kept(short, tmp_path, monkeypatch):
+@pytest.mark.parametrize("name", ["a.mp4", "a-B.bvh", "a.npz", "a.png"])
+def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monkeypatch, name):
+    """A folder is in the way of each; whoever would simulate, draw or build fails loudly."""
+    def never(*args, **kwargs):
+        raise AssertionError("worked in vain")
+    for work in ("game.film.run", "controllers.locomotion.build.build_library", "controllers.locomotion.coverage.report"):
+        monkeypatch.setattr(work, never)
+    monkeypatch.setattr(game.hosts, "Offscreen", never)
+    short.write_text(SHORT + '[[actors]]\nname = "B"\n')
+    (tmp_path / name).mkdir()
+    done = gambol(*{"a.mp4": ("render", short, "-o", tmp_path / "a.mp4"),
+                    "a-B.bvh": ("render", short, "-o", tmp_path / "a.bvh"),
+                    "a.npz": ("library", "build", tmp_path, "-o", tmp_path / "a.npz"),
+                    "a.png": ("library", "report", "--picture", tmp_path / "a.png")}[name])
+    assert done.exit_code == 2 and done.output == f"gambol: {tmp_path / name}: is a folder; name a file\n"
+
+
+def test_a_picture_of_a_library_goes_into_a_new_folder(tmp_path, monkeypatch):
+    monkeypatch.setattr("controllers.locomotion.coverage.picture", lambda library, path: path.write_bytes(b"drawn"))
+    done = gambol("library", "report", "--picture", tmp_path / "new" / "a.png")
+    assert done.exit_code == 0 and (tmp_path / "new" / "a.png").exists()
+
+
+@pytest.mark.parametrize(("error", "code", "says"), [
+    (KeyboardInterrupt(), 130, "gambol: stopped"),
+    (game.hosts.GraphicsError("the driver is gone"), 2, "gambol: the driver is gone"),
+    (OSError(5, "Input/output error"), 2, "Input/output error"),
+    (MemoryError(), 1, ""),
+])
+def test_an_interrupted_film_is_kept_and_named(short, tmp_path, monkeypatch, error, code, says):
     def frame(self, scene):
         if len(Stage.scenes) == 4:
-            raise KeyboardInterrupt
+            raise error
         Stage.scenes.append(scene)
         return np.zeros((48, 64, 4), np.uint8)
     monkeypatch.setattr(Stage, "frame", frame)
     done = gambol("render", short, "-o", tmp_path / "a.mp4")
-    assert done.exit_code == 130 and "stopped" in done.output and "a.part.mp4" in done.output
+    assert done.exit_code == code and says in done.output
+    assert f"gambol: what was drawn so far is in {tmp_path / 'a.part.mp4'}" in done.output
     with av.open(str(tmp_path / "a.part.mp4")) as film:
         assert len(list(film.decode(video=0))) == 4
 

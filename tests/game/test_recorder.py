@@ -1,8 +1,10 @@
 """Films and pictures: complete, readable by others, and safe from a kill."""
 
+import os
 import signal
 import subprocess
 import sys
+from itertools import islice
 
 import av
 import numpy as np
@@ -10,7 +12,8 @@ import pytest
 from PIL import Image
 
 from controllers.body import human
-from game.recorder import Film, Pictures, motion_clip, recorder
+from game.output import OutputError, output_file
+from game.recorder import Film, Pictures, motion_clip, recorder, write_motion
 from game.world import DT
 from stand_in import Glide
 
@@ -57,6 +60,42 @@ def test_an_error_leaves_the_old_film_and_a_playable_part(tmp_path):
             film.write(picture(i))
         raise RuntimeError
     assert path.read_text() == "an older film" and len(read(tmp_path / "a.part.mp4")[0]) == 10
+
+
+def test_an_error_while_closing_hides_not_the_first(tmp_path, monkeypatch):
+    def fail(self):
+        raise OSError("the disk is full, too")
+    monkeypatch.setattr(Film, "_close", fail)
+    with pytest.raises(RuntimeError, match="the first"), Film(tmp_path / "a.mp4", (64, 48), 30):
+        raise RuntimeError("the first")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs a limit on the size of files, which Windows lacks")
+def test_a_full_disk_is_told_with_the_path_and_leaves_a_playable_part(tmp_path):
+    code = f"""
+import sys; sys.path[:0] = {sys.path!r}
+import resource
+from test_recorder import Film, np
+resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
+noise = np.random.default_rng(0).integers(0, 255, (90, 120, 3), np.uint8)
+with Film({str(tmp_path / "a.mp4")!r}, (120, 90), 10) as film:
+    while True:
+        film.write(np.roll(noise, 17 * film.count, 1))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    last = done.stderr.splitlines()[-1]
+    assert last == f"game.output.OutputError: {tmp_path / 'a.part.mp4'}: can't be written: File too large"
+    with av.open(str(tmp_path / "a.part.mp4")) as film:  # whose last frame is cut off
+        assert len(list(islice(film.decode(video=0), 5))) == 5
+
+
+def test_a_film_that_cannot_be_completed_stays_in_its_part(tmp_path):
+    path = tmp_path / "a.mp4"
+    with pytest.raises(OutputError, match="a.mp4: can't be written"), Film(path, (64, 48), 30) as film:
+        film.write(picture(0))
+        path.mkdir()
+    assert sorted(f.name for f in tmp_path.iterdir()) == ["a.mp4", "a.part.mp4"]
+    assert len(read(tmp_path / "a.part.mp4")[0]) == 1
 
 
 def test_a_killed_recording_can_be_played(tmp_path):
@@ -107,3 +146,46 @@ def test_poses_become_a_clip():
     positions, orientations = clip.kinematics()
     assert len(clip) == 7 and clip.frame_time == DT
     assert np.allclose(positions[3, 0], state.pose.root) and np.allclose(orientations[3, 0], state.pose.rotations[0])
+
+
+def test_motion_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
+    glide = Glide()
+    clip = motion_clip("A", human(), [glide.start().pose] * 2, 60)
+
+    def full(clip, path):
+        path.write_text("half")
+        raise OSError(28, "No space left on device")
+    monkeypatch.setattr("controllers.mocap.write_bvh", full)
+    with pytest.raises(OutputError, match="a.bvh: can't be written: No space left on device"):
+        write_motion(clip, tmp_path / "new" / "a.bvh")
+    assert not list((tmp_path / "new").iterdir())
+
+
+def faults(folder):
+    """Paths nothing can be written to, and what is said of each."""
+    (folder / "file").write_text("")
+    (folder / "folder.mp4").mkdir()
+    (folder / "old.mp4").write_text("")
+    (folder / "old.mp4").chmod(0o444)
+    yield "a.avi", "a.avi: needs a name that ends in .mp4"
+    yield "folder.mp4", "folder.mp4: is a folder; name a file"
+    yield "file/a.mp4", "file: is a file; name a folder"
+    yield "file/deeper/a.mp4", "can't be written: Not a directory"
+    yield "x" * 300 + ".mp4", "can't be written: File name too long"
+    yield "old.mp4", "old.mp4: is there already and write-protected"
+
+
+def test_a_path_nothing_can_be_written_to_is_found_before_the_work(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda path, mode: os.stat(path).st_mode & 0o200 != 0)  # root may do anything
+    for path, says in faults(tmp_path):
+        with pytest.raises(OutputError) as error:
+            output_file(tmp_path / path, ".mp4")
+        assert says in str(error.value) and str(error.value).startswith(str(tmp_path)), path
+    for path in ("new/deeper/a.mp4", "b.MP4"):
+        assert output_file(tmp_path / path, ".mp4") == tmp_path / path and (tmp_path / path).parent.is_dir()
+        assert not list((tmp_path / "new" / "deeper").iterdir()), "a check leaves nothing but the folder"
+    with pytest.raises(OutputError, match="file: is a file; name a folder"):
+        recorder(tmp_path / "file", (64, 48), 30)
+    monkeypatch.setattr("tempfile.TemporaryFile", lambda **_: (_ for _ in ()).throw(PermissionError(13, "Permission denied")))
+    with pytest.raises(OutputError, match="new: can't be written: Permission denied"):
+        recorder(tmp_path / "new" / "c.mp4", (64, 48), 30)
