@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes.util
 import os
 import sys
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -63,9 +64,9 @@ class Offscreen:
             self.context.release()
             raise
 
-    def frame(self, scene: Scene, out: np.ndarray | None = None) -> np.ndarray:
-        """The picture of a scene (H, W, 4) uint8, top row first; into `out` where one is given."""
-        self.renderer.draw(scene)
+    def frame(self, scenes: Scene | Sequence[Scene], out: np.ndarray | None = None) -> np.ndarray:
+        """The picture of a scene, or of several side by side, (H, W, 4) uint8, top row first; into `out` where given."""
+        self.renderer.draw(scenes)
         return self.renderer.read(out)
 
     def release(self) -> None:

@@ -80,9 +80,11 @@ class Target:
             self.drawn = self.resolved = ctx.framebuffer([self.resolved_colour], depth)
         self._parts = parts
 
-    def masked(self, colour: bool = True, depth: bool = True) -> Any:
-        """Draw here from now on, but write only what is wanted."""
+    def masked(self, colour: bool = True, depth: bool = True,
+               viewport: tuple[int, int, int, int] | None = None) -> Any:
+        """Draw here from now on, in the pixels of `viewport` (all, if none is given), but write only what is wanted."""
         self.drawn.color_mask, self.drawn.depth_mask = (colour,) * 4, depth
+        self.drawn.viewport = viewport or (0, 0, *self.size)
         self.drawn.use()  # a mask takes effect only then
         return self.drawn
 

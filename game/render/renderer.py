@@ -1,7 +1,8 @@
-"""The renderer: one scene in, one picture out."""
+"""The renderer: a scene in, or several side by side, and one picture out."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,8 @@ from .text import TextPass
 
 FOG = 30.0
 """Where the floor is half fog [m]."""
+GAP = (0.02, 0.022, 0.026)
+"""The colour of the line between parts of a picture, and of what no part covers."""
 
 
 class Renderer:
@@ -50,28 +53,42 @@ class Renderer:
             self.target.release()
             self.target = replacement
 
-    def draw(self, scene: Scene) -> None:
-        """Draw a scene; `read` or `blit` then give the picture."""
-        ctx, camera = self.ctx, scene.camera
+    def draw(self, scenes: Scene | Sequence[Scene]) -> None:
+        """Draw a scene, or several, each in its own part of the picture; `read` or `blit` then give the picture.
+
+        ValueError for a part that lies outside the picture or has no pixels. Later parts cover earlier ones.
+        """
+        scenes = (scenes,) if isinstance(scenes, Scene) else tuple(scenes)
+        parts = [view.part_of(scene.part, self.size) for scene in scenes]
+        whole = (0, 0, *self.size)
+        if parts != [(whole, whole)]:
+            self.target.masked().clear(*GAP, viewport=whole)
+        for scene, (framed, inside) in zip(scenes, parts):
+            self._part(scene, framed, inside)
+        self.target.resolve()
+
+    def _part(self, scene: Scene, framed: view.Rectangle, inside: view.Rectangle) -> None:
+        """Draw one scene into the pixels `inside`; a line around them fills what is left of `framed`."""
+        ctx, camera, size = self.ctx, scene.camera, inside[2:]
         origin = view.origin_of(camera)
         eye = np.asarray(camera.eye, float) - origin
         figures = tuple(figure for figure in scene.figures if drawable(figure))
         boxes = tuple(prop for prop in scene.props if isinstance(prop, Box))
         shown = figures if scene.overlays.mesh else ()
         box = view.light_box(camera, shown, boxes, self.preset.shadow_size, origin)
-        projection = view.perspective(camera.fov, self.size[0] / self.size[1])
+        projection = view.perspective(camera.fov, size[0] / size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
-        self._frame(matrix, eye, box)
-        metre = self.size[1] / (2.0 * np.tan(0.5 * camera.fov))  # pixels, one metre away
+        self._frame(matrix, eye, box, size)
+        metre = size[1] / (2.0 * np.tan(0.5 * camera.fov))  # pixels, one metre away
         self.figures.prepare(shown, camera.eye, origin, [metre / least for least in self.preset.detail])
         self.boxes.prepare(boxes, origin)
         if box is not None:
             self._shadows()
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
         ctx.cull_face, ctx.depth_func = "back", "<="
-        # the sky and the floor cover every pixel: only the depth needs clearing
-        self.target.masked(colour=False).clear(depth=1.0)
-        self.target.masked()
+        # the sky and the floor cover every pixel: only the depth needs clearing, and the line around
+        self.target.masked(colour=framed != inside).clear(*GAP, depth=1.0, viewport=framed)
+        self.target.masked(viewport=inside)
         self.shadow_map.use(0)
         self.figures.draw("body")
         self.boxes.draw("body")
@@ -80,8 +97,7 @@ class Renderer:
         # floor and sky last: the depth test spares what is hidden by then
         self.ground.draw(dark_floor(boxes, origin), shaded_floor(shown if box else (), origin),
                          np.linalg.inv(matrix))
-        self._over(scene, figures, origin)
-        self.target.resolve()
+        self._over(scene, figures, origin, inside)
 
     def read(self, out: np.ndarray | None = None) -> np.ndarray:
         """The picture (H, W, 4) uint8, top row first; into `out` where one is given."""
@@ -107,12 +123,12 @@ class Renderer:
                      self.shadow_map, self.frame, self.target):
             part.release()
 
-    def _frame(self, matrix: np.ndarray, eye: np.ndarray, box: view.LightBox | None) -> None:
+    def _frame(self, matrix: np.ndarray, eye: np.ndarray, box: view.LightBox | None, size: tuple[int, int]) -> None:
         """Fill the uniform block of frame.glsl."""
         data = np.zeros(48, np.float32)
         data[:16] = matrix.T.ravel()
         data[32:36], data[36:39] = (*eye, FOG**-4), view.SUN
-        data[40:44] = *self.size, 1.0 / self.size[0], 1.0 / self.size[1]
+        data[40:44] = *size, 1.0 / size[0], 1.0 / size[1]
         if box is not None:
             data[16:32] = box.matrix.T.ravel()
             reach = max(self.preset.softness, 1.2 * box.texel)
@@ -131,15 +147,15 @@ class Renderer:
         self.figures.draw("shadow")
         self.boxes.draw("shadow")
 
-    def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray) -> None:
+    def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray, inside: view.Rectangle) -> None:
         """Marks on the floor, then text over everything."""
         ctx = self.ctx
         ctx.enable(ctx.BLEND)
         ctx.disable(ctx.CULL_FACE)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
-        self.target.masked(depth=False)
+        self.target.masked(depth=False, viewport=inside)
         self.overlays.draw_marks(figures, scene.overlays, origin)
-        self.target.masked()
+        self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)
-        self.text.draw(scene.text, scene.panel, self.size)
+        self.text.draw(scene.text, scene.panel, scene.caption, inside[2:])
         ctx.disable(ctx.BLEND)

@@ -1,4 +1,4 @@
-"""Text: lines at the top left and a sheet in the middle, in the font that comes with pillow."""
+"""Text: lines at the top left, a sheet in the middle and a film's titles, in the font that comes with pillow."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFilter, ImageFont
 
+from ..scene import Caption
 from . import gl
 
 WORDS = {"–": "-", "—": "-", "−": "-", "²": "2", "³": "3", "×": "x", "µ": "u", "ω": "w", "φ": "phi", "√": "sqrt",
@@ -19,6 +20,8 @@ WORDS = {"–": "-", "—": "-", "−": "-", "²": "2", "³": "3", "×": "x", "�
 ARROWS = {"→": 0, "↑": 90, "←": 180, "↓": 270}
 PLAIN = "".join(map(chr, range(32, 127))) + "°·±…“”’"
 INK = (0.97, 0.97, 0.95, 1.0)
+CAPTION_LEFT = 0.06
+"""Captions keep this part of the picture's width free on either side."""
 SHEET = (0.05, 0.06, 0.08, 0.80)
 
 
@@ -129,6 +132,23 @@ def glyphs(text: tuple[str, ...], panel: tuple[str, ...], size: tuple[int, int],
     return np.array(rows, np.float32).reshape(-1, 12)
 
 
+def caption_rows(line: str, size: tuple[int, int], base: float, font: Atlas, opacity: float) -> np.ndarray:
+    """Rows as of `glyphs` for one line of a caption whose letters end at the height `base`, 0 … 1 from the top."""
+    rows: list[tuple] = []
+    _write(rows, line, round(CAPTION_LEFT * size[0]), round(base * size[1]) - font.line, font)
+    made = np.array(rows, np.float32).reshape(-1, 12)
+    made[:, 11] *= opacity
+    return made
+
+
+def caption_size(line: str, size: tuple[int, int], share: float) -> int:
+    """Letters [px] of a spelled caption line: `share` of the picture's height, or what its width allows."""
+    wanted = round(size[1] * share)
+    # a font is as wide as its letters are high, near enough
+    wide = width_of(line, atlas(24)) / 24.0
+    return int(np.clip(min(wanted, (1.0 - 2.0 * CAPTION_LEFT) * size[0] / max(wide, 1e-9)), 8, 256))
+
+
 def _write(rows: list, line: str, x: float, y: float, font: Atlas) -> None:
     for char in line:
         if char != " ":
@@ -137,40 +157,53 @@ def _write(rows: list, line: str, x: float, y: float, font: Atlas) -> None:
         x += font.advances[char]
 
 
+@lru_cache(maxsize=16)
+def layout(text: tuple[str, ...], panel: tuple[str, ...], caption: Caption | None, size: tuple[int, int]
+           ) -> tuple[tuple[int, np.ndarray], ...]:
+    """All text of a scene on `size` pixels: letter sizes [px], each with its rows of `glyphs`.
+
+    Letters of text and panel measure a fortieth of the shorter side or so.
+    """
+    made = []
+    if text or panel:
+        letters = int(np.clip(round(min(size) / 40), 11, 96))
+        made.append((letters, glyphs(text, panel, size, atlas(letters))))
+    if caption is not None and caption.opacity > 0.0:
+        for line, share, base in ((caption.text, 1 / 13, 0.855), (caption.under, 1 / 30, 0.90)):
+            line = spelled(line)
+            letters = caption_size(line, size, share)
+            made.append((letters, caption_rows(line, size, base, atlas(letters), min(caption.opacity, 1.0))))
+    return tuple((letters, rows) for letters, rows in made if len(rows))
+
+
 class TextPass:
-    """Draws text; made once per context. The layout of unchanged text is kept."""
+    """Draws text; made once per context. Textures of the letter sizes drawn last are kept."""
 
     def __init__(self, ctx: Any):
         self.ctx, self.program = ctx, gl.program(ctx, "text.vert", "text.frag")
-        self.stream, self.texture, self.size, self.shown = gl.Stream(ctx), None, 0, None
-        self.count = 0
+        self.stream, self.textures = gl.Stream(ctx), {}
         self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f/i", "place", "cell", "tint")])
 
-    def draw(self, text: tuple[str, ...], panel: tuple[str, ...], size: tuple[int, int]) -> None:
-        """Draw over the whole picture of `size` pixels, letters a fortieth of its height."""
-        if not text and not panel:
-            return
-        wanted = int(np.clip(round(size[1] / 40), 11, 96))
-        if wanted != self.size:
-            self._load(wanted)
-        shown = (tuple(text), tuple(panel), size, wanted)
-        if shown != self.shown:
-            rows = glyphs(shown[0], shown[1], size, atlas(wanted))
-            rows[:, 4:8] /= np.tile(self.texture.size, 2)
+    def draw(self, text: tuple[str, ...], panel: tuple[str, ...], caption: Caption | None, size: tuple[int, int]) -> None:
+        """Draw over a viewport of `size` pixels."""
+        for letters, rows in layout(tuple(text), tuple(panel), caption, size):
+            texture = self._texture(letters)
+            rows = rows.copy()
+            rows[:, 4:8] /= np.tile(texture.size, 2)
             self.stream.write(rows.tobytes())
-            self.shown, self.count = shown, len(rows)
-        self.texture.use(0)
-        self.array.render(mode=self.ctx.TRIANGLE_STRIP, vertices=4, instances=self.count)
+            texture.use(0)
+            self.array.render(mode=self.ctx.TRIANGLE_STRIP, vertices=4, instances=len(rows))
 
-    def _load(self, size: int) -> None:
-        if self.texture is not None:
-            self.texture.release()
-        pixels = atlas(size).pixels
-        self.texture = self.ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
-        self.texture.filter = self.ctx.NEAREST, self.ctx.NEAREST
-        self.size = size
+    def _texture(self, letters: int) -> Any:
+        if letters not in self.textures:
+            if len(self.textures) >= 8:
+                self.textures.pop(next(iter(self.textures))).release()
+            pixels = atlas(letters).pixels
+            made = self.ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
+            made.filter = self.ctx.NEAREST, self.ctx.NEAREST
+            self.textures[letters] = made
+        return self.textures[letters]
 
     def release(self) -> None:
-        for part in (self.array, self.program, self.stream, self.texture):
-            if part is not None:
-                part.release()
+        for part in (self.array, self.program, self.stream, *self.textures.values()):
+            part.release()

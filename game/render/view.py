@@ -28,6 +28,29 @@ REACH = 1.28
 """Radius [m] of the ball around a standard human's hips that holds any pose."""
 
 
+Rectangle = tuple[int, int, int, int]
+"""Left, bottom, width, height in pixels, from the bottom-left corner as OpenGL counts."""
+
+
+def part_of(part: Sequence[float], size: tuple[int, int]) -> tuple[Rectangle, Rectangle]:
+    """The pixels of a scene's part (left, top, width, height of the picture, 0 … 1), and those inside its line.
+
+    Parts that share a border in the scene share it in pixels. The line runs along all borders but the
+    picture's own, so that between two parts it is twice as wide. ValueError if nothing is left.
+    """
+    left, top, width, height = part
+    if not (-1e-6 <= left <= left + width <= 1.0 + 1e-6 and -1e-6 <= top <= top + height <= 1.0 + 1e-6):
+        raise ValueError(f"a part is left, top, width, height within 0 … 1, got {tuple(part)}")
+    x0, x1, y0, y1 = (round(v * s) for v, s in ((left, size[0]), (left + width, size[0]),
+                                                (1.0 - top - height, size[1]), (1.0 - top, size[1])))
+    line = max(1, round(size[1] / 720))
+    a0, b0 = x0 + line * (x0 > 0), y0 + line * (y0 > 0)
+    a1, b1 = x1 - line * (x1 < size[0]), y1 - line * (y1 < size[1])
+    if a1 <= a0 or b1 <= b0:
+        raise ValueError(f"a part of {tuple(part)} has no pixels in a picture of {size[0]} × {size[1]}")
+    return (x0, y0, x1 - x0, y1 - y0), (a0, b0, a1 - a0, b1 - b0)
+
+
 def perspective(fov: float, aspect: float, near: float = NEAR, far: float = FAR) -> np.ndarray:
     """The projection (4, 4) for a vertical field of view [rad]; depth −1 at `near`, 1 at `far`."""
     f = 1.0 / np.tan(0.5 * fov)

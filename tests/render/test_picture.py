@@ -7,7 +7,7 @@ import pytest
 from poses import CROUCH, STAND, STRIDE, camera, figure
 
 from game.render import FULL, Renderer, preset
-from game.scene import Box, Overlays, Scene
+from game.scene import Box, Caption, Overlays, Scene
 
 WALKER = figure(heading=0.6, options=dict(
     contacts=np.array([1, 0, 0, 1], bool),
@@ -152,3 +152,32 @@ def test_presets_by_name():
     assert preset("full") is FULL and preset(FULL) is FULL
     with pytest.raises(ValueError, match="'ultra'.*full, fast"):
         preset("ultra")
+
+
+def test_each_part_shows_what_its_scene_shows_alone(draw):
+    """Two players' views: aspect, shadows, fog and text are those of the part."""
+    left = replace(GOLDEN["stride"], text=("Left",), part=(0.0, 0.0, 0.5, 1.0))
+    right = replace(GOLDEN["company"], part=(0.5, 0.0, 0.5, 1.0))
+    both = draw((left, right), size=(322, 180)).astype(int)
+    for scene, columns in ((left, slice(0, 160)), (right, slice(162, 322))):
+        alone = draw(replace(scene, part=(0.0, 0.0, 1.0, 1.0)), size=(160, 180))
+        assert np.abs(both[:, columns] - alone).mean() < 0.3
+    assert both[:, 160:162, :3].max() < 20  # the line between
+
+
+@pytest.mark.parametrize("part", [(0.5, 0.0, 0.6, 1.0), (0.2, 0.2, 0.001, 0.001), (-0.1, 0.0, 0.5, 0.5)])
+def test_a_part_without_pixels_or_outside_the_picture_is_refused(draw, part):
+    with pytest.raises(ValueError, match="part"):
+        draw(Scene(camera(), part=part))
+
+
+def test_a_caption_stands_in_the_lower_third_and_fades(draw):
+    scene = Scene(camera(eye=(0, 1.6, 5), target=(0, 9.0, 0)))
+    plain = draw(scene).astype(int)
+    shown, faint, long, gone = (np.abs(draw(replace(scene, caption=caption)) - plain)[..., :3].max(-1) for caption in (
+        Caption("Corridor", "half speed"), Caption("Corridor", "half speed", 0.3), Caption("A long title " * 9),
+        Caption("Corridor", opacity=0.0)))
+    rows, columns = np.nonzero(shown > 40)
+    assert rows.min() > 120 and rows.max() < 170 and columns.min() > 10
+    assert 0 < faint.max() < 0.6 * shown.max() and gone.max() == 0
+    assert np.nonzero(long > 40)[1].max() < 310
