@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from pathlib import Path as File
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from assets import path as asset
 from controllers.contract import Intent
@@ -16,15 +17,38 @@ from .input.script import Move, Script
 from .scene import Box, Overlays
 
 OVERLAYS = ("mesh", "skeleton", "contacts", "trail", "path")
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Point = tuple[Number, Number]
-Point3 = tuple[Number, Number, Number]
+NAME = re.compile(r"[\w-]+( [\w-]+)*")
+
+
+def _signed(most: float):
+    return Annotated[float, Field(ge=-most, le=most, allow_inf_nan=False)]
+
+
+def _positive(most: float):
+    return Annotated[float, Field(gt=0, le=most, allow_inf_nan=False)]
+
+
+# as far, fast and long as anybody can mean it: more is a slip, and numbers stay sound
+Metres, Length = _signed(1e5), _positive(1e5)
+Speed, Pace = _signed(20), _positive(20)  # m/s
+Turning = _signed(20)  # rad/s
+Degrees = _signed(3600)
+Seconds = _positive(3600)
+Point = tuple[Metres, Metres]
+Point3 = tuple[Metres, Metres, Metres]
+Velocity = tuple[Speed, Turning, Speed]
 Colour = tuple[*(Annotated[float, Field(ge=0, le=1)],) * 3]
 
 
 class ScenarioError(ValueError):
     """A scenario that cannot be used; the message names file and field, one line for each fault."""
+
+
+def _file_name(name: str) -> str:
+    if not NAME.fullmatch(name) or len(name) > 40:
+        raise ValueError("files are named after it, so it needs letters, digits, - and _, with single spaces "
+                         f"between, 40 at most; got {_short(name)}")
+    return name
 
 
 class _Table(BaseModel):
@@ -34,14 +58,14 @@ class _Table(BaseModel):
 class MoveTable(_Table):
     """One move: exactly one of velocity, walk_to, path and stop. Angles in degrees."""
 
-    seconds: Positive | None = Field(None, alias="for")
-    velocity: Point3 | None = None
-    until: Point3 | None = None
+    seconds: Seconds | None = Field(None, alias="for")
+    velocity: Velocity | None = None
+    until: Velocity | None = None
     walk_to: Point | None = None
     path: Annotated[tuple[Point, ...], Field(min_length=1)] | None = None
     stop: Literal[True] | None = None
-    speed: Positive | None = None
-    facing: Number | None = None
+    speed: Pace | None = None
+    facing: Degrees | None = None
 
     @model_validator(mode="after")
     def _one_thing(self):
@@ -77,9 +101,9 @@ class MoveTable(_Table):
 class ActorTable(_Table):
     """Somebody. start: x, z [m] and heading [degrees]."""
 
-    name: Annotated[str, Field(min_length=1)] = "A"
+    name: Annotated[str, AfterValidator(_file_name)] = "A"
     tint: Colour = (0.75, 0.42, 0.22)
-    start: Point3 = (0.0, 0.0, 0.0)
+    start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
     moves: tuple[MoveTable, ...] = ()
 
     def script(self) -> Script:
@@ -91,8 +115,8 @@ class BoxTable(_Table):
     """A wall, pillar or platform: centre and full size [m], heading [degrees]."""
 
     centre: Point3
-    size: tuple[Positive, Positive, Positive]
-    heading: Number = 0.0
+    size: tuple[Length, Length, Length]
+    heading: Degrees = 0.0
     tint: Colour = (0.55, 0.56, 0.60)
 
     def box(self) -> Box:
@@ -109,10 +133,10 @@ class ShotTable(_Table):
     """
 
     kind: Literal["follow", "fixed", "dolly"] = "follow"
-    at: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    at: Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)] = 0.0
     actor: str | None = None
-    distance: Positive = 4.5
-    around: Number = 0.0
+    distance: Length = 4.5
+    around: Degrees = 0.0
     above: Annotated[float, Field(gt=-20, lt=80)] = 12.0
     swing: bool = True
     eye: Point3 | None = None
@@ -141,7 +165,7 @@ class Scenario(_Table):
     """A scripted run. duration [s], fps of the film, size of its frames in pixels."""
 
     title: str
-    duration: Annotated[float, Field(gt=0, le=3600)]
+    duration: Seconds
     fps: Annotated[int, Field(ge=1, le=240)] = 60
     size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
     overlays: tuple[Literal[OVERLAYS], ...] = ("mesh",)
@@ -152,8 +176,8 @@ class Scenario(_Table):
     @model_validator(mode="after")
     def _consistent(self):
         names = [actor.name for actor in self.actors]
-        if len(set(names)) < len(names):
-            raise ValueError(f"actors need different names; got {', '.join(names)}")
+        if len({name.casefold() for name in names}) < len(names):  # some disks know no capitals
+            raise ValueError(f"actors need different names, in more than capitals; got {', '.join(names)}")
         for i, shot in enumerate(self.shots):
             for name in (shot.actor, shot.look_at):
                 if name is not None and name not in names:

@@ -53,7 +53,8 @@ FAULTS = [
     ("walk_to = [0, 0], speed", "walk_to = [0, 0], stop = true, speed", "actors[0].moves[1]: needs exactly one of"),
     ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, path, stop; has none"),
     ("for = 1, velocity = [-0.5", "velocity = [-0.5", "actors[1].moves[0]: velocity needs `for`"),
-    ('name = "B"', 'name = "A"', "actors need different names; got A, A"),
+    ('name = "B"', 'name = "a"', "actors need different names, in more than capitals; got A, a"),
+    ('name = "B"', 'name = "b/../c"', "actors[1].name: files are named after it, so it needs letters"),
     ("duration = 2", 'duration = 2\n[[shots]]\nkind = "fixed"', "shots[0]: a fixed shot needs eye"),
     ("duration = 2", 'duration = 2\n[[shots]]\nactor = "C"', "shots[0]: no actor is called 'C'; there are A, B"),
     ("duration = 2", "duration = 2\n[[shots]]\n[[shots]]\nat = 0", "shots must begin at = 0 and then rise"),
@@ -71,11 +72,47 @@ def test_a_fault_is_one_line_that_names_file_and_field(tmp_path, old, new, says)
     assert says in message and message.startswith(str(file)) and "\n" not in message
 
 
+BOUNDS = [
+    ("duration = 2", "duration = {}", 3600, "duration"),
+    ("for = 1, velocity = [1.2", "for = {}, velocity = [1.2", 3600, "actors[0].moves[0].for"),
+    ("[1.2, 0.5, 0.3]", "[{}, 0.5, 0.3]", 20, "actors[0].moves[0].velocity[0]"),
+    ("[1.2, 0.5, 0.3]", "[20, {}, 0.3]", -20, "actors[0].moves[0].velocity[1]"),
+    ("[1.2, 0.5, 0.3]", "[1, 0, 0], until = [20, 0, {}]", -20, "actors[0].moves[0].until[2]"),
+    ("walk_to = [0, 0]", "walk_to = [0, {}]", 1e5, "actors[0].moves[1].walk_to[1]"),
+    ("walk_to = [0, 0]", "path = [[0, 0], [{}, 0]]", -1e5, "actors[0].moves[1].path[1][0]"),
+    ("speed = 1", "speed = {}", 20, "actors[0].moves[1].speed"),
+    ("facing = 0", "facing = {}", 3600, "actors[1].moves[1].facing"),
+    ("start = [2, 0, 90]", "start = [{}, 0, 90]", -1e5, "actors[1].start[0]"),
+    ("start = [2, 0, 90]", "start = [2, 0, {}]", -3600, "actors[1].start[2]"),
+    ("duration = 2", "duration = 2\nprops = [{{ centre = [0, 0, 0], size = [1, {}, 1] }}]", 1e5, "props[0].size[1]"),
+    ("duration = 2", "duration = 2\nprops = [{{ centre = [0, 0, {}], size = [1, 1, 1] }}]", 1e5, "props[0].centre[2]"),
+    ("duration = 2", "duration = 2\nshots = [{{ distance = {} }}]", 1e5, "shots[0].distance"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "most", "field"), BOUNDS, ids=[b[3] for b in BOUNDS])
+def test_numbers_no_one_can_mean_are_refused(tmp_path, old, new, most, field):
+    assert old in GOOD
+    load(written(tmp_path, GOOD.replace(old, new.format(most), 1)))
+    for more in (np.nextafter(most, most * 2), most * 1e200, np.inf, np.nan):
+        with pytest.raises(ScenarioError) as error:
+            load(written(tmp_path, GOOD.replace(old, new.format(repr(float(more))), 1)))
+        assert f"{field}: input should be" in str(error.value) and "\n" not in str(error.value)
+
+
 def test_several_faults_are_several_lines(tmp_path):
     file = written(tmp_path, GOOD.replace("duration = 2", "duration = 0\nspeed = 3"))
     with pytest.raises(ScenarioError) as error:
         load(file)
     assert len(str(error.value).splitlines()) == 2
+
+
+def test_names_that_files_can_have(tmp_path):
+    for name in ("Änne Müller-2", "_", "a b c"):
+        assert load(written(tmp_path, GOOD.replace('"B"', f'"{name}"'))).actors[1].name == name
+    for name in ("", " a", "a ", "a  b", "a.b", "a\\\\b", "..", "a:b", "a\\n", "x" * 41):
+        with pytest.raises(ScenarioError, match=r"actors\[1\].name: files are named after it"):
+            load(written(tmp_path, GOOD.replace('"B"', f'"{name}"')))
 
 
 def test_a_folder_of_a_scenarios_name_shadows_nothing(tmp_path, monkeypatch):
