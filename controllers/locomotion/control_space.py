@@ -2,10 +2,10 @@
 
 Truong 2010, section III: velocities (v_f, ω, v_l) are points of a 3-D Delaunay triangulation and
 the weights of the four primitives around a query are its barycentric coordinates (eq. 4). Beyond
-the paper: axes are scaled, queries outside are brought back along the ray to the anchor (the same
-path, walked slower), and because blending is not linear in velocity, the error measured at the
-middle of every edge gives a quadratic finite element of the velocity a blend really has, whose
-inverse corrects the query.
+the paper: axes are scaled, queries outside are brought back along the ray to the anchor (walking:
+rest, which is the same path walked slower; running: straight on at the same speed), and because
+blending is not linear in velocity, the error measured at the middle of every edge gives a
+quadratic finite element of the velocity a blend really has, whose inverse corrects the query.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
 """The six edges of a simplex, as pairs of its vertices."""
 STEEPEST = 10.0
 """Simplices thinner than 1 / STEEPEST (scaled velocity) are slivers: weights would race across them."""
+LANE = 0.95
+"""A lane ends this share of the way to the hull, so that there is room around its ends."""
 INSIDE = 1.0 - 1e-6
 """Clamped queries end this fraction of the way to the hull, so that rounding leaves them inside."""
 
@@ -29,7 +31,9 @@ INSIDE = 1.0 - 1e-6
 class ControlSpace:
     """Q points in velocity space, triangulated into S simplices.
 
-    points: (Q, 3) velocities, SI. anchor: (3,) the inner point that outside queries move towards.
+    points: (Q, 3) velocities, SI. anchor: (3,) an inner point and lane: (2,) how far v_f may be
+    changed there without leaving the hull; outside queries move towards the nearest point of that
+    stretch, which is the anchor alone where speed counts no more than turning.
     simplices, neighbours: (S, 4) vertices, and the simplex opposite to each (-1: none).
     transform: (S, 4, 3) as scipy's: barycentric b = T[:3] @ (p / SCALE − T[3]).
     hull: (H, 4) planes, n·(p / SCALE) + d ≤ 0 inside. bend: (S, 6, 3) what a half-and-half blend
@@ -38,6 +42,7 @@ class ControlSpace:
 
     points: np.ndarray
     anchor: np.ndarray
+    lane: np.ndarray
     simplices: np.ndarray
     neighbours: np.ndarray
     transform: np.ndarray
@@ -45,10 +50,12 @@ class ControlSpace:
     bend: np.ndarray
 
     @staticmethod
-    def build(points: np.ndarray, anchor: np.ndarray | None = None) -> ControlSpace:
+    def build(points: np.ndarray, anchor: np.ndarray | None = None, keep_speed: bool = False) -> ControlSpace:
         """Triangulate velocities (Q, 3). ValueError if they do not span the space.
 
         anchor: (3,) the mean by default; one that is not well inside is moved towards the mean.
+        keep_speed: whether queries outside keep their v_f as far as the hull reaches; the anchor by
+        default is then the mean v_f, straight on.
         """
         scaled = np.asarray(points, float) / SCALE
         if len(scaled) < 4 or np.linalg.matrix_rank(scaled - scaled[0], tol=1e-3) < 3:
@@ -60,13 +67,17 @@ class ControlSpace:
             raise ValueError(f"the velocities can't be triangulated: {str(error).splitlines()[0]}") from None
         sound = np.isfinite(mesh.transform).all((1, 2))
         middle = scaled.mean(0)
-        inner = middle if anchor is None else np.asarray(anchor, float) / SCALE
+        straight = middle * [1.0, 0.0, 0.0] if keep_speed else middle
+        inner = straight if anchor is None else np.asarray(anchor, float) / SCALE
         for _ in range(40):  # an anchor on the hull's rim (rest, where nobody walks backward) moves inwards
             if np.all(hull.equations @ np.append(inner, 1.0) < -1e-3):
                 break
             inner = inner + 0.1 * (middle - inner)
-        inner = inner * SCALE
-        space = ControlSpace(np.asarray(points, float), inner, mesh.simplices.astype(np.int64),
+        lane = np.full(2, inner[0])
+        if keep_speed:
+            slope, room = hull.equations[:, 0], -(hull.equations @ np.append(inner, 1.0))
+            lane += LANE * np.array([(room[slope < 0] / slope[slope < 0]).max(), (room[slope > 0] / slope[slope > 0]).min()])
+        space = ControlSpace(np.asarray(points, float), inner * SCALE, lane * SCALE[0], mesh.simplices.astype(np.int64),
                              mesh.neighbors.astype(np.int64), mesh.transform,
                              np.unique(np.round(hull.equations, 12), axis=0),
                              np.zeros((len(mesh.simplices), 6, 3)))
@@ -75,9 +86,13 @@ class ControlSpace:
         return space
 
     def clamp(self, query: np.ndarray, towards: np.ndarray | None = None) -> np.ndarray:
-        """Queries (..., 3) brought into the hull along the ray to a point (..., 3) in it: the anchor."""
-        origin = (self.anchor if towards is None else towards) / SCALE
-        ray = np.asarray(query, float) / SCALE - origin
+        """Queries (..., 3) brought into the hull along the ray to a point (..., 3) in it: the lane's nearest."""
+        query = np.asarray(query, float)
+        if towards is None:
+            towards = np.broadcast_to(self.anchor, query.shape).copy()
+            towards[..., 0] = np.clip(query[..., 0], *self.lane)
+        origin = towards / SCALE
+        ray = query / SCALE - origin
         room = np.maximum(-(origin @ self.hull[:, :3].T + self.hull[:, 3]), 1e-12)
         reach = np.max(ray @ self.hull[:, :3].T / room, axis=-1)
         return (origin + ray / np.maximum(reach / INSIDE, 1.0)[..., None]) * SCALE

@@ -76,8 +76,9 @@ class Locomotion:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise).
 
         intent.velocity broadcasts against the state's batch axes. A wish that is not finite counts
-        as no wish. One beyond what the library holds is walked slower on the same arc; a run
-        moves towards the mean run.
+        as no wish. One beyond what the library holds is walked slower on the same arc (so a hard
+        turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
+        turns or side-steps less.
         """
         if not 0.0 < dt <= 0.1:
             raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")

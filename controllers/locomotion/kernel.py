@@ -46,6 +46,7 @@ class Space(NamedTuple):
     transform: np.ndarray
     hull: np.ndarray
     anchor: np.ndarray
+    lane: np.ndarray
     bend: np.ndarray
 
 
@@ -65,7 +66,7 @@ def space_tables(space: ControlSpace, members: np.ndarray) -> Space:
     """The kernel's view of a control space over the library's primitives `members` (Q,)."""
     return Space(*(np.ascontiguousarray(a) for a in (
         members[space.simplices].astype(np.int64), space.neighbours, space.transform,
-        space.hull, space.anchor / SCALE, space.bend / SCALE)))
+        space.hull, space.anchor / SCALE, space.lane / SCALE[0], space.bend / SCALE)))
 
 
 def series_table(library: Library) -> np.ndarray:
@@ -135,6 +136,14 @@ def clamp_kernel(space, p, towards):
 
 
 @kernel
+def inner_kernel(space, p, inner):
+    """Write the point (3,) of the space's lane that the scaled point `p` (3,) is clamped towards."""
+    for i in range(3):
+        inner[i] = space.anchor[i]
+    inner[0] = min(max(p[0], space.lane[0]), space.lane[1])
+
+
+@kernel
 def query_kernel(space, velocity, start, correct, b, target, moved):
     """The simplex and weights `b` (4,) whose blend moves at `velocity` (3,) SI.
 
@@ -143,7 +152,8 @@ def query_kernel(space, velocity, start, correct, b, target, moved):
     """
     for i in range(3):
         target[i] = velocity[i] / SCALE[i]
-    simplex = locate_kernel(space, target, space.anchor, start, b)
+    inner_kernel(space, target, moved)
+    simplex = locate_kernel(space, target, moved, start, b)
     for _ in range(correct):
         for i in range(3):
             moved[i] = target[i]

@@ -111,14 +111,16 @@ def measure_bend(library: Library, members: np.ndarray, space: ControlSpace) -> 
 
 
 def space_of(library: Library, family: str) -> ControlSpace | None:
-    """The control space of one family, anchored at rest for walking, at the mean for running.
+    """The control space of one family: a walk too wild is walked slower, down to rest; a run too
+    wild goes straighter at the same speed.
 
     None for runs too few or too alike to span one: walking then serves at any speed. LibraryError
     if that is so of walking.
     """
     members = library.family(family)
     try:
-        space = ControlSpace.build(library.velocities[members], np.zeros(3) if family == "walk" else None)
+        space = ControlSpace.build(library.velocities[members], np.zeros(3) if family == "walk" else None,
+                                   keep_speed=family == "run")
     except ValueError as error:
         if family == "run":
             return None

@@ -10,8 +10,8 @@ from ..body.springs import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
 from .footing import place_feet
-from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, pose_kernel,
-                     query_kernel, series_kernel)
+from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
+                     pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
 
 
@@ -31,7 +31,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
     b, p, q = np.empty(4), np.empty(3), np.empty(3)
     for n in range(memory.shape[0]):
         m = memory[n]
-        _shape_command(m, wish[n], dt, settings, walk, run, p)
+        _shape_command(m, wish[n], dt, settings, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, fresh, b, p, q)
         _advance_phase(m, wish[n], legs, dt)
         _blend_series(m, settings, table, fresh, legs, dt)
@@ -43,15 +43,17 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
 
 
 @kernel
-def _shape_command(m, wish, dt, settings, walk, run, p):
+def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
     no faster than legs can push."""
     for i in range(3):
         p[i] = wish[i] / SCALE[i]
     if wish[0] > (settings.run_above if m.family == WALK else settings.walk_below):
-        clamp_kernel(run, p, run.anchor)
+        inner_kernel(run, p, inner)
+        clamp_kernel(run, p, inner)
     else:
-        clamp_kernel(walk, p, walk.anchor)
+        inner_kernel(walk, p, inner)
+        clamp_kernel(walk, p, inner)
     for i in range(3):
         before = m.command[i]
         x, v = spring_kernel(before, m.rate[i], p[i] * SCALE[i], settings.command_halflife, dt)
@@ -97,14 +99,14 @@ def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
     for i in range(m.weights.shape[0]):
         m.weights[i] /= total
     if switch:  # inertialise: what was shown minus what the other family shows now
-        before = (m.phase - dt / max(m.row[DURATION_AT], 0.3)) % 1.0
-        series_kernel(table, m.weights, before, fresh)
-        for d in range(COLUMNS):
-            m.blend_rate[d] = fresh[d]
         series_kernel(table, m.weights, m.phase, fresh)
         for d in range(LABELS_AT):
-            m.blend_rate[d] = m.row_rate[d] - (fresh[d] - m.blend_rate[d]) / dt
             m.blend[d] = m.row[d] - fresh[d]
+            m.blend_rate[d] = m.row_rate[d] + fresh[d] / dt
+        m.row[DURATION_AT] = fresh[DURATION_AT]  # at the other family's pace, too
+        series_kernel(table, m.weights, _next_phase(m, dt), fresh)
+        for d in range(LABELS_AT):
+            m.blend_rate[d] -= fresh[d] / dt
 
 
 @kernel
@@ -117,7 +119,12 @@ def _advance_phase(m, wish, legs, dt):
         left_first = wish[1] > 0.05 or (wish[1] >= -0.05 and wish[2] >= 0.0)
         m.phase = 0.03 if left_first else 0.53
         m.settled = 0
-    m.phase = (m.phase + dt / max(m.row[DURATION_AT], 0.3)) % 1.0
+    m.phase = _next_phase(m, dt)
+
+
+@kernel
+def _next_phase(m, dt):
+    return (m.phase + dt / max(m.row[DURATION_AT], 0.3)) % 1.0
 
 
 @kernel

@@ -126,6 +126,23 @@ def test_an_anchor_may_be_anywhere_inside(seed, share):
     assert np.all(np.sum(found * wish, -1) > 0)
 
 
+@law
+@given(seeds, st.floats(1.0, 50.0))
+def test_a_runner_gives_up_turning_before_speed(seed, far):
+    """Where speed is kept, a query outside keeps its v_f wherever the hull holds any of that v_f straight on."""
+    points, rng = cloud(seed)
+    space = ControlSpace.build(points + [3, 0, 0], keep_speed=True)
+    query = inner(space.points, rng, 20) * [1, far, far]
+    found = space.clamp(query)
+    assert space.inside(found).all() and np.all(space.anchor[1:] == 0)
+    kept = (query[:, 0] > space.lane[0]) & (query[:, 0] < space.lane[1])
+    np.testing.assert_allclose(found[kept, 0], query[kept, 0], atol=1e-9)
+    np.testing.assert_allclose(found[kept, 1] * query[kept, 2], found[kept, 2] * query[kept, 1], atol=1e-9)
+    assert np.all(found[query[:, 0] > space.lane[1], 0] >= space.lane[1] - 1e-9)
+    wild = space.clamp([[-50.0, 9, 9], [50.0, 9, 9]])
+    assert space.inside(wild).all() and np.all(wild[:, 0] >= space.lane[0] - 0.5) and wild[1, 0] >= space.lane[1] - 1e-9
+
+
 def told(space, deviation):
     """A space that knows the deviations (≥ E, 3) of its edges, in their order."""
     pairs, _ = space.edges()

@@ -275,6 +275,19 @@ def test_too_much_is_done_as_fast_as_possible_on_the_same_path(locomotion):
         assert np.linalg.norm(found) < np.linalg.norm(wanted)
 
 
+def test_a_runner_is_never_flung_forward(locomotion):
+    """However hard one turns or side-steps, a run is as fast as asked, from the slowest run to the fastest."""
+    rng, slowest = np.random.default_rng(7), 2.3
+    wish = rng.uniform([locomotion.settings.run_above + 0.01, -3, -1.2], [5, 3, 1.2], (60, 3))
+    wish[:3] = (2.2, 0, 1.0), (2.0, 3.0, 0), (3.0, 0.5, 0.2)
+    found = mean_velocity(play(locomotion, hold(9, *wish)).ground[240:])
+    assert np.all(found[:, 0] < np.maximum(wish[:, 0], slowest) + 0.2)
+    held = (wish[:, 0] > slowest) & (wish[:, 0] < locomotion.run.lane[1])
+    assert np.all(found[held, 0] > wish[held, 0] - 0.2)
+    assert np.all(found[:, 1] * wish[:, 1] >= -0.05), "still the same way round"
+    assert np.abs(found[2] - wish[2]).max() < 0.05, "one within reach is met"
+
+
 def test_left_is_left(locomotion):
     """Positive lateral speed goes to +X and a positive turn from +Z towards +X."""
     motion = play(locomotion, hold(4, (0, 0, 0.4), (0.6, 0.5, 0), (1.0, 0, 0)))

@@ -12,8 +12,8 @@ from controllers.locomotion import fourier
 from controllers.locomotion.blend import Blender
 from controllers.locomotion.control_space import SCALE, ControlSpace
 from controllers.locomotion.kernel import (COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, body_tables,
-                                           locate_kernel, pose_kernel, query_kernel, series_kernel, series_table,
-                                           space_tables)
+                                           inner_kernel, locate_kernel, pose_kernel, query_kernel, series_kernel,
+                                           series_table, space_tables)
 
 law = settings(max_examples=30, deadline=None)
 seeds = st.integers(0, 2**32 - 1)
@@ -77,8 +77,9 @@ def test_searching_agrees_with_looking_everywhere(locomotion, seed, far, family)
     tables = space_tables(space, np.arange(len(space.points)))
     for velocity in space.anchor + velocities(rng, 10, far):
         part, weights = np.empty(4), np.zeros(len(space.points))
-        start = int(rng.integers(len(space.simplices)))
-        simplex = locate_kernel(tables, velocity / SCALE, tables.anchor, start, part)
+        start, inner = int(rng.integers(len(space.simplices))), np.empty(3)
+        inner_kernel(tables, velocity / SCALE, inner)
+        simplex = locate_kernel(tables, velocity / SCALE, inner, start, part)
         weights[space.simplices[simplex]] = part
         np.testing.assert_allclose(weights, space.weights(velocity, correct=0), atol=1e-5)
 
