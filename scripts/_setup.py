@@ -10,11 +10,14 @@ import platform
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
 STAMP = VENV / "gambol-installed.txt"
+TRIED = VENV / "gambol-tried.txt"  # the Debian packages last asked for; the file's time says when
+AGAIN = 24 * 3600.0  # seconds after which they are asked for again
 PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 LIBRARIES = {
     "libEGL.so.1": ("libegl1", "libegl-mesa0"),
@@ -35,13 +38,26 @@ def ready(extra: str = "") -> Path:
     """
     if sys.version_info < (3, 11):
         sys.exit(f"Gambol needs Python 3.11 or newer; this is {platform.python_version()}")
+    _install(extra)
     if platform.system() == "Linux":
         _need_libraries()
+    return PYTHON
+
+
+def run(*arguments: str, folder: Path | None = None) -> int:
+    """Run the environment's Python, in the user's folder or another; its exit code."""
+    try:
+        return subprocess.call([str(PYTHON), *arguments], cwd=folder)
+    except KeyboardInterrupt:
+        return 130
+
+
+def _install(extra: str) -> None:
     wanted = _fingerprint()
     done = STAMP.read_text().split() if STAMP.exists() and PYTHON.exists() else []
     extras = set(done[1:]) | ({extra} if extra else set())
     if done[:1] == [wanted] and set(done[1:]) == extras:
-        return PYTHON
+        return
     if not _works():
         _make_environment()
     what = ".[" + ",".join(sorted(extras)) + "]" if extras else "."
@@ -51,15 +67,6 @@ def ready(extra: str = "") -> Path:
     if code:
         sys.exit("Installing failed; pip's own message is above. Is the network reachable?")
     STAMP.write_text(" ".join([wanted, *sorted(extras)]))
-    return PYTHON
-
-
-def run(*arguments: str) -> int:
-    """Run the environment's Python in the project's folder; its exit code."""
-    try:
-        return subprocess.call([str(PYTHON), *arguments], cwd=ROOT)
-    except KeyboardInterrupt:
-        return 130
 
 
 def _fingerprint() -> str:
@@ -109,19 +116,35 @@ def _loads(library: str) -> bool:
 
 
 def _apt(packages: tuple, why: str, optional: bool = False) -> None:
-    """Install Debian packages if this user may; else say what to type, and leave unless `optional`."""
+    """Install Debian packages if this user may; else say what to type, and leave unless `optional`.
+
+    What is optional is tried once a day at most: apt-get takes long to fail without a network.
+    """
     command = "apt-get install -y --no-install-recommends " + " ".join(packages)
     if shutil.which("apt-get") is None:
         message = f"{why}. Install what your system calls: {' '.join(packages)}"
     elif os.geteuid() != 0:
         message = f"{why}. Type: sudo apt-get update && sudo {command}"
+    elif not (optional and _tried(packages)) and _installed(packages, why):
+        return
     else:
-        print(f"{why}: installing {' '.join(packages)}", flush=True)
-        quiet = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
-        subprocess.call(["apt-get", "update", "-qq"], env=quiet)
-        if subprocess.call(["apt-get", "-qq", *command.split()[1:]], env=quiet) == 0:
-            return
         message = f"{why}, and apt-get could not install them. Type: apt-get update && {command}"
     if not optional:
         sys.exit(message)
     print(message, flush=True)
+
+
+def _installed(packages: tuple, why: str) -> bool:
+    print(f"{why}: installing {' '.join(packages)}", flush=True)
+    quiet = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
+    subprocess.call(["apt-get", "update", "-qq"], env=quiet)
+    return subprocess.call(["apt-get", "-qq", "install", "-y", "--no-install-recommends", *packages], env=quiet) == 0
+
+
+def _tried(packages: tuple) -> bool:
+    """Whether these packages were asked for lately; if not, they are noted as asked for now."""
+    text = " ".join(packages)
+    if TRIED.exists() and TRIED.read_text() == text and time.time() - TRIED.stat().st_mtime < AGAIN:
+        return True
+    TRIED.write_text(text)
+    return False

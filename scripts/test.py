@@ -10,7 +10,7 @@ import _setup
 
 def main() -> int:
     _setup.ready("test")
-    return _setup.run("-m", "pytest", *sys.argv[1:])
+    return _setup.run("-m", "pytest", *sys.argv[1:], folder=_setup.ROOT)
 
 
 if __name__ == "__main__":
