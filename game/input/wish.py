@@ -14,6 +14,7 @@ class Wish:
     when no direction is to be faced. turn: −1 … 1, positive to the left. run: 0 … 1.
     orbit: rates −1 … 1 at which the camera turns (left, up). drag: angles [rad] by which the mouse
     turned it (left, up) since the last moment, zoom: notches of the wheel, positive nearer.
+    pan: how far the mouse pushed the picture (right, up), in heights of the window.
     pressed: the actions that were set off since then, in order; "name=value" sets a setting.
     """
 
@@ -26,6 +27,7 @@ class Wish:
     orbit: tuple[float, float] = (0.0, 0.0)
     drag: tuple[float, float] = (0.0, 0.0)
     zoom: float = 0.0
+    pan: tuple[float, float] = (0.0, 0.0)
     pressed: tuple[str, ...] = ()
 
     def merged(self, other: Wish) -> Wish:
@@ -36,7 +38,7 @@ class Wish:
                     max(self.turn, other.turn, key=abs), max(self.run, other.run),
                     self.slow or other.slow, self.strafe or other.strafe, further(self.orbit, other.orbit),
                     (self.drag[0] + other.drag[0], self.drag[1] + other.drag[1]), self.zoom + other.zoom,
-                    self.pressed + other.pressed)
+                    (self.pan[0] + other.pan[0], self.pan[1] + other.pan[1]), self.pressed + other.pressed)
 
 
 def unit_disc(x: float, y: float) -> tuple[float, float]:
