@@ -20,14 +20,17 @@ _PACKAGE = Path(__file__).parent
 
 @lru_cache
 def cache_folder() -> Path:
-    """Where compiled kernels of exactly these sources are kept; older ones beside it are removed."""
+    """Where compiled kernels of exactly these sources are kept; older ones beside it are removed.
+
+    An installation that can't be written to keeps them in its user's home, apart from any other's.
+    """
     stamp = hashlib.sha1(numba.__version__.encode())
     for path in sorted(_PACKAGE.rglob("*.py")):
         about = path.stat()
         stamp.update(f"{path.relative_to(_PACKAGE)} {about.st_mtime_ns} {about.st_size}\n".encode())
     home = _PACKAGE / "__pycache__"
     if not os.access(home if home.exists() else _PACKAGE, os.W_OK):
-        home = Path.home() / ".cache" / "gambol"
+        home = Path.home() / ".cache" / "gambol" / hashlib.sha1(str(_PACKAGE.resolve()).encode()).hexdigest()[:12]
     folder = home / f"kernels-{stamp.hexdigest()[:12]}"
     for old in home.glob("kernels-*"):
         if old != folder:

@@ -93,10 +93,25 @@ def test_another_numba_has_another_folder(package):
     assert one != other
 
 
-def test_a_package_that_cant_be_written_to_keeps_its_kernels_at_home(package, tmp_path):
-    found, = call(package, "c.os.access = lambda *a: False; c.cache_folder.cache_clear()\n"
-                           f"c.Path.home = lambda: c.Path({str(tmp_path / 'home')!r}); print(c.cache_folder())")
-    assert Path(found).parent == tmp_path / "home" / ".cache" / "gambol"
+def test_installations_that_cant_be_written_to_keep_their_kernels_at_home_apart(package, tmp_path):
+    """Each clears what is old of its own, and nothing of another."""
+    other = shutil.copytree(package, tmp_path / "elsewhere" / "pack")
+    home = tmp_path / "home"
+
+    def cached(package):
+        found, = call(package, f"""
+c.os.access = lambda *a: False
+c.Path.home = lambda: c.Path({str(home)!r})
+c.cache_folder.cache_clear()
+c.cache_folder().mkdir(parents=True, exist_ok=True)
+print(c.cache_folder())""")
+        return Path(found)
+    mine, theirs = cached(package), cached(other)
+    assert mine.is_dir() and theirs.is_dir() and mine != theirs
+    assert home / ".cache" / "gambol" in mine.parents and home / ".cache" / "gambol" in theirs.parents
+    touch(package / "inner.py", "# another\n" + (package / "inner.py").read_text())
+    newer = cached(package)
+    assert newer.is_dir() and not mine.exists() and theirs.is_dir()
 
 
 def test_the_setting_of_others_is_left_as_it_was(package):
