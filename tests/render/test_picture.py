@@ -175,7 +175,7 @@ def test_a_caption_stands_in_the_lower_third_and_fades(draw):
     scene = Scene(camera(eye=(0, 1.6, 5), target=(0, 9.0, 0)))
     plain = draw(scene).astype(int)
     shown, faint, long, gone = (np.abs(draw(replace(scene, caption=caption)) - plain)[..., :3].max(-1) for caption in (
-        Caption("Corridor", "half speed"), Caption("Corridor", "half speed", 0.3), Caption("A long title " * 9),
+        Caption("Corridor", "half speed"), Caption("Corridor", "half speed", 0.3), Caption("A long title " * 3),
         Caption("Corridor", opacity=0.0)))
     rows, columns = np.nonzero(shown > 40)
     assert rows.min() > 120 and rows.max() < 170 and columns.min() > 10
