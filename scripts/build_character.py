@@ -31,7 +31,7 @@ def finished(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
     """The mesh with its normals, openness and skin weights."""
     normals = shape.gradient(vertices)
     joints, weights = binding.bound(vertices, faces)
-    return Mesh(vertices, normals, faces, joints, weights, surface.openness(vertices, normals))
+    return Mesh(vertices, normals, faces, joints, weights, surface.openness(vertices, normals), vertices)
 
 
 def main() -> None:

@@ -1,15 +1,16 @@
 #include frame.glsl
 #include skin.glsl
 in float open;
+in vec3 paint;
 out vec3 v_at;
 out vec3 v_normal;
-out vec3 v_rest;
+out vec3 v_paint;
 out float v_open;
 flat out vec3 v_tint;
 
 void main() {
     skinned(v_at, v_normal);
-    v_rest = position;
+    v_paint = paint;
     v_open = open;
     v_tint = look[gl_InstanceID].rgb;
     gl_Position = view_projection * vec4(v_at, 1.0);

@@ -1,4 +1,4 @@
-// The mannequin's two materials, told from where a point lies in T-pose. Worked out for each pixel,
+// The mannequin's two materials, told from where a point lies on the standard one in T-pose. Worked out for each pixel,
 // so that the borders are as sharp on the coarse mesh as on the fine one.
 float strip(float t, float low, float high) { return min(t - low, high - t); }
 
@@ -24,4 +24,15 @@ vec2 paint(vec3 p) {
                           : 0.8 * (0.868 + 0.70 * p.x - 0.35 * clamp(-p.z, 0.0, 0.06) - p.y);
     }
     return vec2(dark, clamp(seam, -0.03, 0.03));
+}
+
+// The colour at a point [m], and how it shines.
+vec4 painted(vec3 at, vec3 tint) {
+    vec2 field = paint(at), blur = fwidth(field) + 1e-5;
+    float dark = clamp(0.5 + field.x / blur.x, 0.0, 1.0);
+    // grooves between the parts, too fine to model: 3 mm wide, fainter where a pixel is wider
+    vec2 groove = clamp((0.0015 - abs(field)) / blur + 0.5, 0.0, 1.0) * min(0.003 / blur, 1.0);
+    float seam = max(groove.x, groove.y * (1.0 - dark));
+    vec3 base = mix(tint, vec3(0.045, 0.049, 0.058) + 0.05 * tint, dark) * (1.0 - 0.75 * seam);
+    return vec4(base, mix(0.10, 0.35, dark));
 }

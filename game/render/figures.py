@@ -1,4 +1,4 @@
-"""Characters: one mesh, drawn for sixteen figures at a time."""
+"""Characters: each body's mesh, drawn for sixteen figures at a time."""
 
 from __future__ import annotations
 
@@ -8,44 +8,81 @@ from typing import Any
 import numpy as np
 
 from ..scene import Figure
-from . import gl, mesh, skin
+from . import gl, skin
+from .mesh import LEVELS, Body, mannequin
 from .view import scale_of
+from .wear import worn
 
 BATCH = 16
 """Figures in a draw call: what fits the 16 KiB that every OpenGL 3.3 gives a uniform block."""
-_LAYOUT = "3f 3f 4u1 4f1 1f"
-_NAMES = ("position", "normal", "joints", "weights", "open")
+KEPT = 8
+"""Bodies kept on the graphics card; beyond, those that nobody wears make room."""
+_LAYOUT = "3f 3f 4u1 4f1 1f 3f"
+_NAMES = ("position", "normal", "joints", "weights", "open", "paint")
+
+
+class Wardrobe:
+    """One body on the graphics card: vertex arrays by level and kind, and its pictures."""
+
+    def __init__(self, ctx: Any, body: Body, programs: dict[str, Any]):
+        self.pictures, self._owned, self.arrays = None, [], {}
+        if body.pictures is not None:
+            layers, size = body.pictures.shape[:2]
+            self.pictures = ctx.texture_array((size, size, layers), 4, body.pictures.tobytes())
+            self.pictures.build_mipmaps()
+            self.pictures.anisotropy = 8.0
+            self._owned.append(self.pictures)
+        made = {}  # a body may give one mesh for several levels
+        for level, mesh in zip(LEVELS, body.levels):
+            if id(mesh) not in made:
+                made[id(mesh)] = (ctx.buffer(mesh.interleaved()), ctx.buffer(mesh.triangles.astype(np.uint32).tobytes()))
+                self._owned += made[id(mesh)]
+            vertices, indices = made[id(mesh)]
+            for kind, program in programs.items():
+                self.arrays[level, kind] = ctx.vertex_array(
+                    program, [_content(program, vertices)], index_buffer=indices, index_element_size=4)
+
+    def release(self) -> None:
+        for part in (*self.arrays.values(), *self._owned):
+            part.release()
 
 
 class Figures:
     """Draws the figures of a scene; made once per context."""
 
     def __init__(self, ctx: Any, taps: int):
-        self.programs = {"body": gl.program(ctx, "figure.vert", "figure.frag", TAPS=taps),
+        self.ctx = ctx
+        self.programs = {"painted": gl.program(ctx, "figure.vert", "figure.frag", TAPS=taps, PICTURES=0),
                          "shadow": gl.program(ctx, "figure_shadow.vert", "depth.frag")}
+        self._taps = taps
         self.block = ctx.buffer(reserve=BATCH * (len(skin.NAMES) * 32 + 16), dynamic=True)
-        self._owned, self.arrays = [self.block], {}
-        for level in mesh.LEVELS:
-            shape = mesh.mannequin(level)
-            vertices = ctx.buffer(shape.interleaved())
-            indices = ctx.buffer(shape.triangles.astype(np.uint32).tobytes())
-            self._owned += [vertices, indices]
-            for kind, program in self.programs.items():
-                self.arrays[level, kind] = ctx.vertex_array(
-                    program, [_content(program, vertices)], index_buffer=indices, index_element_size=4)
-        self.batches: list[tuple[str, bytes, int]] = []
+        self.wardrobes: dict[Body, Wardrobe] = {}
+        self.batches: list[tuple[Body, str, bytes, int]] = []
+        self._wardrobe(mannequin())
 
     def prepare(self, figures: Sequence[Figure], eye: np.ndarray, origin: np.ndarray, ranges: Sequence[float]) -> None:
         """Pose what will be drawn, all of it `drawable`. ranges: how far each finer mesh serves [m]."""
         self.batches = []
-        if not figures:
-            return
+        groups: dict[Body, list[Figure]] = {}
+        for figure in figures:
+            groups.setdefault(figure.body or mannequin(), []).append(figure)
+        for body in [body for body in self.wardrobes if body not in groups and body is not mannequin()][KEPT:]:
+            self.wardrobes.pop(body).release()
+        for body, group in groups.items():
+            self._wardrobe(body)
+            self._pose(body, group, eye, origin, ranges)
+
+    def _pose(self, body: Body, figures: list[Figure], eye, origin, ranges) -> None:
         positions = np.stack([f.positions for f in figures]).astype(float)
-        scale = scale_of(positions, skin.REST, skin.STANDARD.parents)
-        motion = skin.motions(positions - origin, np.stack([f.orientations for f in figures]), scale)
+        orientations = np.stack([f.orientations for f in figures])
+        if body is mannequin():
+            scale = scale_of(positions, skin.REST, skin.STANDARD.parents)
+        else:
+            positions, orientations, scale = worn(body, positions, orientations)
+        motion = skin.motions(positions - origin, orientations, scale, body.joints)
         look = np.concatenate([np.array([f.tint for f in figures]), scale[:, None]], 1).astype(np.float32)
         levels = np.searchsorted(ranges, np.linalg.norm(positions[:, 0] - eye, axis=1))
-        for k, level in enumerate(mesh.LEVELS):
+        for k, level in enumerate(LEVELS):
             chosen = np.flatnonzero(levels == k)
             for start in range(0, len(chosen), BATCH):
                 part = chosen[start:start + BATCH]
@@ -54,18 +91,33 @@ class Figures:
                 data[:len(part)] = motion[part].reshape(len(part), -1, 4)
                 looks = np.zeros((BATCH, 4), np.float32)
                 looks[:len(part)] = look[part]
-                self.batches.append((level, data.tobytes() + looks.tobytes(), len(part)))
+                self.batches.append((body, level, data.tobytes() + looks.tobytes(), len(part)))
+
+    def _wardrobe(self, body: Body) -> None:
+        if body not in self.wardrobes:
+            look = "painted" if body.pictures is None else "pictured"
+            if look not in self.programs:
+                self.programs[look] = gl.program(self.ctx, "figure.vert", "figure.frag", TAPS=self._taps, PICTURES=1)
+            self.wardrobes[body] = Wardrobe(self.ctx, body, {"body": self.programs[look],
+                                                             "shadow": self.programs["shadow"]})
 
     def draw(self, kind: str) -> None:
         """Draw the prepared figures: "body", or "shadow" (into the shadow map, always coarse)."""
-        for level, data, count in self.batches:
+        for body, level, data, count in self.batches:
+            wardrobe = self.wardrobes[body]
             self.block.orphan()
             self.block.write(data)
             self.block.bind_to_uniform_block(gl.FIGURES)
-            self.arrays["far" if kind == "shadow" else level, kind].render(instances=count)
+            if wardrobe.pictures is not None and kind == "body":
+                wardrobe.pictures.use(gl.PICTURES)
+            if body.thin:
+                self.ctx.disable(self.ctx.CULL_FACE)
+            wardrobe.arrays["far" if kind == "shadow" else level, kind].render(instances=count)
+            if body.thin:
+                self.ctx.enable(self.ctx.CULL_FACE)
 
     def release(self) -> None:
-        for part in (*self.arrays.values(), *self.programs.values(), *self._owned):
+        for part in (*self.wardrobes.values(), *self.programs.values(), self.block):
             part.release()
 
 

@@ -9,6 +9,8 @@ import assets
 
 FRAME, FIGURES = 0, 1
 """Binding points of the uniform blocks."""
+PICTURES = 4
+"""The texture unit of bodies' pictures."""
 
 
 def source(name: str, defines: dict[str, int]) -> str:
@@ -32,6 +34,8 @@ def program(ctx: Any, vertex: str, fragment: str, varyings: tuple[str, ...] = ()
     for name in ("shadow_map", "atlas"):
         if name in made:
             made[name] = 0
+    if "pictures" in made:
+        made["pictures"] = PICTURES
     return made
 
 

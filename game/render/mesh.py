@@ -1,4 +1,4 @@
-"""The character's mesh as it lies on disk, and as the graphics card wants it."""
+"""Characters' meshes: as they lie on disk, and as the graphics card wants them."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ import numpy as np
 
 import assets
 
+from . import skin
+
 POSITION_UNIT = 1.0 / 16384.0
 """What one step of a stored position measures [m]."""
 LEVELS = ("near", "middle", "far")
-"""The meshes in the file, the finest first."""
+"""The meshes of a body, the finest first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +23,8 @@ class Mesh:
 
     positions, normals: (V, 3) [m], unit. triangles: (T, 3), counter-clockwise from outside.
     joints, weights: (V, 4) into `skin.NAMES`, summing to 1. open: (V,) how open each vertex is to
-    the sky, 0 … 1.
+    the sky, 0 … 1. paint: (V, 3) where its colour is looked up: the place on the standard
+    mannequin [m], or u, v and the layer of its body's pictures.
     """
 
     positions: np.ndarray
@@ -30,15 +33,33 @@ class Mesh:
     joints: np.ndarray
     weights: np.ndarray
     open: np.ndarray
+    paint: np.ndarray
 
     def interleaved(self) -> bytes:
-        """All vertices: position 3f, normal 3f, joints 4u1, weights 4 normalised u1, openness f."""
+        """All vertices: position 3f, normal 3f, joints 4u1, weights 4 normalised u1, openness f, paint 3f."""
         layout = np.dtype([("position", "f4", 3), ("normal", "f4", 3), ("joints", "u1", 4),
-                           ("weights", "u1", 4), ("open", "f4")])
+                           ("weights", "u1", 4), ("open", "f4"), ("paint", "f4", 3)])
         rows = np.empty(len(self.positions), layout)
         rows["position"], rows["normal"], rows["joints"] = self.positions, self.normals, self.joints
-        rows["weights"], rows["open"] = np.round(self.weights * 255), self.open
+        rows["weights"], rows["open"], rows["paint"] = np.round(self.weights * 255), self.open, self.paint
         return rows.tobytes()
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Somebody to be: meshes around joints at T-pose, sole on the floor, in the body's own size.
+
+    levels: `LEVELS` of the mesh. joints: (22, 3) [m] the standard human's joints in it.
+    pictures: None for the mannequin's two-tone paint, else (L, S, S, 4) uint8, sRGB and opacity,
+    the layers that `Mesh.paint` looks up (a layer below 0 is the figure's tint).
+    thin: whether its surfaces are seen from both sides. Compared and hashed as an object.
+    """
+
+    name: str
+    levels: tuple[Mesh, Mesh, Mesh]
+    joints: np.ndarray
+    pictures: np.ndarray | None = None
+    thin: bool = False
 
 
 def pack(mesh: Mesh, level: str) -> dict[str, np.ndarray]:
@@ -55,12 +76,16 @@ def pack(mesh: Mesh, level: str) -> dict[str, np.ndarray]:
 
 
 @lru_cache
-def mannequin(level: str = "near") -> Mesh:
+def mannequin() -> Body:
     """Gambol's own character. FileNotFoundError if it was not built."""
     with np.load(assets.path("character", "mannequin.npz")) as file:
-        stored = {name: file[f"{level}_{name}"] for name in
-                  ("positions", "normals", "triangles", "joints", "weights", "open")}
+        return Body("Mannequin", tuple(_unpacked(file, level) for level in LEVELS), skin.REST)
+
+
+def _unpacked(file, level: str) -> Mesh:
+    stored = {name: file[f"{level}_{name}"] for name in
+              ("positions", "normals", "triangles", "joints", "weights", "open")}
+    positions = (stored["positions"] * POSITION_UNIT).astype(np.float32)
     normals = stored["normals"] / np.linalg.norm(stored["normals"].astype(np.float32), axis=1, keepdims=True)
-    return Mesh((stored["positions"] * POSITION_UNIT).astype(np.float32), normals.astype(np.float32),
-                stored["triangles"].astype(np.uint32), stored["joints"],
-                (stored["weights"] / 255.0).astype(np.float32), (stored["open"] / 255.0).astype(np.float32))
+    return Mesh(positions, normals.astype(np.float32), stored["triangles"].astype(np.uint32), stored["joints"],
+                (stored["weights"] / 255.0).astype(np.float32), (stored["open"] / 255.0).astype(np.float32), positions)

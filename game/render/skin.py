@@ -29,7 +29,10 @@ _BONES = np.array([STANDARD.index(name) for name, _ in _SWINGS])
 _AXES = np.eye(3)[[axis for _, axis in _SWINGS]]
 _FORE = np.array([STANDARD.index(fore) for fore, _ in _HANDS])
 _HAND = np.array([STANDARD.index(hand) for _, hand in _HANDS])
-_AT = np.concatenate([np.arange(len(STANDARD)), _BONES, _FORE])
+AT = np.concatenate([np.arange(len(STANDARD)), _BONES, _FORE])
+"""At which of the 22 joints each of `NAMES` sits (30,)."""
+PARENTS = np.concatenate([STANDARD.parents, STANDARD.parents[_BONES], _FORE])
+"""On which joint each of `NAMES` hangs (30,), -1 for the hips."""
 
 
 def twist(rotation: np.ndarray, axis: np.ndarray) -> np.ndarray:
@@ -48,22 +51,28 @@ def multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
                            aw * bw - np.sum(av * bv, -1, keepdims=True)], -1)
 
 
-def motions(positions: np.ndarray, orientations: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def motions(positions: np.ndarray, orientations: np.ndarray, scale: np.ndarray,
+            rest: np.ndarray = REST) -> np.ndarray:
     """Dual quaternions (N, 30, 2, 4), float32, real part then dual part, each (x, y, z, w).
 
     They carry the mesh in T-pose, times scale (N,), onto figures whose joints stand at positions
-    (N, 22, 3) [m] with orientations (N, 22, 3, 3).
+    (N, 22, 3) [m] with orientations (N, 22, 3, 3). rest: (22, 3) [m] the mesh's joints at T-pose.
     """
-    count, joints = positions.shape[:2]
-    turns = Rotation.from_matrix(orientations.reshape(-1, 3, 3)).as_quat().reshape(count, joints, 4)
-    parents = turns[:, STANDARD.parents[_BONES]]
-    local = multiply(_conjugate(parents), turns[:, _BONES])
-    swings = multiply(turns[:, _BONES], _conjugate(twist(local, _AXES)))
-    hands = twist(multiply(_conjugate(turns[:, _FORE]), turns[:, _HAND]), np.array([1.0, 0.0, 0.0]))
-    real = np.concatenate([turns, swings, multiply(turns[:, _FORE], hands)], 1)
-    shift = positions[:, _AT] - rotate(real, REST[_AT] * scale[:, None, None])
+    real = turns(orientations)
+    shift = positions[:, AT] - rotate(real, rest[AT] * scale[:, None, None])
     dual = 0.5 * multiply(np.concatenate([shift, np.zeros_like(shift[..., :1])], -1), real)
     return np.stack([real, dual], 2).astype(np.float32)
+
+
+def turns(orientations: np.ndarray) -> np.ndarray:
+    """World rotations (N, 30, 4), (x, y, z, w), of joints and helpers from orientations (N, 22, 3, 3)."""
+    count, joints = orientations.shape[:2]
+    own = Rotation.from_matrix(orientations.reshape(-1, 3, 3)).as_quat().reshape(count, joints, 4)
+    parents = own[:, STANDARD.parents[_BONES]]
+    local = multiply(conjugate(parents), own[:, _BONES])
+    swings = multiply(own[:, _BONES], conjugate(twist(local, _AXES)))
+    hands = twist(multiply(conjugate(own[:, _FORE]), own[:, _HAND]), np.array([1.0, 0.0, 0.0]))
+    return np.concatenate([own, swings, multiply(own[:, _FORE], hands)], 1)
 
 
 def rotate(q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -88,5 +97,6 @@ def skinned(vertices: np.ndarray, joints: np.ndarray, weights: np.ndarray, motio
     return rotate(real, vertices * scale) + shift
 
 
-def _conjugate(q: np.ndarray) -> np.ndarray:
+def conjugate(q: np.ndarray) -> np.ndarray:
+    """The inverse (..., 4) of unit quaternions (..., 4)."""
     return q * [-1.0, -1.0, -1.0, 1.0]

@@ -12,18 +12,19 @@ from game.render import gl, mesh, skin
 from game.render.view import scale_of
 
 REST = figure()
+LEVEL = dict(zip(mesh.LEVELS, mesh.mannequin().levels))
 ALL = [figure(**STRIDE), figure(**CROUCH), figure(heading=2.0, LeftForeArm=(170, 0, 0), Head=(0, 80, 0))]
 
 
 def skinned(posed, level="far", scale=1.0):
-    shape = mesh.mannequin(level)
+    shape = LEVEL[level]
     motion = skin.motions(posed.positions[None], posed.orientations[None], np.array([scale]))[0]
     return skin.skinned(shape.positions, shape.joints, shape.weights, motion, scale)
 
 
 @pytest.mark.parametrize("level", mesh.LEVELS)
 def test_the_mesh_is_whole(level):
-    shape = mesh.mannequin(level)
+    shape = LEVEL[level]
     edges = np.concatenate([shape.triangles[:, [0, 1]], shape.triangles[:, [1, 2]], shape.triangles[:, [2, 0]]])
     seen = {tuple(e) for e in edges.tolist()}
     assert len(seen) == len(edges), "two triangles run along an edge in the same direction"
@@ -38,12 +39,12 @@ def test_the_mesh_is_whole(level):
 
 
 def test_soles_stand_on_the_floor_and_the_crown_at_full_height():
-    y = mesh.mannequin().positions[:, 1]
+    y = LEVEL["near"].positions[:, 1]
     assert abs(y.min()) < 0.003 and abs(y.max() - 1.741) < 0.015
 
 
 def test_the_t_pose_leaves_the_mesh_as_it_was_modelled():
-    assert np.abs(skinned(REST) - mesh.mannequin("far").positions - [0, REST.positions[0, 1] - skin.REST[0, 1], 0]).max() < 1e-5
+    assert np.abs(skinned(REST) - LEVEL["far"].positions - [0, REST.positions[0, 1] - skin.REST[0, 1], 0]).max() < 1e-5
 
 
 @pytest.mark.parametrize("posed", ALL)
@@ -85,7 +86,7 @@ def test_a_twisted_forearm_keeps_its_girth(twist):
 
 
 def test_folding_keeps_the_body_from_collapsing():
-    shape = mesh.mannequin("near")
+    shape = LEVEL["near"]
 
     def volume(posed):
         at = skinned(posed, "near")
@@ -96,7 +97,7 @@ def test_folding_keeps_the_body_from_collapsing():
 
 
 def test_the_shader_skins_as_numpy_does(ctx):
-    posed, shape = ALL[0], mesh.mannequin("far")
+    posed, shape = ALL[0], LEVEL["far"]
     program = gl.program(ctx, "skin_test.vert", "", varyings=("at", "towards"))
     motion = skin.motions(posed.positions[None], posed.orientations[None], np.ones(1))
     data = np.zeros((16 * 60 + 16, 4), np.float32)
@@ -104,7 +105,7 @@ def test_the_shader_skins_as_numpy_does(ctx):
     block, out = ctx.buffer(data.tobytes()), ctx.buffer(reserve=len(shape.positions) * 24)
     block.bind_to_uniform_block(gl.FIGURES)
     vertices = ctx.buffer(shape.interleaved())
-    array = ctx.vertex_array(program, [(vertices, "3f 3f 4u1 4f1 4x", "position", "normal", "joints", "weights")])
+    array = ctx.vertex_array(program, [(vertices, "3f 3f 4u1 4f1 16x", "position", "normal", "joints", "weights")])
     somewhere = ctx.simple_framebuffer((4, 4))  # nothing is drawn, yet OpenGL wants a place
     somewhere.use()
     array.transform(out, ctx.POINTS)
