@@ -50,6 +50,8 @@ def plainly(command):
     def wrapped(*args, **kwargs):
         try:
             return command(*args, **kwargs)
+        except BrokenPipeError:  # whoever read our words has had enough: no mistake, and typer ends quietly
+            raise
         except (ValueError, OSError) as error:
             # Gambol's own kinds of ValueError are about what the user gave; a bare one is our bug
             if type(error) is ValueError or os.environ.get("GAMBOL_TRACEBACK"):

@@ -185,6 +185,13 @@ def test_scenarios_are_listed():
     assert done.exit_code == 0 and "corridor" in done.output and "2 actors" in done.output
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows reports a closed pipe in another way")
+def test_a_reader_who_has_had_enough_is_no_mistake():
+    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['scenarios']; from game.cli import main; main()"
+    done = subprocess.run([sys.executable, "-u", "-c", code], capture_output=True, text=True)
+    assert done.stderr == "" and done.returncode == 1
+
+
 def test_help_comes_without_loading_the_rest():
     code = "import sys, game.cli; print(*[m for m in ('numpy', 'scipy', 'numba', 'pydantic', 'av') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
