@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+import zlib
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,9 +12,10 @@ import numpy as np
 import assets
 
 from ..body import Pose, Skeleton
+from ..body.ground import compose, relative
 from ..contract import CharacterState, Intent, Status
-from .kernel import body_tables, series_table, space_tables
-from .library import Library, LibraryError
+from .kernel import DURATION_AT, body_tables, series_table, space_tables
+from .library import Library
 from .memory import Settings, legs_of, memory_dtype
 from .steady import space_of
 from .step import step_kernel
@@ -40,11 +43,18 @@ class Locomotion:
                         space_tables(self.walk, library.family("walk")),
                         series_table(library), library.velocities.astype(np.float32))
         self._dtype = memory_dtype(len(library.primitives))
+        self._library = zlib.crc32(self.tables[4].tobytes())
 
     @staticmethod
     def load(path: str | Path | None = None, settings: Settings = Settings()) -> Locomotion:
         """The controller over a library file; the shipped one by default. LibraryError if unusable."""
         return Locomotion(Library.load(path or DEFAULT_LIBRARY), settings)
+
+    def tuned(self, settings: Settings) -> Locomotion:
+        """The same controller under other settings; all that was built from the library is shared."""
+        other = copy(self)
+        other.settings = settings
+        return other
 
     @property
     def skeleton(self) -> Skeleton:
@@ -61,7 +71,8 @@ class Locomotion:
         memory["weights"][..., self.library.rest] = 1.0
         memory["settled"] = 1
         memory["phase"] = 0.25
-        memory["row"][..., -1] = 1.0
+        memory["row"][..., DURATION_AT] = 1.0
+        memory["library"] = self._library
         state = CharacterState(ground, np.zeros(ground.shape), Pose(np.zeros(ground.shape), np.zeros(3)),
                                np.zeros(ground.shape[:-1] + (4,), bool), memory)
         for _ in range(2):  # the first step finds the pose, the second knows where its feet were
@@ -75,6 +86,8 @@ class Locomotion:
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise).
 
+        A state whose `ground` was replaced goes on from there, feet and all: ValueError unless it is
+        finite, and for a state that did not come from a controller over this library (`enter` it).
         intent.velocity broadcasts against the state's batch axes. A wish that is not finite counts
         as no wish. One beyond what the library holds is walked slower on the same arc (so a hard
         turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
@@ -82,7 +95,7 @@ class Locomotion:
         """
         if not 0.0 < dt <= 0.1:
             raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
-        memory = state.memory.reshape(-1).copy()
+        memory = self._memory(state).reshape(-1)
         shape = state.memory.shape
         wish = np.empty((len(memory), 3))
         wish[:] = np.broadcast_to(intent.velocity, shape + (3,)).reshape(-1, 3)
@@ -97,15 +110,31 @@ class Locomotion:
         memory = memory.reshape(shape)
         return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory), pose
 
+    def _knows(self, memory) -> bool:
+        return (isinstance(memory, np.ndarray) and memory.dtype == self._dtype
+                and bool((memory["library"] == self._library).all()))
+
+    def _memory(self, state: CharacterState) -> np.ndarray:
+        """A copy of the state's memory, its feet carried along if the state's ground was replaced."""
+        if not self._knows(state.memory):
+            raise ValueError("this state's memory is not of a controller over this library: enter it first")
+        memory, ground = state.memory.copy(), np.asarray(state.ground, float)
+        if not np.array_equal(ground, memory["ground"]):
+            if ground.shape != memory["ground"].shape or not np.isfinite(ground).all():
+                raise ValueError(f"ground must be finite {memory['ground'].shape} x, z, heading; got {ground!r}")
+            lock = np.concatenate([memory["lock"], np.zeros_like(memory["lock"][..., :1])], -1)
+            lock = compose(ground[..., None, :], relative(memory["ground"][..., None, :], lock))
+            memory["lock"], memory["ground"] = lock[..., :2], ground
+        return memory
+
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """Walking can start from any pose: always possible, never urgent."""
         return 0.5
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state as seen by this controller, at rest where the character is, unless it walked before."""
-        if isinstance(state.memory, np.ndarray) and state.memory.dtype == self._dtype:
-            return state
-        return self.start(state.ground)
+        """The state as seen by this controller: at rest where the character is, unless it walked before,
+        over this very library."""
+        return state if self._knows(state.memory) else self.start(state.ground)
 
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""

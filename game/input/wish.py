@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+STEPS = (127,) * 6 + (1, 1) + (127,) * 2 + (4096,) * 2 + (16,) + (4096,) * 2
+"""How finely a log keeps the controls, in the order of `Wish`: steps in 1, a radian, a notch."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,24 @@ class Wish:
                     self.slow or other.slow, self.strafe or other.strafe, further(self.orbit, other.orbit),
                     (self.drag[0] + other.drag[0], self.drag[1] + other.drag[1]), self.zoom + other.zoom,
                     (self.pan[0] + other.pan[0], self.pan[1] + other.pan[1]), self.pressed + other.pressed)
+
+    def numbers(self) -> tuple[int, ...]:
+        """All but `pressed` in whole steps (see `STEPS`), as a log keeps them; no number counts as 0."""
+        values = (*self.move, *self.look, self.turn, self.run, self.slow, self.strafe, *self.orbit, *self.drag,
+                  self.zoom, *self.pan)
+        return tuple(round(min(max(value * steps, -32767), 32767)) if math.isfinite(value) else 0
+                     for value, steps in zip(values, STEPS))
+
+    @staticmethod
+    def of(numbers: Sequence[int], pressed: tuple[str, ...] = ()) -> Wish:
+        """The wish of such whole steps."""
+        v = [number / steps for number, steps in zip(numbers, STEPS, strict=True)]
+        return Wish((v[0], v[1]), (v[2], v[3]), v[4], v[5], v[6] > 0, v[7] > 0, (v[8], v[9]), (v[10], v[11]), v[12],
+                    (v[13], v[14]), pressed)
+
+    def rounded(self) -> Wish:
+        """The wish as a log would give it back: what is played is what is logged."""
+        return Wish.of(self.numbers(), self.pressed)
 
 
 def unit_disc(x: float, y: float) -> tuple[float, float]:
