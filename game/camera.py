@@ -1,6 +1,9 @@
-"""Cameras: one that follows a character on a sprung arm, and the fixed and dolly shots of films.
+"""Cameras that a player holds: one on a sprung arm behind a character, one that orbits, one that flies.
 
-Damping is exact: what is left of a distance halves every half-life, however long the frames are.
+All are values of one shape: `step(ground, velocity, wish, dt, props)` gives the camera `dt` later,
+`view()` what to draw with, `between` what lies between two steps, `cycled` the next kind, its eye
+where it was. Damping is exact: what is left of a distance halves every half-life, however long
+the steps are. An eye is never within a prop, under the floor or inside the character.
 """
 
 from __future__ import annotations
@@ -8,160 +11,185 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
 from controllers.body.rotations import wrap
+from controllers.body.springs import damp
 
-from .scene import Box, Camera
+from .input.wish import Wish
+from .obstacles import above_floor, beside, outside
+from .rig import Armed, CameraSettings, Turned, angles, finite, forward
+from .scene import Camera, Prop
 
-
-NEAREST = 0.8
-"""No wall or floor brings the eye nearer to the focus than this [m]."""
-
-
-def damp(value, target, halflife: float, dt: float):
-    """`value` after `dt` seconds on its way to `target`; a half-life of 0 arrives at once."""
-    if halflife <= 0.0:
-        return target
-    return value + (target - value) * -math.expm1(-math.log(2.0) * dt / halflife)
+CUT = 1.5
+"""An eye that moves farther than this [m] in one step has been put elsewhere: nothing lies between."""
 
 
-@dataclass(frozen=True)
-class FollowSettings:
-    """How the follow camera behaves: lengths [m], half-lives [s], angles [rad].
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Follow(Armed):
+    """Behind a character, on an arm that swings round with the walk.
 
-    height: of the point looked at. nearest, farthest: the arm. lowest, highest: the pitch.
-    floor: the eye stays above this. swing: half-life of coming round behind a walker at 1 m/s.
-    rest: seconds the camera stays where the player turned it before it swings again.
+    focus: (3,) [m] where the character is, ahead: (3,) how far before it the camera looks, slack:
+    (3,) what is left of the change from another camera; target is their sum. still: seconds
+    since the player turned it.
     """
 
-    height: float = 1.0
-    nearest: float = 1.5
-    farthest: float = 12.0
-    lowest: float = -0.35
-    highest: float = 1.35
-    floor: float = 0.15
-    focus_halflife: float = 0.10
-    orbit_halflife: float = 0.06
-    arm_halflife: float = 0.25
-    swing: float = 1.6
-    rest: float = 1.5
-    fov: float = 0.8
-
-
-@dataclass(frozen=True, eq=False)
-class Follow:
-    """A follow camera at one moment.
-
-    focus: (3,) [m] the point looked at. yaw: the direction it looks in [rad], as a heading.
-    pitch: how far above the focus the eye stands [rad]. distance: [m] the arm that was asked
-    for. arm: [m] what walls leave of it. wanted_yaw, wanted_pitch: where the player turned it.
-    still: seconds since then.
-    """
-
-    focus: np.ndarray = field(default_factory=lambda: np.array([0.0, 1.0, 0.0]))
-    yaw: float = 0.0
-    pitch: float = 0.25
-    distance: float = 4.0
-    arm: float = 4.0
-    wanted_yaw: float = 0.0
-    wanted_pitch: float = 0.25
+    kind: ClassVar[str] = "follow"
+    focus: np.ndarray
+    ahead: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    slack: np.ndarray = field(default_factory=lambda: np.zeros(3))
     still: float = 10.0
-    settings: FollowSettings = FollowSettings()
 
     @staticmethod
-    def behind(ground, settings: FollowSettings = FollowSettings()) -> Follow:
-        """A camera at rest behind a character's ground frame (3,)."""
-        yaw = float(ground[2])
-        return Follow(np.array([ground[0], settings.height, ground[1]]), yaw=yaw, wanted_yaw=yaw,
+    def behind(ground, settings: CameraSettings = CameraSettings(), yaw: float | None = None,
+               pitch: float = 0.25, distance: float = 4.0) -> Follow:
+        """A camera at rest behind a character's ground frame (3,), or looking along `yaw` [rad]."""
+        yaw = float(ground[2]) if yaw is None else yaw
+        focus = np.array([ground[0], settings.height, ground[1]])
+        return Follow(eye=focus - distance * forward(yaw, pitch), target=focus, focus=focus, yaw=yaw,
+                      wanted_yaw=yaw, pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance,
                       settings=settings)
 
     def turned(self, yaw: float, pitch: float = 0.0) -> Follow:
         """The player turns the camera by angles [rad]: yaw to the left, pitch upwards."""
-        if not (math.isfinite(yaw) and math.isfinite(pitch)):
-            return self
-        s = self.settings
-        return replace(self, wanted_yaw=self.wanted_yaw + yaw, still=0.0,
-                       wanted_pitch=min(max(self.wanted_pitch + pitch, s.lowest), s.highest))
-
-    def zoomed(self, factor: float) -> Follow:
-        """The arm times `factor`, within its limits."""
-        s = self.settings
-        return replace(self, distance=min(max(self.distance * factor, s.nearest), s.farthest))
+        turned = super().turned(yaw, pitch)
+        return self if turned is self else replace(turned, still=0.0)
 
     def recentred(self, heading: float) -> Follow:
         """The player asks for the view from behind `heading` [rad]."""
-        return replace(self, wanted_yaw=self.yaw + float(wrap(heading - self.yaw)),
-                       wanted_pitch=0.25, still=10.0)
+        return replace(super().recentred(heading), still=10.0)
 
-    def step(self, ground, velocity, dt: float, boxes: Sequence[Box] = ()) -> Follow:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = ()) -> Follow:
         """The camera `dt` seconds later.
 
-        ground: (3,) x, z [m], heading [rad] of whom it follows. velocity: (2,) its world
-        velocity along x and z [m/s], which the camera comes round behind.
+        ground: (3,) x, z [m], heading [rad] of whom it follows. velocity: (2,) its world velocity
+        along x and z [m/s], which the camera comes round behind. wish: what the hands do.
         """
-        s = self.settings
-        focus = damp(self.focus, np.array([ground[0], s.height, ground[1]]), s.focus_halflife, dt)
-        speed = math.hypot(velocity[0], velocity[1])
-        wanted = self.wanted_yaw
-        if self.still > s.rest and speed > 1e-3:
+        told, s = self._told(wish, dt), self.settings
+        here = np.array([ground[0], s.height, ground[1]])
+        focus = damp(told.focus, here, s.focus_halflife, dt)
+        ahead = damp(told.ahead, s.ahead * np.array([velocity[0], 0.0, velocity[1]]), s.ahead_halflife, dt)
+        slack = damp(told.slack, 0.0, s.change_halflife, dt)
+        speed, wanted = math.hypot(velocity[0], velocity[1]), told.wanted_yaw
+        if told.still > s.rest and speed > 1e-3:
             error = float(wrap(math.atan2(velocity[0], velocity[1]) - wanted))
             # strongest for a walker who crosses the view; one who comes towards it stays in front
             pull = speed * abs(math.sin(error))
-            wanted = damp(wanted, wanted + error, s.swing / max(pull, 1e-6), dt)
-        moved = replace(self, focus=focus, wanted_yaw=wanted, still=self.still + dt,
-                        yaw=damp(self.yaw, wanted, s.orbit_halflife, dt),
-                        pitch=damp(self.pitch, self.wanted_pitch, s.orbit_halflife, dt))
-        free = moved._free_arm(boxes)
-        # a wall shortens the arm at once, so that it never hides the character; it grows back gently
-        arm = min(free, damp(self.arm, free, s.arm_halflife, dt))
-        return replace(moved, arm=arm)
+            wanted = float(damp(wanted, wanted + error, s.swing / max(pull, 1e-6), dt))
+        moved = replace(told, focus=focus, ahead=ahead, slack=slack, target=focus + ahead + slack,
+                        wanted_yaw=wanted, still=told.still + dt, **told._swung(dt))
+        return moved._reached(ground, dt, props, clear=float(slack @ slack) < 0.01)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Orbit(Armed):
+    """Round a point, as in a viewer of models: the mouse turns it, its middle button pans.
+
+    The point goes with the character (its heading is left alone) until it is panned away; then
+    it stays, until the player recentres. pivot: (3,) [m] where it is to be.
+    """
+
+    kind: ClassVar[str] = "orbit"
+    pivot: np.ndarray
+    tracks: bool = True
+
+    def recentred(self, heading: float) -> Orbit:
+        """Back to the character, seen from behind `heading` [rad]."""
+        return replace(super().recentred(heading), tracks=True)
+
+    def panned(self, right: float, up: float) -> Orbit:
+        """The picture pushed by the mouse, in heights of the window; the point stays there."""
+        if not finite(right, up):
+            return self
+        span = 2.0 * self.arm * math.tan(0.5 * self.settings.fov)
+        sideways = np.array([-math.cos(self.yaw), 0.0, math.sin(self.yaw)])
+        upwards = np.cross(sideways, forward(self.yaw, self.pitch))
+        pivot = self.pivot - span * (right * sideways + up * upwards)
+        return replace(self, pivot=above_floor(pivot), tracks=False)
+
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = ()) -> Orbit:
+        """The camera `dt` seconds later; see `Follow.step`. The velocity plays no part."""
+        told, s = self._told(wish, dt), self.settings
+        if wish.pan != (0.0, 0.0):
+            told = told.panned(*wish.pan)
+        pivot = np.array([ground[0], s.height, ground[1]]) if told.tracks else told.pivot
+        moved = replace(told, pivot=pivot, target=damp(told.target, pivot, s.focus_halflife, dt), **told._swung(dt))
+        return moved._reached(ground, dt, props, clear=False)
+
+    def _pitches(self) -> tuple[float, float]:
+        return -1.2, 1.5
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Free(Turned):
+    """Flies where the sticks push it: moves along the view and across, turning keys up and down.
+
+    velocity: (3,) [m/s]. speed: of a full push [m/s], which the wheel changes.
+    """
+
+    kind: ClassVar[str] = "free"
+    flown: ClassVar[bool] = True
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    speed: float = CameraSettings.fly
+
+    def zoomed(self, factor: float) -> Free:
+        """The speed divided by `factor`."""
+        return replace(self, speed=min(max(self.speed / factor, 0.2), 20.0))
+
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = ()) -> Free:
+        """The camera `dt` seconds later; see `Follow.step`. It keeps out of whoever stands at `ground`."""
+        told, s = self._told(wish, dt), self.settings
+        if wish.look != (0.0, 0.0):
+            told = told.turned(-s.turn * dt * wish.look[0], -s.turn * dt * wish.look[1])
+        sideways = np.array([-math.cos(told.yaw), 0.0, math.sin(told.yaw)])
+        push = (wish.move[0] * sideways + wish.move[1] * forward(told.yaw, told.pitch)
+                - np.array([0.0, wish.turn, 0.0]))
+        wanted = push * told.speed * (0.3 if wish.slow else 1.0 + 2.0 * wish.run)
+        # the way of a damped velocity is its integral, which is exact for any dt as well
+        now = damp(told.velocity, wanted, s.fly_halflife, dt)
+        way = wanted * dt + (told.velocity - now) * (s.fly_halflife / math.log(2.0))
+        eye, props = told.eye, tuple(props)
+        pieces = max(math.ceil(float(np.abs(way).max()) / 0.1), 1)  # shorter than any wall is thick
+        for _ in range(pieces):
+            eye = outside(beside(above_floor(eye + way / pieces), ground), props)
+        return replace(told, eye=eye, velocity=now, **told._swung(dt))
 
     def view(self) -> Camera:
         """What to draw with."""
-        eye = self.focus - self.arm * self._forward()
-        eye[1] = max(eye[1], self.settings.floor)
-        return Camera(eye, self.focus, fov=self.settings.fov)
+        return Camera(self.eye, self.eye + forward(self.yaw, self.pitch), fov=self.settings.fov)
 
-    def _forward(self) -> np.ndarray:
-        flat = math.cos(self.pitch)
-        return np.array([math.sin(self.yaw) * flat, -math.sin(self.pitch), math.cos(self.yaw) * flat])
-
-    def _free_arm(self, boxes: Sequence[Box]) -> float:
-        arm, back, s = self.distance, -self._forward(), self.settings
-        if back[1] < 0.0:
-            arm = min(arm, max((s.floor - self.focus[1]) / back[1], NEAREST))
-        for box in boxes:
-            arm = min(arm, max(_distance_to(box, self.focus, back) - 0.2, NEAREST))
-        return arm
+    def _pitches(self) -> tuple[float, float]:
+        return -1.5, 1.5
 
 
-def _distance_to(box: Box, origin: np.ndarray, direction: np.ndarray) -> float:
-    """How far along a ray [m] it enters a box; infinite if it misses or starts inside."""
-    cosine, sine = math.cos(box.heading), math.sin(box.heading)
-    local = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
-    start, ray = local @ (origin - np.array(box.centre)), local @ direction
-    ray = np.where(np.abs(ray) < 1e-12, 1e-12, ray)
-    half = 0.5 * np.array(box.size)
-    first, second = (-half - start) / ray, (half - start) / ray
-    enter, leave = np.minimum(first, second).max(), np.maximum(first, second).min()
-    return float(enter) if 0.0 < enter <= leave else math.inf
+PlayerCamera = Follow | Orbit | Free
 
 
-def above_floor(eye: np.ndarray, floor: float = FollowSettings.floor) -> np.ndarray:
-    """An eye (3,) [m] no lower than `floor`."""
-    return np.array([eye[0], max(eye[1], floor), eye[2]])
+def cycled(camera: PlayerCamera, ground) -> PlayerCamera:
+    """The next kind of camera: follow, orbit, free and round again; the eye stays where it is.
+
+    ground: (3,) of the character that the new one may look after.
+    """
+    s, view = camera.settings, camera.view()
+    yaw, pitch, arm = angles(view.target - view.eye)
+    here = np.array([ground[0], s.height, ground[1]])
+    turned = {"eye": view.eye, "yaw": yaw, "wanted_yaw": yaw, "pitch": pitch, "settings": s}
+    if isinstance(camera, Orbit):
+        return Free(wanted_pitch=pitch, **turned)
+    if isinstance(camera, Follow):
+        return Orbit(pivot=here, target=view.target, distance=camera.distance, arm=arm, wanted_pitch=pitch, **turned)
+    arm = min(max(float(np.linalg.norm(here - view.eye)), s.nearest), s.farthest)
+    target = view.eye + arm * forward(yaw, pitch)
+    return Follow(focus=here, slack=target - here, target=target, distance=arm, arm=arm, still=0.0,
+                  wanted_pitch=min(max(pitch, s.lowest), s.highest), **turned)
 
 
-def fixed(eye, target, fov: float = 0.8) -> Camera:
-    """A camera that stands still; eye, target: (3,) [m]."""
-    return Camera(above_floor(np.asarray(eye, float)), np.asarray(target, float), fov=fov)
-
-
-def dolly(start, end, target, progress: float, fov: float = 0.8) -> Camera:
-    """A camera on rails from `start` to `end` (3,) [m], gently set off and stopped; progress 0 … 1."""
-    u = min(max(progress, 0.0), 1.0)
-    u = u * u * (3.0 - 2.0 * u)
-    start, end = np.asarray(start, float), np.asarray(end, float)
-    return fixed(start + u * (end - start), target, fov)
+def between(a: PlayerCamera, b: PlayerCamera, alpha: float) -> Camera:
+    """What to draw with `alpha` (0 … 1) of the way from one step's camera to the next one's."""
+    first, second = a.view(), b.view()
+    if np.linalg.norm(second.eye - first.eye) > CUT:
+        return second
+    return Camera(first.eye + alpha * (second.eye - first.eye), first.target + alpha * (second.target - first.target),
+                  fov=first.fov + alpha * (second.fov - first.fov))

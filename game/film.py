@@ -13,9 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from controllers.body.springs import damp
 from controllers.navigation import in_world
 
-from .camera import Follow, FollowSettings, damp, dolly, fixed
+from .camera import CameraSettings, Follow
+from .input import Wish
+from .rail import dolly, fixed
 from .scenario import Scenario, ShotTable, overlays
 from .scene import Camera, Overlays, Scene
 from .world import DT, RATE, Character, World, figures, ground_between
@@ -104,18 +107,15 @@ class Operator:
         ground = _ground(frame, whom)
         if shot.kind != "follow":
             return Operator(shot, whom, target=_aim(ground) if shot.target is None else np.array(shot.target))
-        settings = FollowSettings(fov=math.radians(shot.fov), rest=0.0 if shot.swing else math.inf)
-        camera = Follow.behind(ground + [0.0, 0.0, math.radians(shot.around)], settings)
-        above = math.radians(shot.above)
-        return Operator(shot, whom, follow=replace(
-            camera, pitch=above, wanted_pitch=above, distance=shot.distance, arm=shot.distance
-        ))
+        settings = CameraSettings(fov=math.radians(shot.fov), rest=0.0 if shot.swing else math.inf)
+        return Operator(shot, whom, follow=Follow.behind(
+            ground, settings, float(ground[2]) + math.radians(shot.around), math.radians(shot.above), shot.distance))
 
     def step(self, frame: Frame, dt: float) -> Operator:
         """One frame on."""
         ground = _ground(frame, self.whom)
         if self.follow is not None:
-            return replace(self, follow=self.follow.step(ground, _velocity(frame, self.whom), dt))
+            return replace(self, follow=self.follow.step(ground, _velocity(frame, self.whom), Wish(), dt))
         if self.shot.target is None:
             return replace(self, target=damp(self.target, _aim(ground), LOOK_HALFLIFE, dt))
         return self
@@ -126,7 +126,7 @@ class Operator:
             return self.follow.view()
         fov = math.radians(self.shot.fov)
         if self.shot.kind == "dolly":
-            return dolly(self.shot.eye, self.shot.to, self.target, progress, fov)
+            return dolly((self.shot.eye, self.shot.to), self.target, progress, fov)
         return fixed(self.shot.eye, self.target, fov)
 
 

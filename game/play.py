@@ -97,7 +97,7 @@ class Play:
         state = self._hero.state
         velocity = in_world(state.ground, state.velocity) if running else np.zeros(2)
         ground = ground_between(self.before.characters[0].state, state, self.clock.alpha)
-        self.camera = self.camera.step(ground, velocity, frame, self.after.props)
+        self.camera = self.camera.step(ground, velocity, Wish(), frame, self.after.props)
 
     def _wish(self) -> Wish:
         return self.keyboard.wish().merged(pad_wish(self.pad))
