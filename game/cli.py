@@ -212,7 +212,8 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
         typer.echo(f"{'primitive':34} {'v_f':>6} {'ω':>6} {'v_l':>6} {'closure':>8}  clip")
         for one, (v_f, omega, v_l) in zip(made.primitives, made.velocities):
             typer.echo(f"{one.label:34} {v_f:6.2f} {omega:6.2f} {v_l:6.2f} {math.degrees(one.closure):7.1f}°  "
-                       f"{one.clip} at {one.start:.2f} s{', mirrored' if one.mirrored else ''}")
+                       f"{one.clip} at {one.start:.2f} s{', mirrored' if one.mirrored else ''}"
+                       f"{f', mean of {one.averaged}' if one.averaged > 1 else ''}")
     if picture:
         try:
             with named(picture):

@@ -16,10 +16,11 @@ import numpy as np
 
 from controllers.body import forward_kinematics
 from controllers.body.contact import contact_height, contact_points, detect_contacts, foot_drift
+from controllers.body.ground import screw
 from controllers.contract import Intent
 from controllers.locomotion import Library, Locomotion, Settings
 from controllers.locomotion.controller import DEFAULT_LIBRARY
-from controllers.locomotion.cycles import joint_acceleration, screw
+from controllers.locomotion.cycles import joint_acceleration
 
 FPS = 60
 SCRIPT = (  # name, seconds, (v_f, ω, v_l)
@@ -156,7 +157,7 @@ def report_response(library: Library) -> None:
             goal, start = np.array(after, float), np.array(before, float)
             for frames in range(1, 3 * FPS):
                 state, _ = locomotion.step(state, Intent(goal), 1 / FPS)
-                blend = state.memory["weights"] @ library.velocities
+                blend = state.memory["weights"][:len(library.velocities)] @ library.velocities
                 if np.linalg.norm(goal - blend) < 0.1 * np.linalg.norm(goal - start):
                     break
             times.append(frames / FPS)

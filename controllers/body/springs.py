@@ -3,7 +3,7 @@
 Their stiffness is said as a half-life [s]: how long until half of what is left is gone. A
 half-life of 0 jumps to the goal. The critically damped spring's own rate is
 y = 2·ln 2 / half-life, so that spring and damper of one half-life take about equally long.
-Arrays of any shape; the scalar kernels do the same inside compiled loops.
+Arrays of any shape, and a scalar kernel for compiled loops.
 """
 
 from __future__ import annotations
@@ -28,16 +28,6 @@ def damp(x: np.ndarray, goal: np.ndarray, halflife: float, dt: float) -> np.ndar
     return np.asarray(goal) + decay(np.asarray(x) - goal, halflife, dt)
 
 
-def spring(x: np.ndarray, v: np.ndarray, goal: np.ndarray, halflife: float, dt: float
-           ) -> tuple[np.ndarray, np.ndarray]:
-    """Position and velocity (...) after dt [s] of a critically damped spring towards `goal`.
-
-    Never overshoots from rest, and takes the velocity v along without a jerk.
-    """
-    offset, velocity = settle(np.asarray(x) - goal, v, halflife, dt)
-    return np.asarray(goal) + offset, velocity
-
-
 def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """An offset and its velocity (...) after dt [s], settling critically damped to 0: inertialisation.
 
@@ -51,23 +41,12 @@ def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float) -> tuple[np
     return fade * (x + pull * dt), fade * (v - pull * (y * dt))
 
 
-def cubic(x: np.ndarray, v: np.ndarray, duration: float, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The offset and its velocity `time` [s] after a transition, gone for good after `duration` [s].
-
-    The cubic with value x and slope v at 0 and with value and slope 0 at the end. x, v: (...);
-    time: a number or (...). Unlike `settle` it ends exactly, but it is told from its start.
-    """
-    x, v = np.asarray(x), np.asarray(v)
-    s = np.clip(np.asarray(time, float) / max(duration, _EPSILON), 0.0, 1.0)
-    slope = v * duration
-    offset = (1 - s) ** 2 * (x * (1 + 2 * s) + slope * s)
-    velocity = (1 - s) * (slope * (1 - 3 * s) - 6 * x * s) / max(duration, _EPSILON)
-    return offset, velocity
-
-
 @kernel
 def spring_kernel(x, v, goal, halflife, dt):
-    """`spring` of one number: its position and velocity."""
+    """Position and velocity of one number after dt [s] of a critically damped spring towards `goal`.
+
+    Never overshoots from rest, and takes the velocity v along without a jerk.
+    """
     y = 2.0 * _LN2 / (halflife + _EPSILON)
     offset = x - goal
     pull = v + offset * y

@@ -13,11 +13,12 @@ import numpy as np
 from ..body import Clip, human
 from ..body import rotations as rot
 from ..body.clip import mirror_index
+from ..body.ground import relative
 from ..body.human import CONTACT_HEIGHT
 from ..mocap import MotionFileError, calibrate, load, retarget
 from . import fourier
-from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, relative, track
-from .library import Library, LibraryError, Primitive, channels, reference_rotations
+from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
+from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
 from .selection import Choice, neighbours, select
 from .steady import settle
 
@@ -189,9 +190,9 @@ def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], still
     walking = [i for i, p in enumerate(primitives) if p.family == "walk"]
     rest, clip, start = rest_pose(stills, reference)
     row = np.zeros_like(rows[0])
-    row[0, :-5] = rest
-    row[:, -5:] = np.mean([rows[i][:, -5:] for i in walking], 0)  # it steps in place until its feet are right
-    primitives.append(Primitive("rest", clip, start, float(row[0, -1]), "rest", 0.0, tuple(map(float, EVENTS["walk"]))))
+    row[0, :LABELS] = rest
+    row[:, LABELS:] = np.mean([rows[i][:, LABELS:] for i in walking], 0)  # it steps in place until its feet are right
+    primitives.append(Primitive("rest", clip, start, float(row[0, DURATION]), "rest", 0.0, tuple(map(float, EVENTS["walk"]))))
     return Library(skeleton, tuple(primitives), np.array(velocities + [np.zeros(3)]), np.array(rows + [row]),
                    reference, provenance)
 

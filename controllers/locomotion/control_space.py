@@ -157,8 +157,13 @@ class ControlSpace:
 
     def lipschitz(self) -> float:
         """The steepest slope of any weight over the space, per unit of scaled velocity."""
-        rows = np.concatenate([self.transform[:, :3], -self.transform[:, :3].sum(1, keepdims=True)], 1)
-        return float(np.linalg.norm(rows, axis=-1).max())
+        return float(_slopes(self.transform).max())
+
+
+def _slopes(transform: np.ndarray) -> np.ndarray:
+    """How steeply each vertex' weight (S, 4) changes in its simplex, per unit of scaled velocity."""
+    rows = np.concatenate([transform[:, :3], -transform[:, :3].sum(1, keepdims=True)], 1)
+    return np.linalg.norm(rows, axis=-1)
 
 
 def thin(points: np.ndarray, keep: np.ndarray, steepest: float = STEEPEST) -> np.ndarray:
@@ -173,8 +178,7 @@ def thin(points: np.ndarray, keep: np.ndarray, steepest: float = STEEPEST) -> np
             mesh = Delaunay(points[left] / SCALE)
         except QhullError:  # flat altogether: whoever triangulates it says so
             break
-        rows = np.concatenate([mesh.transform[:, :3], -mesh.transform[:, :3].sum(1, keepdims=True)], 1)
-        slope = np.nan_to_num(np.linalg.norm(rows, axis=-1), nan=np.inf)
+        slope = np.nan_to_num(_slopes(mesh.transform), nan=np.inf)
         slope[keep[left][mesh.simplices]] = 0.0
         simplex, vertex = np.unravel_index(np.argmax(slope), slope.shape)
         if slope[simplex, vertex] <= steepest:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from copy import copy
 import zlib
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,11 +12,10 @@ import numpy as np
 import assets
 
 from ..body import Pose, Skeleton
-from ..body.ground import compose, relative
 from ..contract import CharacterState, Intent, Status
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
-from .memory import Settings, legs_of, memory_dtype
+from .memory import Settings, legs_of, memory_dtype, put
 from .steady import space_of
 from .step import step_kernel
 
@@ -53,7 +52,7 @@ class Locomotion:
     def tuned(self, settings: Settings) -> Locomotion:
         """The same controller under other settings; all that was built from the library is shared."""
         other = copy(self)
-        other.settings = settings
+        other.settings = settings if self.run else settings._replace(run_above=np.inf)
         return other
 
     @property
@@ -122,9 +121,7 @@ class Locomotion:
         if not np.array_equal(ground, memory["ground"]):
             if ground.shape != memory["ground"].shape or not np.isfinite(ground).all():
                 raise ValueError(f"ground must be finite {memory['ground'].shape} x, z, heading; got {ground!r}")
-            lock = np.concatenate([memory["lock"], np.zeros_like(memory["lock"][..., :1])], -1)
-            lock = compose(ground[..., None, :], relative(memory["ground"][..., None, :], lock))
-            memory["lock"], memory["ground"] = lock[..., :2], ground
+            put(memory, ground)
         return memory
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:

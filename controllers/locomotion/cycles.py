@@ -14,9 +14,11 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import uniform_filter1d
 
-from ..body import Clip, human
+from ..body import Clip
 from ..body import rotations as rot
-from ..body.human import CONTACT_HEIGHT, HEEL
+from ..body.contact import contact_points
+from ..body.ground import advance, compose, relative, screw
+from ..body.human import CONTACT_HEIGHT
 
 RATE = 120.0
 """Frames a second at which clips are analysed."""
@@ -84,10 +86,7 @@ def track(clip: Clip) -> Track:
     left, right = positions[:, at("LeftArm")], positions[:, at("RightArm")]
     middle, across = 0.5 * (left + right), left - right
     heading = np.unwrap(rot.heading_of(np.cross(across, [0.0, 1.0, 0.0])))
-    scale = clip.skeleton.offsets[0, 1] / human().offsets[0, 1]
-    points = np.stack([p for side in ("Left", "Right") for p in (
-        positions[:, at(side + "Foot")] + orientations[:, at(side + "Foot")] @ (HEEL * scale),
-        positions[:, at(side + "Toe")])], 1)
+    points = contact_points(clip.skeleton, positions, orientations)
     speeds = np.linalg.norm(np.gradient(points, 1 / RATE, axis=0), axis=-1)
     return Track(clip, np.stack([middle[:, 0], middle[:, 2], heading], -1), points,
                  uniform_filter1d(speeds, 5, axis=0), acceleration)
@@ -147,53 +146,6 @@ def _labels(track: Track, feet: np.ndarray, family: str) -> np.ndarray:
     low = track.points[..., 1] < CONTACT_HEIGHT + CONTACT_GATE
     point = low & (track.speeds < STANDING_SPEED[family]) & np.repeat(feet, 2, axis=1)
     return uniform_filter1d(point.astype(float), int(0.06 * RATE), axis=0)
-
-
-def screw(first: np.ndarray, last: np.ndarray, period: float) -> np.ndarray:
-    """The constant body velocity (…, 3) (v_f, ω, v_l) that carries one ground frame to another.
-
-    first, last: (..., 3) x, z, θ. The planar logarithm: with turn Δ the displacement in the
-    first frame is V(Δ)·v·T, V(Δ) = [[sinΔ, 1−cosΔ], [cosΔ−1, sinΔ]] / Δ over (lateral, forward).
-    """
-    turn = last[..., 2] - first[..., 2]
-    dx, dz = last[..., 0] - first[..., 0], last[..., 1] - first[..., 1]
-    c, s = np.cos(first[..., 2]), np.sin(first[..., 2])
-    lateral, forward = c * dx - s * dz, s * dx + c * dz
-    half = 0.5 * turn
-    cot = np.where(np.abs(half) < 1e-6, 1.0, half / np.where(np.abs(half) < 1e-6, 1.0, np.tan(half)))
-    return np.stack([cot * forward + half * lateral, turn, cot * lateral - half * forward], -1) / period
-
-
-def advance(ground: np.ndarray, velocity: np.ndarray, time: np.ndarray) -> np.ndarray:
-    """Ground frames (..., 3) after moving at the constant body velocity (..., 3) for `time` (...) [s].
-
-    The inverse of `screw`; eq. (2) of the paper, integrated exactly.
-    """
-    v_f, omega, v_l = velocity[..., 0], velocity[..., 1], velocity[..., 2]
-    turn = omega * time
-    small = np.abs(turn) < 1e-6
-    safe = np.where(small, 1.0, turn)
-    a = np.where(small, 1.0, np.sin(safe) / safe)
-    b = np.where(small, 0.5 * turn, (1 - np.cos(safe)) / safe)
-    lateral, forward = (a * v_l + b * v_f) * time, (a * v_f - b * v_l) * time
-    c, s = np.cos(ground[..., 2]), np.sin(ground[..., 2])
-    return np.stack([ground[..., 0] + c * lateral + s * forward,
-                     ground[..., 1] - s * lateral + c * forward, ground[..., 2] + turn], -1)
-
-
-def relative(frame: np.ndarray, ground: np.ndarray) -> np.ndarray:
-    """Ground frames (..., 3) seen from other ground frames (..., 3)."""
-    dx, dz = ground[..., 0] - frame[..., 0], ground[..., 1] - frame[..., 1]
-    c, s = np.cos(frame[..., 2]), np.sin(frame[..., 2])
-    return np.stack([c * dx - s * dz, s * dx + c * dz, ground[..., 2] - frame[..., 2]], -1)
-
-
-def compose(frame: np.ndarray, local: np.ndarray) -> np.ndarray:
-    """The inverse of `relative`: ground frames (..., 3) given inside others."""
-    c, s = np.cos(frame[..., 2]), np.sin(frame[..., 2])
-    return np.stack([frame[..., 0] + c * local[..., 0] + s * local[..., 1],
-                     frame[..., 1] - s * local[..., 0] + c * local[..., 1],
-                     frame[..., 2] + local[..., 2]], -1)
 
 
 def steady_frame(ground: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:

@@ -53,7 +53,7 @@ CLOSE = 0.03
 
 @kernel
 def place_feet(m, body, legs, clearance, positions, orientations, local, dt, work):
-    """Hold standing feet, land swinging ones, bend the legs after them, settle a body at rest."""
+    """Hold standing feet, land swinging ones, bend the legs after them."""
     ankle = np.empty((2, 3))
     before = m.offset.copy()
     _hold_standing(m, legs.height, dt)
@@ -81,8 +81,6 @@ def place_feet(m, body, legs, clearance, positions, orientations, local, dt, wor
         localise_kernel(orientations, 0, hip, local)
         localise_kernel(orientations, hip, hip + 1, local)
         localise_kernel(orientations, hip + 1, hip + 2, local)
-    if _at_rest(m, legs):
-        m.settled = 1
 
 
 @kernel
@@ -168,7 +166,7 @@ def _distance(a, b):
 
 
 @kernel
-def _at_rest(m, legs):
+def at_rest(m, legs):
     """Whether a body that wants to rest may: blended to rest, both feet down and near their places."""
     if m.weights[legs.rest] < 0.98 or abs(m.command[0]) + abs(m.command[1]) + abs(m.command[2]) > 0.02:
         return False
@@ -207,12 +205,12 @@ def _hold_standing(m, height, dt):
         offset, rate = m.offset[k], m.offset_rate[k]
         if stands and m.standing[k] != 1:
             m.standing[k] = 1
-            m.lock[k, 0], m.lock[k, 1], m.lock[k, 2] = x + offset[0], height, z + offset[2]
+            m.lock[k, 0], m.lock[k, 1] = x + offset[0], z + offset[2]
         elif not stands and m.standing[k] == 1:
             m.standing[k] = 2
             m.swing[k // 2] = math.sqrt(offset[0] ** 2 + offset[2] ** 2)
         if m.standing[k] == 1:
-            offset[0], offset[2] = m.lock[k, 0] - x, m.lock[k, 2] - z
+            offset[0], offset[2] = m.lock[k, 0] - x, m.lock[k, 1] - z
             rate[0], rate[2] = 0.0, 0.0
             below = height - m.points[k, 1]
             offset[1], rate[1] = spring_kernel(offset[1], rate[1], below, LAND_HALFLIFE, dt)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.human import HEEL, human
+from ..body.contact import heel_offset
 from ..compiled import kernel
 from .control_space import EDGES, INSIDE, SCALE, ControlSpace
 from .library import HIPS, Library
@@ -53,13 +53,11 @@ class Space(NamedTuple):
 def body_tables(library: Library) -> Body:
     """The kernel's view of a library's skeleton."""
     skeleton = library.skeleton
-    scale = skeleton.offsets[0, 1] / human().offsets[0, 1]
     toe = skeleton.end_offsets[skeleton.end_index["LeftToe"]]
     reference = np.zeros((9, LANES), np.float32)
     reference[:, :len(skeleton)] = library.reference.reshape(-1, 9).T
     return Body(skeleton.parents.astype(np.int64), skeleton.offsets.astype(np.float32), reference,
-                (HEEL * scale).astype(np.float32),
-                toe.astype(np.float32))
+                heel_offset(skeleton).astype(np.float32), toe.astype(np.float32))
 
 
 def space_tables(space: ControlSpace, members: np.ndarray) -> Space:

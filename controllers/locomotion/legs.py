@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-
 from ..body.ik import two_bone_kernel
 from ..compiled import kernel
 from .kernel import joint_kernel
@@ -55,7 +54,7 @@ def leg_kernel(positions, orientations, hip, target, work):
     """Bend the leg of joints hip, hip + 1 (knee), hip + 2 (ankle) so that its ankle meets `target`.
 
     The knee keeps its hinge; positions and orientations of thigh and shank are rewritten.
-    work: (5, 3, 3) scratch. Returns how far the ankle stays from the target [m].
+    work: (5, 3, 3) scratch.
     """
     a, b, c = positions[hip], positions[hip + 1], positions[hip + 2]
     upper = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
@@ -70,7 +69,6 @@ def leg_kernel(positions, orientations, hip, target, work):
     _turn_bone(orientations[hip + 1], b, c, before, mid, end, after, work)
     for i in range(3):
         b[i], c[i] = mid[i], end[i]
-    return math.sqrt((c[0] - target[0]) ** 2 + (c[1] - target[1]) ** 2 + (c[2] - target[2]) ** 2)
 
 
 @kernel
@@ -160,7 +158,6 @@ def _ankle_distance(hip, ball, ankle, axis, angle):
     py = ball[1] + c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1] - hip[1]
     pz = ball[2] + c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2] - hip[2]
     return math.sqrt(px * px + py * py + pz * pz)
-
 
 
 @kernel

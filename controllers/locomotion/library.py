@@ -12,7 +12,6 @@ import numpy as np
 
 from ..body import Skeleton, human
 from ..body import rotations as rot
-from . import fourier
 from .cycles import Cycle
 
 # what the columns of a coefficient array are, for J joints
@@ -120,7 +119,7 @@ class Library:
         """LibraryError, naming the file, unless the arrays fit each other."""
         count, joints = len(self.primitives), len(self.skeleton)
         rows = self.coefficients.shape[1] if self.coefficients.ndim == 3 and self.coefficients.shape[1] % 2 else -1
-        wanted = {"coefficients": (count, rows, 3 * joints + 8), "velocities": (count, 3), "reference": (joints, 3, 3)}
+        wanted = {"coefficients": (count, rows, 3 * joints - HIPS), "velocities": (count, 3), "reference": (joints, 3, 3)}
         for name, shape in wanted.items():
             array = getattr(self, name)
             if array.shape != shape or array.dtype.kind != "f" or not np.isfinite(array).all():
@@ -143,11 +142,3 @@ def channels(cycle: Cycle, reference: np.ndarray) -> np.ndarray:
     chart = rot.log(np.swapaxes(reference, -1, -2) @ cycle.rotations)
     chart = rot.continuous(chart).reshape(len(chart), -1)
     return np.concatenate([chart, cycle.hips, cycle.labels, cycle.duration[:, None]], -1)
-
-
-def poses(coefficients: np.ndarray, phase: np.ndarray, reference: np.ndarray
-          ) -> tuple[np.ndarray, np.ndarray]:
-    """Local rotations (..., J, 3, 3) and hips (..., 3) [m] of a series (2N + 1, D) at phases (...)."""
-    row = fourier.evaluate(coefficients, phase)
-    chart = row[..., :HIPS].reshape(row.shape[:-1] + (-1, 3))
-    return reference @ rot.exp(chart), row[..., HIPS:LABELS]

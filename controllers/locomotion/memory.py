@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.human import CONTACT_HEIGHT, human
+from ..body.contact import contact_height
+from ..body.ground import compose, relative
 from .kernel import COLUMNS
 from .library import Library
 
@@ -21,12 +22,13 @@ WALK, RUN = 0, 1
 class Settings(NamedTuple):
     """What one may tune. Times in seconds, lengths in metres, speeds in m/s.
 
-    command_halflife, acceleration: how fast a wish is taken up, and the most legs can push [m/s²].
+    command_halflife: how fast a wish is taken up. acceleration: the most legs can push [m/s²];
+    turning may change by four times that number [rad/s²].
     weight_halflife: smoothing of the blend's weights. drift_halflife: of the standing foot's say in
     the root's velocity. switch_halflife: of the hand-over between walking and running, which
     happens above run_above and below walk_below. correct: fixed-point corrections of the query.
     footing: whether feet are held. clearance: how high feet swing at least. breath: how deeply a
-    body at rest breathes [rad].
+    body at rest breathes: how far the chest turns [rad], while the hips sway 0.3 m for each rad.
     """
 
     command_halflife: float = 0.10
@@ -57,27 +59,28 @@ class Legs(NamedTuple):
 def legs_of(library: Library) -> Legs:
     """What the step must know of a library."""
     at = library.skeleton.index
-    scale = library.skeleton.offsets[0, 1] / human().offsets[0, 1]
     return Legs(np.array([at("LeftUpLeg"), at("RightUpLeg")]), at("Spine2"), at("Neck"),
-                np.array([at("LeftShoulder"), at("RightShoulder")]), CONTACT_HEIGHT * scale, library.rest)
+                np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest)
 
 
 def memory_dtype(primitives: int) -> np.dtype:
     """The record of one character over a library of that many primitives.
 
-    The four contact points are left heel, left ball, right heel, right ball; feet are left, right.
+    There is room for the next multiple of 64, since kernels are compiled anew for every width: one
+    serves most libraries. The four contact points are left heel, left ball, right heel, right ball; feet are left, right.
     """
     return np.dtype([
+        ("library", "u4"),  # the checksum of the library that the weights are of
         ("ground", "f8", 3),  # x, z [m], θ [rad]
         ("velocity", "f4", 3),  # achieved (v_f, ω, v_l)
         ("command", "f4", 3), ("rate", "f4", 3),  # the shaped wish and its rate
         ("family", "i4"), ("simplex", "i4", 2),  # WALK or RUN; last simplex in each one's space
-        ("weights", "f4", primitives), ("phase", "f4"),
+        ("weights", "f4", -(-primitives // 64) * 64), ("phase", "f4"),
         ("settled", "i4"),  # at rest, both feet in place
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame
         ("standing", "i4", 4),  # 0 free, 1 locked, 2 let go until the foot is well into its swing
-        ("lock", "f8", (4, 3)),  # where each point is locked, in the world
+        ("lock", "f8", (4, 2)),  # x, z where each point is locked, in the world
         ("offset", "f4", (4, 3)), ("offset_rate", "f4", (4, 3)),  # shown minus blended, in the world
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("swing", "f4", 2),  # how far each foot had to go when it left
@@ -88,3 +91,18 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
         ("breath", "f4"),  # phase of breathing
     ], align=True)
+
+
+def put(memory: np.ndarray, ground: np.ndarray) -> None:
+    """Carry characters (...), in place, to other ground frames (..., 3), with all that they know in the world."""
+    there, here = ground[..., None, :], memory["ground"][..., None, :]
+    memory["lock"] = compose(there, relative(here, _flat(memory["lock"])))[..., :2]
+    turn = (there - here) * [0.0, 0.0, 1.0]
+    for name in ("offset", "offset_rate"):
+        memory[name][..., [0, 2]] = compose(turn, _flat(memory[name][..., [0, 2]]))[..., :2]
+    memory["ground"] = ground
+
+
+def _flat(places):
+    """Places (..., 2) x, z as ground frames of heading 0."""
+    return np.concatenate([places, np.zeros(places.shape[:-1] + (1,))], -1)

@@ -11,13 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..body.ground import screw
 from ..compiled import kernel
 from .control_space import ControlSpace, thin
-from .cycles import screw
-from .kernel import COLUMNS, SCRATCH, body_tables, pose_kernel, series_table
+from .kernel import COLUMNS, DURATION_AT, SCRATCH, body_tables, pose_kernel, series_table
 from .library import Library, LibraryError
 from .memory import Settings, legs_of, memory_dtype
-from .step import _advance_phase, _blend_series, _move_root
+from .step import advance_phase, blend_series, move_root
 
 CYCLES = 3
 """Whole cycles over which a velocity is measured, after one to settle."""
@@ -27,8 +27,8 @@ def steady_velocities(library: Library, weights: np.ndarray) -> np.ndarray:
     """Achieved (v_f, ω, v_l) (M, 3) of blends with constant weights (M, P)."""
     weights = np.asarray(weights, np.float32)
     memory = np.zeros(len(weights), memory_dtype(len(library.primitives)))
-    memory["weights"] = weights
-    memory["row"][:, -1] = 1.0
+    memory["weights"][:, :weights.shape[1]] = weights
+    memory["row"][:, DURATION_AT] = 1.0
     frames = np.zeros((len(weights), 2, 3))
     time = np.zeros(len(weights))
     _walk_cycles(memory, frames, time, 1 / 240, Settings(), body_tables(library), legs_of(library),
@@ -47,10 +47,10 @@ def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velociti
         wraps, turned = 0, 0.0
         for step in range(int((CYCLES + 2) * 4.0 / dt)):
             before, heading = m.phase, m.ground[2]
-            _advance_phase(m, wish, legs, dt)
-            _blend_series(m, settings, table, fresh, legs, dt)
+            advance_phase(m, wish, dt)
+            blend_series(m, settings, table, fresh, legs, dt)
             pose_kernel(body, fresh, local, positions, orientations, scratch)
-            _move_root(m, settings, body, legs, positions, orientations, velocities, dt)
+            move_root(m, settings, body, legs, positions, orientations, velocities, dt)
             if wraps >= 1:
                 time[n] += dt
                 turned += (m.ground[2] - heading + np.pi) % (2 * np.pi) - np.pi

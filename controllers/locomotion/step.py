@@ -9,7 +9,7 @@ import numpy as np
 from ..body.springs import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
-from .footing import place_feet
+from .footing import at_rest, place_feet
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
@@ -33,12 +33,17 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
         m = memory[n]
         _shape_command(m, wish[n], dt, settings, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, fresh, b, p, q)
-        _advance_phase(m, wish[n], legs, dt)
-        _blend_series(m, settings, table, fresh, legs, dt)
+        advance_phase(m, wish[n], dt)
+        blend_series(m, settings, table, fresh, legs, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
-        _move_root(m, settings, body, legs, positions, orientations, velocities, dt)
+        move_root(m, settings, body, legs, positions, orientations, velocities, dt)
         if settings.footing:
             place_feet(m, body, legs, settings.clearance, positions, orientations, local[n], dt, work)
+        else:
+            for k in range(4):
+                m.standing[k] = 1 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0
+        if at_rest(m, legs):
+            m.settled = 1
         _to_world(m, fresh, root[n], local[n])
 
 
@@ -88,13 +93,13 @@ def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
     if switch:
         keep = 0.0
     total = 0.0
-    for i in range(m.weights.shape[0]):
+    for i in range(m.weights.shape[0]):  # what fades is dropped, but not what grows from nothing
         m.weights[i] *= keep
+        if m.weights[i] < ACTIVE and not _one_of(i, vertices):
+            m.weights[i] = 0.0
     for i in range(4):
         m.weights[vertices[i]] += (1.0 - keep) * b[i]
     for i in range(m.weights.shape[0]):
-        if m.weights[i] < ACTIVE:
-            m.weights[i] = 0.0
         total += m.weights[i]
     for i in range(m.weights.shape[0]):
         m.weights[i] /= total
@@ -102,15 +107,19 @@ def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
         series_kernel(table, m.weights, m.phase, fresh)
         for d in range(LABELS_AT):
             m.blend[d] = m.row[d] - fresh[d]
-            m.blend_rate[d] = m.row_rate[d] + fresh[d] / dt
         m.row[DURATION_AT] = fresh[DURATION_AT]  # at the other family's pace, too
         series_kernel(table, m.weights, _next_phase(m, dt), fresh)
         for d in range(LABELS_AT):
-            m.blend_rate[d] -= fresh[d] / dt
+            m.blend_rate[d] = m.row_rate[d] - (fresh[d] - (m.row[d] - m.blend[d])) / dt
 
 
 @kernel
-def _advance_phase(m, wish, legs, dt):
+def _one_of(i, vertices):
+    return i == vertices[0] or i == vertices[1] or i == vertices[2] or i == vertices[3]
+
+
+@kernel
+def advance_phase(m, wish, dt):
     """Run the phase on at dφ/dt = 1 / duration(φ); at rest it waits, and starts with a swing."""
     if m.settled:
         if wish[0] ** 2 + wish[1] ** 2 + wish[2] ** 2 < 1e-6:
@@ -128,7 +137,7 @@ def _next_phase(m, dt):
 
 
 @kernel
-def _blend_series(m, settings, table, fresh, legs, dt):
+def blend_series(m, settings, table, fresh, legs, dt):
     """The series of the weighted primitives, with inertialisation and breath, into `fresh` and m.row."""
     series_kernel(table, m.weights, m.phase, fresh)
     for d in range(LABELS_AT):
@@ -145,7 +154,7 @@ def _blend_series(m, settings, table, fresh, legs, dt):
     fresh[legs.neck] += lift
     for side in range(2):
         fresh[2 * LANES + legs.shoulder[side]] += (1.0 - 2.0 * side) * 1.5 * lift
-    sway = settings.breath * calm * math.sin(2.0 * math.pi * m.breath * 1.0 + 1.0)
+    sway = settings.breath * calm * math.sin(2.0 * math.pi * m.breath + 1.0)
     fresh[HIPS_AT] += 0.3 * sway
 
 
@@ -162,7 +171,7 @@ def _foot_points(body, legs, positions, orientations, out):
 
 
 @kernel
-def _move_root(m, settings, body, legs, positions, orientations, velocities, dt):
+def move_root(m, settings, body, legs, positions, orientations, velocities, dt):
     """Move the ground frame so that the standing foot stays: the blend's own mean velocity plus
     what the standing points say beyond it, low-passed."""
     v_f, omega, v_l = 0.0, 0.0, 0.0

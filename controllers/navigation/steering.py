@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..body.ground import advance
 from ..body.rotations import wrap
 from ..contract import Intent
 
@@ -107,13 +108,4 @@ def drift(ground, velocity, seconds) -> np.ndarray:
     frame. seconds: (T,) times from now.
     """
     ground, velocity = np.asarray(ground, float)[..., None, :], np.asarray(velocity, float)[..., None, :]
-    seconds = np.asarray(seconds, float)
-    half = 0.5 * velocity[..., 1] * seconds
-    # the chord of an arc: as long as the way times sin(h)/h, and turned by half the angle
-    chord = seconds * np.sinc(half / np.pi)
-    middle = ground[..., 2] + half
-    cosine, sine = np.cos(middle), np.sin(middle)
-    v_f, v_l = velocity[..., 0], velocity[..., 2]
-    return np.stack([ground[..., 0] + chord * (v_f * sine + v_l * cosine),
-                     ground[..., 1] + chord * (v_f * cosine - v_l * sine),
-                     ground[..., 2] + 2.0 * half], -1)
+    return advance(ground, velocity, np.asarray(seconds, float))

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from sampling import BATCHES, KINDS, angle, rotations
-from scipy.spatial.transform import Rotation
 
 from controllers.body.rotations import between, continuous, exp, heading_of, log, mean, wrap, yaw
 

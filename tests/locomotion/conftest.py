@@ -6,7 +6,7 @@ import pytest
 from controllers.locomotion import Library, Locomotion
 from controllers.locomotion.controller import DEFAULT_LIBRARY
 
-from playing import play, whims
+from playing import WISHES, hold, play, whims
 
 
 @pytest.fixture(scope="session")
@@ -23,3 +23,9 @@ def locomotion(library):
 def whimsical(locomotion):
     """Twelve characters for fifteen seconds, their wishes changed at a whim."""
     return play(locomotion, whims(np.random.default_rng(5), 15, 12))
+
+
+@pytest.fixture(scope="session")
+def steadily(locomotion):
+    """WISHES, each held for sixteen seconds."""
+    return play(locomotion, hold(16, *WISHES))

@@ -7,10 +7,12 @@ from scipy.spatial.transform import Rotation
 
 from controllers.body import Clip, forward_kinematics
 from controllers.body.contact import contact_points
+from controllers.body.ground import relative
 from controllers.contract import Intent
-from controllers.locomotion.cycles import relative
 
 FPS = 60
+WISHES = ((1.0, 0, 0), (0.5, 0, 0), (1.3, 0, 0), (0.9, 0.6, 0), (0.9, -0.6, 0), (0, 0, 0.4), (0, 0, -0.4), (0.5, 0, 0.35),
+          (0.5, 0, -0.35), (-0.5, 0, 0), (0, 1.2, 0), (0, -1.2, 0), (0.4, 0.8, 0), (2.5, 0, 0), (3.0, 0.3, 0))
 
 
 @dataclass

@@ -10,9 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from controllers.body import human
-from controllers.body.rotations import exp, log
 from controllers.locomotion import Library, LibraryError, Locomotion
-from controllers.locomotion.library import poses
 
 
 @pytest.fixture(scope="session")
@@ -83,18 +81,6 @@ def test_the_lengths_of_cycles_are_what_their_series_say(library):
         if p.averaged == 1:
             assert rows[0, -1] == pytest.approx(p.period, rel=2e-3)
         assert 0.4 < rows[0, -1] < 2.6
-
-
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(number=st.integers(0, 8), phase=st.floats(0, 1))
-def test_poses_are_the_series_read_in_the_reference_chart(few, number, phase):
-    rotations, hips = poses(few.coefficients[number], np.array([phase]), few.reference)
-    rows = few.coefficients[number]
-    angle = 2 * np.pi * phase * np.arange(1, 13)
-    value = rows[0] + np.cos(angle) @ rows[1::2] + np.sin(angle) @ rows[2::2]
-    chart = value[:66].reshape(22, 3)
-    np.testing.assert_allclose(log(few.reference.transpose(0, 2, 1) @ rotations[0]), log(exp(chart)), atol=1e-6)
-    np.testing.assert_allclose(hips[0], value[66:69], atol=1e-12)
 
 
 # what is not a library
