@@ -35,6 +35,7 @@ class Preset(str, Enum):
 
 Library = Annotated[Path | None, typer.Option(help="A gait library; the shipped one by default.")]
 Quality = Annotated[Preset, typer.Option(help="Picture quality.")]
+Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 
 
 class Mistake(ValueError):
@@ -71,18 +72,41 @@ def _say(text: str) -> None:
 @app.command()
 @plainly
 def play(library: Library = None, preset: Quality = Preset.full,
-         size: Annotated[str, typer.Option(help="Size of the window.")] = "1280x720") -> None:
+         size: Annotated[str, typer.Option(help="Size of the window.")] = "1280x720",
+         bindings: Hands = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    pixels, controller = _size(size), _controller(library)
+    from .input.remap import load as load_bindings
+
+    pixels, hands = _size(size), load_bindings(bindings)
+    controller = _controller(library)
 
     from .hosts import DisplayError, run_window
     from .play import Play
 
     try:
-        run_window(Play(controller), pixels, preset.value)
+        run_window(Play(controller, bindings=hands), pixels, preset.value)
     except DisplayError as error:
         _say(f"gambol: {error}")
         raise typer.Exit(NO_DISPLAY) from None
+
+
+@app.command()
+@plainly
+def bindings(file: Hands = None,
+             write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
+    """Print the keys, buttons and sticks in force, as a file to edit."""
+    from .input.remap import as_toml, load
+    from .output import named, output_file
+
+    text = as_toml(load(file))
+    if write is None:
+        typer.echo(text, nl=False)
+        return
+    if write.exists():
+        raise Mistake(f"{write}: is there already; name another file")
+    with named(output_file(write, ".toml")):
+        write.write_text(text, encoding="utf-8")
+    _say(str(write))
 
 
 @app.command()
@@ -107,9 +131,11 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
         return
     from .film import scenes
     from .recorder import recorder
+    from .shots import overlays
 
-    width, height = film.size if size is None else _size(size)
-    shown = scenarios.overlays(film.overlays if overlay is None else _overlays(overlay))
+    film = film if size is None else film.at_size(_size(size))
+    width, height = film.size
+    shown = None if overlay is None else overlays(_overlays(overlay))
     controller = _controller(library)
     target = recorder(out, (width, height), film.fps)
 
@@ -237,7 +263,7 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _overlays(text: str) -> list[str]:
-    from .scenario import OVERLAYS
+    from .shots import OVERLAYS
 
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from .sheet import Sheet
+
 
 @dataclass(frozen=True, eq=False)
 class Camera:
@@ -92,7 +94,7 @@ class Overlays:
 class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
-    text: lines for the top-left corner; panel: lines of a centred sheet (help, pause).
+    text: lines for the top-left corner; panel: lines of a centred sheet (pause). sheet: the help sheet.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
 
@@ -103,4 +105,5 @@ class Scene:
     text: tuple[str, ...] = ()
     panel: tuple[str, ...] = ()
     caption: Caption | None = None
+    sheet: Sheet | None = None
     part: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)

@@ -1,8 +1,7 @@
 """What a host tells the app it hosts. Plain data: an app is tested without a window.
 
 Keys are named as GLFW names them without KEY_ (W, LEFT_SHIFT, F1, ESCAPE); mouse buttons are keys
-too: LEFT_BUTTON, RIGHT_BUTTON, MIDDLE_BUTTON. Pad buttons are A B X Y LB RB BACK START GUIDE LS RS
-and UP RIGHT DOWN LEFT of the cross.
+too: LEFT_BUTTON, RIGHT_BUTTON, MIDDLE_BUTTON. `game.input.names` lists them all, and a pad's buttons.
 """
 
 from __future__ import annotations
@@ -12,8 +11,8 @@ from typing import Protocol
 
 from ..scene import Scene
 
-PAD_BUTTONS = ("A", "B", "X", "Y", "LB", "RB", "BACK", "START", "GUIDE", "LS", "RS", "UP", "RIGHT", "DOWN", "LEFT")
-"""In GLFW's order."""
+PADS = 4
+"""The most gamepads at once."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +58,8 @@ class Focus:
 
 @dataclass(frozen=True)
 class PadState:
-    """A gamepad in this frame. slot: 0 for the first pad, 1 for the second. name: "" where none is
-    plugged in (its sticks then rest).
+    """A gamepad in this frame. slot: 0 … PADS − 1; a pad keeps its own until it is pulled out. name: ""
+    where none is plugged in (its sticks then rest).
 
     axes: left x, left y, right x, right y (−1 … 1, y downwards), left and right trigger
     (−1 released … 1 pressed). buttons: the names of those that are down.
@@ -100,10 +99,14 @@ class App(Protocol):
 
     done: bool
     """Whether it wants to end."""
+    full_screen: bool
+    """Whether it wants the whole screen."""
+    mouse_captured: bool
+    """Whether it wants the mouse without a pointer, so that no edge of the screen stops it."""
 
     def handle(self, event: Event) -> None:
-        """Take an event. One PadState comes every frame, before the tick, while a pad is there; and
-        one without a name when it goes."""
+        """Take an event. For each pad that is there one PadState comes every frame, before the tick;
+        and one without a name when it goes."""
 
     def tick(self, seconds: float) -> None:
         """So much wall time has passed since the last tick."""

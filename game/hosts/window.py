@@ -8,8 +8,9 @@ import sys
 import time
 from typing import Any
 
+from ..input.names import PAD_BUTTONS
 from ..render import Preset, Renderer
-from .events import PAD_BUTTONS, App, Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
+from .events import PADS, App, Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 
 PACE = 1.0 / 60.0
 """Seconds between frames where the display sets no pace."""
@@ -26,8 +27,8 @@ def run_window(app: App, size: tuple[int, int] = (1280, 720), chosen: str | Pres
     """Open a window, run the app until it is done or the window is closed, and close it again.
 
     size: of the window in screen units. chosen: a preset or its name. limit: seconds after which
-    to end in any case. Returns the number of frames shown. F11 switches to the full screen and back.
-    DisplayError where no window can be had.
+    to end in any case. Returns the number of frames shown. Gamepads that GLFW doesn't know by itself
+    are described in SDL_GAMECONTROLLERCONFIG, as for other games. DisplayError where no window can be had.
     """
     import glfw
 
@@ -78,7 +79,7 @@ class _Loop:
         self.keys = _key_names(glfw)
         self.held: set[str] = set()
         self.mouse: tuple[float, float] | None = None
-        self.pad: int | None = None
+        self.pads = Pads(glfw)
         self.windowed: tuple[int, int, int, int] | None = None
         self._listen()
         app.handle(Resize(*self.size))
@@ -88,8 +89,10 @@ class _Loop:
         glfw, app, frames = self.glfw, self.app, 0
         start = last = time.perf_counter()
         while not (app.done or glfw.window_should_close(self.window) or last - start > limit):
+            self._obey()
             glfw.poll_events()
-            self._read_pad()
+            for pad in self.pads.read():
+                app.handle(pad)
             now = time.perf_counter()
             app.tick(min(now - last, LONGEST))
             last = now
@@ -122,10 +125,6 @@ class _Loop:
         def press(name: str | None, action: int) -> None:
             if name is None or action == glfw.REPEAT:
                 return
-            if name == "F11":
-                if action == glfw.PRESS:
-                    self._full_screen()
-                return
             (self.held.add if action == glfw.PRESS else self.held.discard)(name)
             handle(KeyEvent(name, action == glfw.PRESS))
 
@@ -150,24 +149,15 @@ class _Loop:
         glfw.set_framebuffer_size_callback(
             window, lambda _, width, height: handle(Resize(width, height)) if width and height else None)
 
-    def _read_pad(self) -> None:
-        """The first gamepad that is plugged in; another takes over when it goes."""
-        glfw = self.glfw
-        if self.pad is None:
-            self.pad = next((j for j in range(glfw.JOYSTICK_1, glfw.JOYSTICK_LAST + 1)
-                             if glfw.joystick_is_gamepad(j)), None)
-            if self.pad is None:
-                return
-        state = glfw.get_gamepad_state(self.pad)
-        if state is None:
-            self.pad = None
-            self.app.handle(PadState())
-            return
-        name = glfw.get_gamepad_name(self.pad)
-        self.app.handle(PadState(
-            name.decode() if isinstance(name, bytes) else str(name or "gamepad"),
-            tuple(float(v) for v in state.axes),
-            frozenset(b for b, down in zip(PAD_BUTTONS, state.buttons) if down == glfw.PRESS)))
+    def _obey(self) -> None:
+        """Do what the app wants of the window."""
+        glfw, window, app = self.glfw, self.window, self.app
+        if app.full_screen != (self.windowed is not None):
+            self._full_screen()
+        wanted = glfw.CURSOR_DISABLED if app.mouse_captured else glfw.CURSOR_NORMAL
+        if glfw.get_input_mode(window, glfw.CURSOR) != wanted:
+            glfw.set_input_mode(window, glfw.CURSOR, wanted)
+            self.mouse = None  # the pointer jumps meanwhile
 
     def _full_screen(self) -> None:
         glfw, window = self.glfw, self.window
@@ -181,6 +171,34 @@ class _Loop:
         else:
             glfw.set_window_monitor(window, None, *self.windowed, glfw.DONT_CARE)
             self.windowed = None
+
+
+class Pads:
+    """The gamepads that are plugged in. Each keeps its slot while it is there; a new one takes the first free."""
+
+    def __init__(self, glfw: Any):
+        self.glfw = glfw
+        self.slots: list[int | None] = [None] * PADS
+        if described := os.environ.get("SDL_GAMECONTROLLERCONFIG"):
+            glfw.update_gamepad_mappings(described)
+
+    def read(self) -> list[PadState]:
+        """The state of every pad, and a state without a name for each that has gone."""
+        glfw, states = self.glfw, []
+        for joystick in range(glfw.JOYSTICK_1, glfw.JOYSTICK_LAST + 1):
+            if joystick not in self.slots and None in self.slots and glfw.joystick_is_gamepad(joystick):
+                self.slots[self.slots.index(None)] = joystick
+        for slot, joystick in enumerate(self.slots):
+            if joystick is not None:
+                state = glfw.get_gamepad_state(joystick)
+                states.append(PadState(slot=slot) if state is None else self._state(slot, joystick, state))
+                if state is None:
+                    self.slots[slot] = None
+        return states
+
+    def _state(self, slot: int, joystick: int, state: Any) -> PadState:
+        return PadState(self.glfw.get_gamepad_name(joystick) or "gamepad", tuple(float(v) for v in state.axes),
+                        frozenset(b for b, down in zip(PAD_BUTTONS, state.buttons) if down == self.glfw.PRESS), slot)
 
 
 def _key_names(glfw: Any) -> dict[int, str]:

@@ -1,14 +1,18 @@
-"""Hands: keyboard, gamepad and script become wishes; a pilot turns wishes into intents.
+"""Hands: keyboard, mouse, gamepads and script become wishes; a pilot turns wishes into intents.
 
-Keyboard and gamepad give a `Wish`, seen from the camera. The pilot gives a `Command`, in the
-world. Steering (in `controllers.navigation`) makes it an `Intent`. A script gives intents at once.
+Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The pilot gives a
+`Command`, in the world. Steering (in `controllers.navigation`) makes it an `Intent`. A script gives
+intents at once.
 """
 
-from .bindings import BINDINGS, Binding, help_sheet
-from .devices import Keyboard, dead_zone, pad_pressed, pad_wish
+from .bindings import DEFAULT, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
+from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
+                      player_of, wheel_wish, wishes)
+from .help import help_sheet
 from .pilot import Command, Pace, Pilot
 from .script import Move, Script
 from .wish import Wish
 
-__all__ = ["BINDINGS", "Binding", "Command", "Keyboard", "Move", "Pace", "Pilot", "Script", "Wish",
-           "dead_zone", "help_sheet", "pad_pressed", "pad_wish"]
+__all__ = ["DEFAULT", "JOINING", "PLAYERS", "REWOUND", "Binding", "Bindings", "Command", "Keyboard", "Mouse", "Move",
+           "Pace", "Pilot", "Script", "Sticks", "Wish", "dead_zone", "drivers", "help_sheet", "mode_of", "mouse_wish",
+           "pad_held", "pad_pressed", "pad_wish", "player_of", "wheel_wish", "wishes"]

@@ -1,13 +1,18 @@
 """The one table of keys and buttons: what the devices read is what the help sheet shows.
 
-Keys are named as GLFW names them, without KEY_; buttons are A B X Y LB RB BACK START LS RS and
-UP DOWN LEFT RIGHT of the cross; sticks and triggers are named in words and read by `devices`.
+`Bindings` is a value that is passed to whatever reads a device; `DEFAULT` is what Gambol comes with,
+and `game.input.remap` reads another from a file.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
+
+REWOUND = "rewound"
+"""The mode while a past moment is shown."""
+JOINING = "joining"
+"""The mode of a device that could bring in a second player."""
 
 
 @dataclass(frozen=True)
@@ -15,80 +20,134 @@ class Binding:
     """What does one thing. held: it acts while it is down; else once, when it is pressed.
 
     help: what the sheet says; neighbours that say the same share a line.
-    keys, buttons: any of them does. analog: the stick, trigger or mouse that does it too.
+    keys, buttons: any of them does. analog: what else does it, "walk stick", "look stick" or
+    "wheel". mode: where it acts, in front of what its keys do else.
     """
 
     action: str
     help: str
     keys: tuple[str, ...] = ()
     buttons: tuple[str, ...] = ()
-    analog: str = ""
     held: bool = False
+    analog: str = ""
+    mode: str = ""
+
+    def can_have(self, kind: str) -> bool:
+        """Whether "keys" or "buttons" can do it; some things take a stick, the wheel or the mouse."""
+        return self.action not in {"keys": ("face", "zoom"), "buttons": ("face", "zoom", "pan")}[kind]
 
 
-_SHOW = "body, skeleton, contacts, trail, path"
+@dataclass(frozen=True)
+class Sticks:
+    """How sticks and triggers are read.
 
-BINDINGS = (
-    Binding("forward", "walk", ("W", "UP"), analog="left stick", held=True),
-    Binding("left", "walk", ("A", "LEFT"), analog="left stick", held=True),
-    Binding("back", "walk", ("S", "DOWN"), analog="left stick", held=True),
-    Binding("right", "walk", ("D", "RIGHT"), analog="left stick", held=True),
-    Binding("run", "run", ("LEFT_SHIFT", "RIGHT_SHIFT"), analog="right trigger", held=True),
-    Binding("slow", "walk slowly", ("LEFT_CONTROL", "LEFT_ALT"), ("B",), held=True),
-    Binding("turn_left", "turn left, right", ("Q",), ("LEFT",), held=True),
-    Binding("turn_right", "turn left, right", ("E",), ("RIGHT",), held=True),
-    Binding("strafe", "keep facing the same way", ("F",), analog="left trigger", held=True),
-    Binding("strafe_lock", "keep facing, on or off", ("TAB",), ("RB",)),
-    Binding("face", "face a direction", analog="right stick"),
-    Binding("orbit", "turn the camera", ("LEFT_BUTTON", "RIGHT_BUTTON"), ("LB",), analog="mouse · right stick", held=True),
-    Binding("zoom", "camera nearer or farther", analog="mouse wheel"),
-    Binding("recentre", "camera behind the character", ("C",), ("RS",)),
-    Binding("pause", "pause", ("P",), ("START",)),
-    Binding("step", "one step while paused", ("PERIOD",), ("DOWN",)),
-    Binding("reset", "start again", ("R",), ("BACK",)),
-    Binding("mesh", _SHOW, ("1",)),
-    Binding("skeleton", _SHOW, ("2",)),
-    Binding("contacts", _SHOW, ("3",)),
-    Binding("trail", _SHOW, ("4",)),
-    Binding("path", _SHOW, ("5",)),
-    Binding("help", "this sheet", ("F1", "H"), ("Y",)),
-    Binding("full_screen", "full screen", ("F11",)),
-    Binding("quit", "leave", ("ESCAPE",)),
-)
-"""Every binding, in the order of the help sheet."""
+    walk: the stick that walks, "left" or "right"; the other one looks. dead_zone, full: where a
+    stick starts to count and where it counts in full, as parts of its throw. curve: the exponent
+    of what lies between; 1 is linear, 2 finer near the middle. trigger_dead_zone: the same of
+    triggers. invert_x, invert_y: of the stick while it turns the camera.
+    """
 
-_NAMES = {"LEFT_SHIFT": "Shift", "RIGHT_SHIFT": "", "LEFT_CONTROL": "Ctrl", "LEFT_ALT": "Alt", "TAB": "Tab",
-          "SPACE": "Space", "PERIOD": ".", "ESCAPE": "Esc", "UP": "↑", "DOWN": "↓", "LEFT": "←",
-          "RIGHT": "→", "LEFT_BUTTON": "drag", "RIGHT_BUTTON": ""}
-_BUTTONS = {"LEFT": "cross ←", "RIGHT": "cross →", "UP": "cross ↑", "DOWN": "cross ↓",
-            "START": "Start", "BACK": "Back", "RS": "press right stick"}
+    walk: str = "left"
+    dead_zone: float = 0.15
+    full: float = 0.95
+    curve: float = 1.0
+    trigger_dead_zone: float = 0.08
+    invert_x: bool = False
+    invert_y: bool = False
 
 
-def binding(action: str) -> Binding:
-    """The binding of an action. KeyError, naming it, if there is none."""
-    for row in BINDINGS:
-        if row.action == action:
-            return row
-    raise KeyError(action)
+@dataclass(frozen=True)
+class Mouse:
+    """How the mouse is read. turn: how far a drag over the window's height turns the camera [rad]."""
+
+    turn: float = 4.0
+    invert_x: bool = False
+    invert_y: bool = False
 
 
-def pressed_by(name: str, kind: str = "keys") -> tuple[str, ...]:
-    """The actions that pressing a key (or, with kind "buttons", a pad's button) sets off once."""
-    return tuple(row.action for row in BINDINGS if not row.held and name in getattr(row, kind))
+@dataclass(frozen=True)
+class Bindings:
+    """A whole table. sections: title → rows, in the order of the help sheet."""
+
+    sections: tuple[tuple[str, tuple[Binding, ...]], ...]
+    sticks: Sticks = Sticks()
+    mouse: Mouse = Mouse()
+
+    def __iter__(self) -> Iterator[Binding]:
+        return (row for _, rows in self.sections for row in rows)
+
+    def row(self, action: str) -> Binding:
+        """The row of an action. KeyError, naming it, if there is none."""
+        for row in self:
+            if row.action == action:
+                return row
+        raise KeyError(action)
+
+    def rows_of(self, name: str, kind: str = "keys", mode: str = "") -> tuple[Binding, ...]:
+        """What a key (or, with kind "buttons", a pad's button) does in a mode.
+
+        What belongs to the mode goes before what the same key does everywhere.
+        """
+        rows = tuple(row for row in self if name in getattr(row, kind))
+        return tuple(row for row in rows if row.mode and row.mode == mode) or tuple(row for row in rows if not row.mode)
+
+    def pressed_by(self, name: str, kind: str = "keys", mode: str = "") -> tuple[str, ...]:
+        """The actions that pressing it sets off once."""
+        return tuple(row.action for row in self.rows_of(name, kind, mode) if not row.held)
 
 
-def help_sheet() -> tuple[str, ...]:
-    """The table as lines of text: action, keyboard and mouse, gamepad."""
-    rows = [("", "keyboard", "gamepad")]
-    for text, group in groupby(BINDINGS, key=lambda row: row.help):
-        group = list(group)
-        mouse, _, stick = group[0].analog.partition(" · ")
-        if not stick and "mouse" not in mouse:
-            mouse, stick = "", mouse
-        keys = [_NAMES.get(row.keys[i], row.keys[i].capitalize())
-                for i in range(2) for row in group if i < len(row.keys)]
-        buttons = [_BUTTONS.get(button, button) for row in group for button in row.buttons]
-        rows.append((text, " ".join(filter(None, (mouse, *keys))),
-                     " + ".join(filter(None, (" ".join(buttons), stick)))))
-    widths = [max(len(row[i]) for row in rows) for i in range(3)]
-    return tuple("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
+_SHOW = "body, bones, contacts, trail, path"
+_PANELS = "space, plots, quality, settings"
+
+DEFAULT = Bindings((
+    ("Walk", (
+        Binding("forward", "walk", ("W", "UP"), held=True, analog="walk stick"),
+        Binding("left", "walk", ("A", "LEFT"), held=True, analog="walk stick"),
+        Binding("back", "walk", ("S", "DOWN"), held=True, analog="walk stick"),
+        Binding("right", "walk", ("D", "RIGHT"), held=True, analog="walk stick"),
+        Binding("run", "run", ("LEFT_SHIFT", "RIGHT_SHIFT"), ("RT",), held=True),
+        Binding("slow", "walk slowly", ("LEFT_CONTROL", "LEFT_ALT"), ("B",), held=True),
+        Binding("turn_left", "turn left, right", ("Q",), ("LEFT",), held=True),
+        Binding("turn_right", "turn left, right", ("E",), ("RIGHT",), held=True),
+        Binding("strafe", "keep facing", ("F",), ("LT",), held=True),
+        Binding("strafe_lock", "keep facing, on or off", ("TAB",), ("RB",)),
+        Binding("face", "face a direction", analog="look stick"),
+        Binding("join", "a second player joins", ("J",), ("START",), mode=JOINING),
+    )),
+    ("Look", (
+        Binding("orbit", "turn the camera", ("LEFT_BUTTON", "RIGHT_BUTTON"), ("LB",), held=True, analog="look stick"),
+        Binding("pan", "push the picture", ("MIDDLE_BUTTON",), held=True),
+        Binding("zoom", "nearer, farther", analog="wheel"),
+        Binding("recentre", "from behind", ("C",), ("RS",)),
+        Binding("camera_mode", "follow, orbit, fly", ("V",), ("UP",)),
+    )),
+    ("Time", (
+        Binding("pause", "pause", ("P",), ("START",)),
+        Binding("step", "one step while paused", ("PERIOD",), ("DOWN",)),
+        Binding("slowmo", "slow motion", ("K",)),
+        Binding("rewind", "rewind", ("BACKSPACE",), ("X",), held=True),
+        Binding("scrub_back", "rewound: back, on", ("LEFT",), ("LEFT",), held=True, mode=REWOUND),
+        Binding("scrub_on", "rewound: back, on", ("RIGHT",), ("RIGHT",), held=True, mode=REWOUND),
+        Binding("resume", "rewound: go on from here", ("ENTER",), ("START",), mode=REWOUND),
+        Binding("reset", "start again", ("R",), ("BACK",)),
+    )),
+    ("Show and keep", (
+        Binding("mesh", _SHOW, ("1",)),
+        Binding("skeleton", _SHOW, ("2",)),
+        Binding("contacts", _SHOW, ("3",)),
+        Binding("trail", _SHOW, ("4",)),
+        Binding("path", _SHOW, ("5",)),
+        Binding("panels", "all panels", ("F2",)),
+        Binding("space_panel", _PANELS, ("F3",)),
+        Binding("plots_panel", _PANELS, ("F4",)),
+        Binding("quality_panel", _PANELS, ("F5",)),
+        Binding("settings_panel", _PANELS, ("F6",)),
+        Binding("export", "export, film, screenshot", ("F9",)),
+        Binding("film", "export, film, screenshot", ("F10",)),
+        Binding("screenshot", "export, film, screenshot", ("F12",)),
+        Binding("help", "this sheet", ("F1", "H"), ("Y",)),
+        Binding("full_screen", "full screen", ("F11",)),
+        Binding("quit", "leave", ("ESCAPE",)),
+    )),
+))
+"""What Gambol comes with, in the order of the help sheet. Space and A are kept free, for a jump."""

@@ -13,6 +13,7 @@ from .figures import Figures, drawable
 from .ground import Boxes, Ground, dark_floor, shaded_floor
 from .overlays import OverlayPass
 from .presets import Preset, preset
+from .sheet import SheetPass
 from .text import TextPass
 
 FOG = 30.0
@@ -40,6 +41,7 @@ class Renderer:
         self.frame = ctx.buffer(reserve=192, dynamic=True)
         self.figures, self.boxes = Figures(ctx, body), Boxes(ctx, floor)
         self.ground, self.overlays, self.text = Ground(ctx, floor), OverlayPass(ctx), TextPass(ctx)
+        self.sheet = SheetPass(ctx)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -119,8 +121,8 @@ class Renderer:
 
     def release(self) -> None:
         """Give back all that was made on the graphics card."""
-        for part in (self.figures, self.boxes, self.ground, self.overlays, self.text, self.shadow_target,
-                     self.shadow_map, self.frame, self.target):
+        for part in (self.figures, self.boxes, self.ground, self.overlays, self.text, self.sheet,
+                     self.shadow_target, self.shadow_map, self.frame, self.target):
             part.release()
 
     def _frame(self, matrix: np.ndarray, eye: np.ndarray, box: view.LightBox | None, size: tuple[int, int]) -> None:
@@ -158,4 +160,5 @@ class Renderer:
         self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)
         self.text.draw(scene.text, scene.panel, scene.caption, inside[2:])
+        self.sheet.draw(scene.sheet, inside[2:])
         ctx.disable(ctx.BLEND)

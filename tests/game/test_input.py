@@ -1,29 +1,28 @@
 """Sticks, keys and the pilot."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from game.input import BINDINGS, Keyboard, Pilot, Wish, dead_zone, help_sheet, pad_pressed, pad_wish
-from game.input.bindings import pressed_by
-from game.input.devices import INNER, OUTER, trigger
+from game.hosts.events import PadState
+from game.input import (DEFAULT, JOINING, REWOUND, Keyboard, Pilot, Sticks, Wish, dead_zone, drivers, mode_of, mouse_wish,
+                        pad_held, pad_pressed, pad_wish, player_of, wheel_wish, wishes)
+from game.input.devices import trigger
+from game.input.names import PAD_BUTTONS
+from game.input.remap import remapped
 from stand_in import Glide
 
+INNER, OUTER = DEFAULT.sticks.dead_zone, DEFAULT.sticks.full
 stick = st.floats(-1, 1)
 anything = st.floats(allow_nan=True, allow_infinity=True)
 
 
-@dataclass(frozen=True)
-class Pad:
-    left: tuple[float, float] = (0.0, 0.0)
-    right: tuple[float, float] = (0.0, 0.0)
-    left_trigger: float = -1.0
-    right_trigger: float = -1.0
-    buttons: frozenset = frozenset()
+def pad(left=(0.0, 0.0), right=(0.0, 0.0), triggers=(-1.0, -1.0), *buttons, slot=0):
+    return PadState("Pad", (*left, *right, *triggers), frozenset(buttons), slot)
 
 
 @given(anything, anything)
@@ -52,12 +51,33 @@ def test_it_starts_at_nothing_and_reaches_everything():
     assert dead_zone((INNER + OUTER) / 2, 0)[0] == pytest.approx(0.5)
 
 
+@given(st.floats(0.25, 4), st.floats(0, 0.5), st.floats(0.01, 1), st.floats(0.01, 1))
+def test_any_curve_rises_from_nothing_to_everything(curve, inner, a, b):
+    sticks = Sticks(curve=curve, dead_zone=inner, full=0.9)
+    low, high = (dead_zone(v, 0, sticks)[0] for v in sorted((a, b)))
+    assert 0 <= low <= high <= 1
+    assert dead_zone(0.9, 0, sticks)[0] == pytest.approx(1) and dead_zone(inner, 0, sticks) == (0, 0)
+
+
+def test_a_curve_is_finer_in_the_middle():
+    middle = (INNER + OUTER) / 2
+    assert dead_zone(0, middle, replace(DEFAULT.sticks, curve=2.0))[1] == pytest.approx(0.25)
+
+
 def test_readings_that_are_no_numbers_count_as_rest():
-    assert pad_wish(Pad(left=(math.nan, 1.0), right=(math.inf, 0.0), right_trigger=math.nan)) == Wish()
+    assert pad_wish(pad((math.nan, 1.0), (math.inf, 0.0), (math.inf, math.nan))) == Wish()
     assert trigger(-1.0) == 0 and trigger(1.0) == 1
 
 
-@given(st.sets(st.sampled_from([key for row in BINDINGS if row.held for key in row.keys])))
+@given(st.tuples(*[anything] * 6), st.sets(st.sampled_from(PAD_BUTTONS)))
+def test_whatever_a_pad_says_is_a_wish_in_bounds(axes, buttons):
+    wish = pad_wish(PadState("Pad", axes, frozenset(buttons)))
+    for v in (wish.move, wish.look, wish.orbit):
+        assert math.hypot(*v) <= 1 + 1e-12
+    assert 0 <= wish.run <= 1 and abs(wish.turn) <= 1
+
+
+@given(st.sets(st.sampled_from([key for row in DEFAULT if row.held for key in row.keys])))
 def test_no_keys_are_faster_than_one(keys):
     assert math.hypot(*Keyboard(frozenset(keys)).wish().move) <= 1 + 1e-12
 
@@ -70,28 +90,77 @@ def test_keys_cancel_out_and_let_go():
 
 
 def test_a_pad_that_comes_or_goes_does_nothing_by_itself():
-    down = Pad(buttons=frozenset({"START"}))
+    down = pad((0, 0), (0, 0), (-1, -1), "START")
     assert pad_wish(None) == Wish() and pad_pressed(None, down) == () and pad_pressed(down, None) == ()
-    assert pad_pressed(Pad(), down) == ("pause",) and pad_pressed(down, down) == ()
+    assert pad_pressed(pad(), down) == ("pause",) and pad_pressed(down, down) == ()
 
 
 def test_the_right_stick_faces_or_turns_the_camera():
-    assert pad_wish(Pad(right=(1.0, 0.0))).look == (1.0, 0.0)
-    orbiting = pad_wish(Pad(right=(1.0, 0.0), buttons=frozenset({"LB"})))
-    assert orbiting.look == (0.0, 0.0) and orbiting.orbit == (-1.0, 0.0)
+    assert pad_wish(pad(right=(1.0, 0.0))).look == (1.0, 0.0)
+    turning = pad((0, 0), (1.0, 0.0), (-1, -1), "LB")
+    assert pad_wish(turning).look == (0.0, 0.0) and pad_wish(turning).orbit == (-1.0, 0.0)
+    inverted = replace(DEFAULT, sticks=Sticks(invert_x=True))
+    assert pad_wish(turning, inverted).orbit == (1.0, 0.0)
 
 
-def test_the_table_is_sound():
-    assert len({row.action for row in BINDINGS}) == len(BINDINGS)
-    for kind in ("keys", "buttons"):
-        names = [name for row in BINDINGS for name in getattr(row, kind)]
-        assert len(set(names)) == len(names), f"one of the {kind} does two things"
-    assert pressed_by("P") == ("pause",) and pressed_by("W") == () and pressed_by("NOTHING") == ()
-    sheet = help_sheet()
-    assert len(sheet) <= 20, "the sheet must fit a small window"
-    for row in BINDINGS:
-        line, = (line for line in sheet if line.startswith(row.help + "  "))
-        assert all(key.capitalize() in line for key in row.keys if len(key) == 1)
+def test_sticks_can_be_swapped():
+    swapped = replace(DEFAULT, sticks=Sticks(walk="right"))
+    assert pad_wish(pad((1.0, 0.0), (0.0, -1.0)), swapped) == pad_wish(pad((0.0, -1.0), (1.0, 0.0)))
+
+
+def test_triggers_are_buttons_that_also_tell_how_far():
+    assert 0.4 < pad_wish(pad(triggers=(-1.0, 0.0))).run < 0.6 and pad_wish(pad(triggers=(1.0, -1.0))).strafe
+    other = remapped(DEFAULT, {}, {"run": ("LT",), "strafe": ("X",), "pause": ("RT",), "forward": ("UP",), "rewind": ()})
+    assert pad_wish(pad(triggers=(1.0, -1.0)), other).run == 1.0
+    assert pad_wish(pad((0, 0), (0, 0), (-1, -1), "X", "UP"), other) == Wish(strafe=True, move=(0.0, 1.0))
+    assert pad_pressed(pad(), pad(triggers=(-1.0, 1.0)), other) == ("pause",)
+    assert pad_held(pad((0, 0), (0, 0), (-1, -1), "X"), "rewind") and not pad_held(pad(), "rewind")
+
+
+def test_remapped_keys_walk_and_the_old_ones_do_not():
+    other = remapped(DEFAULT, {"forward": ("I",)}, {})
+    assert Keyboard(frozenset("I")).wish(other).move == (0, 1) and Keyboard(frozenset("W")).wish(other).move == (0, 0)
+
+
+@given(st.lists(st.booleans(), max_size=4), st.integers(1, 3))
+def test_every_pad_drives_one_player_and_company_gets_the_last(there, players):
+    pads = tuple(pad(slot=i) if here else None for i, here in enumerate(there))
+    shared = drivers(pads, players)
+    plugged = [i for i, here in enumerate(there) if here]
+    assert len(shared) == players and sorted(sum(shared, ())) == plugged
+    assert all(len(slots) <= 1 for slots in shared[1:])
+    if plugged and players > 1:
+        assert any(plugged[-1] in slots for slots in shared[1:]), "a pad is worth more to whom has no keyboard"
+    for slot in plugged:
+        assert slot in shared[player_of(slot, pads, players)]
+
+
+def test_alone_everything_drives_and_with_company_each_has_their_own():
+    board, north, east = Keyboard(frozenset("A")), pad((0.0, -1.0)), pad((1.0, 0.0), slot=1)
+    assert [w.move for w in wishes(Keyboard(), (north, None), 1)] == [(0, 1)]
+    assert [w.move for w in wishes(Keyboard(), (None, east), 1)] == [(1, 0)]
+    assert [w.move for w in wishes(board, (north,), 2)] == [(-1, 0), (0, 1)]
+    assert [w.move for w in wishes(Keyboard(), (north, east), 2)] == [(0, 1), (1, 0)]
+    assert [w.move for w in wishes(board, (), 2)] == [(-1, 0), (0, 0)]
+    assert wishes(Keyboard(), (north, pad((math.nan, 0.0), slot=1)), 2)[1] == Wish()
+
+
+def test_what_a_press_means_depends_on_the_mode():
+    two = (None, pad(), pad(slot=2))
+    assert mode_of(1, two, 1) == "" and mode_of(2, two, 1) == mode_of(None, two, 1) == JOINING
+    assert mode_of(2, two, 2) == mode_of(None, two, 2) == "" and mode_of(1, two, 1, rewound=True) == REWOUND
+    start = pad((0, 0), (0, 0), (-1, -1), "START")
+    assert [pad_pressed(pad(), start, mode=m) for m in ("", JOINING, REWOUND)] == [("pause",), ("join",), ("resume",)]
+    assert DEFAULT.pressed_by("J", mode=JOINING) == ("join",) and DEFAULT.pressed_by("P", mode=JOINING) == ("pause",)
+
+
+def test_the_mouse_turns_while_it_drags_or_is_captured():
+    drag, free = Keyboard(frozenset({"LEFT_BUTTON"})), Keyboard()
+    assert mouse_wish(0.1, 0.2, free) == Wish() and mouse_wish(math.nan, 0.1, drag) == Wish()
+    left, up = mouse_wish(0.25, 0.25, drag).drag
+    assert (left, up) == (-1.0, 1.0) and mouse_wish(0.25, 0.25, free, captured=True).drag == (left, up)
+    assert mouse_wish(0.1, 0.2, Keyboard(frozenset({"MIDDLE_BUTTON"}))) == Wish(pan=(0.1, -0.2))
+    assert wheel_wish(2.0).zoom == 2.0 and wheel_wish(math.nan) == Wish() and wheel_wish(1e9).zoom <= 10
 
 
 def command(wish, yaw=0.0, heading=0.0, pilot=Pilot()):
