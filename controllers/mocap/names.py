@@ -1,6 +1,6 @@
 """What other people call the joints of a human.
 
-Every tool has its own names: `LeftUpLeg`, `lfemur`, `L_Hip`, `mixamorig:LeftUpLeg`, `thigh.L`.
+Every tool has its own names: `LeftUpLeg`, `lfemur`, `L_Hip`, `mixamorig:LeftUpLeg`, `thigh.L`, `J_Bip_L_UpperLeg`.
 Only limbs, hips and head are told by name; which joints make up the trunk and the neck follows
 from the tree (from the hips to where the arms part, and on to the head), whatever they are called.
 """
@@ -15,16 +15,16 @@ from ..body import Skeleton
 # our name → what it is called elsewhere, the best first. Order matters: a name goes to the first
 # joint that asks for it, so that `LeftShoulder` is the upper arm only where nothing better is.
 _LIMBS = {
-    "UpLeg": ("upleg", "upperleg", "thigh", "femur", "hip"),
+    "UpLeg": ("upleg", "upperleg", "thigh", "thighbend", "femur", "hip"),
     "Leg": ("leg", "lowerleg", "lowleg", "shin", "calf", "knee", "tibia"),
     "Foot": ("ankle", "foot"),
     "Toe": ("toebase", "toes", "toe", "toe0", "ball", "foot"),
-    "Arm": ("arm", "uparm", "upperarm", "humerus", "shldr", "shoulder"),
-    "ForeArm": ("forearm", "lowerarm", "lowarm", "elbow", "radius"),
+    "Arm": ("arm", "uparm", "upperarm", "humerus", "shldr", "shldrbend", "shoulder"),
+    "ForeArm": ("forearm", "forearmbend", "lowerarm", "lowarm", "elbow", "radius"),
     "Hand": ("fingerbase", "hand", "wrist"),
     "Shoulder": ("shoulder1", "collar", "clavicle", "shoulder"),
 }
-_MIDLINE = {"Hips": ("hips", "hip", "pelvis", "root"), "Head": ("head",)}
+_MIDLINE = {"Hips": ("hips", "hip", "pelvis", "root"), "Head": ("head", "spine006")}
 _NEEDED = tuple(side + limb for side in ("Left", "Right") for limb in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm"))
 
 
@@ -45,7 +45,7 @@ class Roles:
 def plain(name: str) -> str:
     """A joint's name without namespace, punctuation, case and a tool's prefix."""
     short = re.sub(r"[^a-z0-9]", "", name.split(":")[-1].lower())
-    return re.sub(r"^(mixamorig\d*|bip0?1)(?=.)", "", short)
+    return re.sub(r"^(mixamorig\d*|valvebipedbip0*1|bip0*1|ccbase|jbipc?|def)(?=.)", "", short)
 
 
 def roles(skeleton: Skeleton) -> Roles:

@@ -1,0 +1,202 @@
+"""Any human with a skin, in any pose and proportions, as a body around our joints at T-pose.
+
+The limbs are turned the shortest way from the file's pose (T, A or any other) onto the T-pose's
+directions and keep their lengths; what hangs on fingers, hair or twist joints follows the nearest
+joint of ours; twist is spread again along forearms, upper arms and thighs.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from controllers.body.rotations import between, yaw
+from game.render import skin
+from game.render.mesh import Body, Mesh
+from game.render.wear import leg_length
+
+from . import gltf, materials
+from .gltf import CharacterError, Document, Nodes
+from .parts import parts
+from .surface import Surface, bound_world, gathered, unit
+
+MIDDLE, FAR = 0.016, 0.034
+"""Cells in which the coarser levels merge vertices, over the length of the legs."""
+_ALIGNED = {"Arm": "ForeArm", "ForeArm": "Hand", "UpLeg": "Leg", "Leg": "Foot"}
+_SIDES = ("Left", "Right")
+_INDEX = {name: k for k, name in enumerate(skin.NAMES)}
+
+
+def load(path: str | Path) -> Body:
+    """The body in a .glb, .gltf or .vrm file, sole on the floor, facing +Z.
+
+    CharacterError, naming the file and what would be right, if it holds no human with a skin.
+    """
+    document = gltf.read(path)
+    with gltf.sound(document.path):
+        tree = gltf.nodes(document)
+        skins = document.list("skins")
+        if not skins:
+            raise CharacterError(f"{document.path}: has no skin, so nothing in it can bend; export a rigged human "
+                                 "with its armature")
+        joints = {int(n) for entry in skins for n in entry["joints"]}
+        found = parts(document, tree, joints)
+        world = bound_world(document, tree)
+        surface = gathered(document, tree, world, joints)
+        turn = _upright(document, world, found)
+        standing = _complete({name: turn @ world[n, :3, 3] for name, n in found.items()})
+        return _body(document, tree, surface, found, turn, standing)
+
+
+def _upright(document: Document, world: np.ndarray, found: dict[str, int]) -> np.ndarray:
+    """The rotation (3, 3) that lets the human stand along +Y and face +Z."""
+    at = {name: world[n, :3, 3] for name, n in found.items()}
+    left = at["LeftUpLeg"] - at["RightUpLeg"]
+    up = at["Head"] - 0.5 * (at["LeftUpLeg"] + at["RightUpLeg"])
+    length = np.linalg.norm(up)
+    if not np.linalg.norm(np.cross(left, up)) > 1e-3 * length**2 > 0.0:
+        raise CharacterError(f"{document.path}: its hips and head are in one place; export it with its rest pose")
+    x = unit(left)
+    y = unit(up - x * (x @ up))
+    frame = np.stack([x, y, np.cross(x, y)])
+    near = np.round(frame)  # a spine may lean where the world does not
+    return near if np.linalg.det(near) > 0.5 and np.trace(near @ frame.T) > 1 + 2 * np.cos(np.radians(30)) else frame
+
+
+def _complete(at: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Places for all our joints: those that the file lacks where they would be on the standard human."""
+    rest = dict(zip(skin.STANDARD.names, skin.REST))
+    size = np.mean([np.linalg.norm(at[s + a] - at[s + b]) / np.linalg.norm(rest[s + a] - rest[s + b])
+                    for s in _SIDES for a, b in (("UpLeg", "Leg"), ("Leg", "Foot"))])
+    if not size > 1e-6:
+        raise ValueError("its legs have no length")
+    at = dict(at)
+    if "Spine2" not in at:
+        at["Spine2"] = 0.35 * at["Hips"] + 0.65 * 0.5 * (at["LeftArm"] + at["RightArm"])
+    for name, low, share in (("Spine", "Hips", 0.23), ("Spine1", "Spine", 0.5), ("Neck", "Spine2", 0.625)):
+        high = "Head" if name == "Neck" else "Spine2"
+        at.setdefault(name, at[low] + share * (at[high] - at[low]))
+    for side in _SIDES:
+        at.setdefault(side + "Shoulder", at[side + "Arm"] + 0.75 * (
+            0.5 * (at["LeftArm"] + at["RightArm"]) - at[side + "Arm"]))
+        fore = unit(at[side + "ForeArm"] - at[side + "Arm"])
+        at.setdefault(side + "Hand", at[side + "ForeArm"] + size * 0.2689 * fore)
+        at.setdefault(side + "Toe", at[side + "Foot"] + size * (rest[side + "Toe"] - rest[side + "Foot"]))
+    return at
+
+
+def _body(document: Document, tree: Nodes, surface: Surface, found: dict[str, int], turn: np.ndarray,
+          standing: dict[str, np.ndarray]) -> Body:
+    names, parents = skin.STANDARD.names, skin.STANDARD.parents
+    here = np.stack([standing[name] for name in names])
+    turns = _to_t_pose(standing)
+    joints = here.copy()
+    for j, parent in enumerate(parents[1:], 1):
+        joints[j] = joints[parent] + turns[parent] @ (here[j] - here[parent])
+    weights = _collapsed(tree, surface, found)
+    at = surface.positions @ turn.T
+    normals = surface.normals @ turn.T
+    posed, faced = np.zeros_like(at), np.zeros_like(at)
+    own = weights[:, :len(names)].copy()
+    for k in range(len(names), len(skin.NAMES)):
+        own[:, skin.AT[k]] += weights[:, k]
+    for j in np.flatnonzero(own.any(0)):
+        posed += own[:, j, None] * ((at - here[j]) @ turns[j].T + joints[j])
+        faced += own[:, j, None] * (normals @ turns[j].T)
+    if not weights[:, len(names):].any():
+        _spread(weights, posed, joints)
+    feet = own[:, [names.index(s + part) for s in _SIDES for part in ("Foot", "Toe")]].sum(1) > 0.5
+    floor = posed[feet, 1].min() if feet.any() else posed[:, 1].min()
+    shift = np.array([joints[0, 0], floor, joints[0, 2]])
+    layers, which = materials.pictures(document)
+    uv = materials.placed(document, surface.uv, surface.material)
+    paint = np.concatenate([uv, which[surface.material][:, None]], 1)
+    four = np.argsort(-weights, 1)[:, :4]
+    share = np.take_along_axis(weights, four, 1)
+    whole = Mesh(*(a.astype(np.float32) for a in (posed - shift, unit(faced))), surface.triangles.astype(np.uint32),
+                 four.astype(np.uint8), (share / share.sum(1, keepdims=True)).astype(np.float32),
+                 np.clip(surface.open, 0.0, 1.0).astype(np.float32), paint.astype(np.float32))
+    legs = float(leg_length(joints))
+    levels = whole, clustered(whole, MIDDLE * legs), clustered(whole, FAR * legs)
+    return Body(document.path.stem, levels, joints - shift, layers, materials.two_sided(document))
+
+
+def _to_t_pose(at: dict[str, np.ndarray]) -> np.ndarray:
+    """World rotations (22, 3, 3) that carry each joint's flesh from the file's pose into T-pose."""
+    out: dict[str, np.ndarray] = {}
+    for name, parent in zip(skin.STANDARD.names, skin.STANDARD.parents):
+        side, part = next(((s, name[len(s):]) for s in _SIDES if name.startswith(s)), ("", name))
+        if part in _ALIGNED:
+            child = side + _ALIGNED[part]
+            out[name] = between(at[child] - at[name], skin.REST[_INDEX[child]] - skin.REST[_INDEX[name]])
+        elif part == "Foot":
+            ahead = (at[side + "Toe"] - at[name]) * [1.0, 0.0, 1.0]
+            out[name] = yaw(-np.arctan2(ahead[0], ahead[2])) if np.linalg.norm(ahead) > 1e-6 else np.eye(3)
+        elif part in ("Hand", "Toe"):
+            out[name] = out[skin.STANDARD.names[parent]]
+        else:
+            out[name] = np.eye(3)
+    return np.stack([out[name] for name in skin.STANDARD.names])
+
+
+def _collapsed(tree: Nodes, surface: Surface, found: dict[str, int]) -> np.ndarray:
+    """Weights (V, 30) on our joints: every node hands its own to the nearest one above that is ours."""
+    number = {n: _INDEX[name] for name, n in found.items()}
+    ours = np.zeros(len(tree.parents), int)
+    for n in tree.order:
+        ours[n] = number.get(n, ours[tree.parents[n]] if tree.parents[n] >= 0 else 0)
+    out = np.zeros((len(surface.positions), len(skin.NAMES)))
+    rows = np.arange(len(out))
+    for k in range(surface.bones.shape[1]):
+        out[rows, ours[surface.bones[:, k]]] += surface.weights[:, k]  # a row meets each column once
+    return out
+
+
+def _spread(weights: np.ndarray, at: np.ndarray, joints: np.ndarray) -> None:
+    """Share the limbs' weights (V, 30), in place, with the helpers that keep twisted flesh round."""
+    for side in _SIDES:
+        for part, child, first, second in (("Arm", "ForeArm", 0.05, 0.85), ("UpLeg", "Leg", 0.10, 0.85),
+                                           ("ForeArm", "Hand", 0.0, 0.50)):
+            bone, end = _INDEX[side + part], _INDEX[side + child]
+            line = joints[end] - joints[bone]
+            along = (at - joints[bone]) @ line / (line @ line)
+            mine = weights[:, bone].copy()
+            turned = _ramp(along, first, second)
+            weights[:, _INDEX[f"{side}{part}0"]] = mine * (1.0 - turned)
+            weights[:, bone] = mine * turned
+            if part == "ForeArm":
+                late = _ramp(along, 0.45, 0.95)
+                weights[:, _INDEX[f"{side}ForeArm1"]] = mine * turned * late
+                weights[:, bone] = mine * turned * (1.0 - late)
+
+
+def _ramp(t, low, high):
+    u = np.clip((t - low) / (high - low), 0.0, 1.0)
+    return u * u * (3.0 - 2.0 * u)
+
+
+def clustered(mesh: Mesh, cell: float) -> Mesh:
+    """A coarser mesh: the vertices in each cube of `cell` [m] become one; slivers go.
+
+    Vertices that look up other pictures, or far-off places in one, stay apart over one place, so
+    that colours are not mixed and nothing cracks.
+    """
+    _, place = np.unique(np.floor(mesh.positions / cell).astype(np.int64), axis=0, return_inverse=True)
+    look = np.floor(mesh.paint * [16.0, 16.0, 1.0]).astype(np.int64)
+    key = np.concatenate([place.reshape(-1, 1), look], 1)
+    _, first, vertex = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    vertex, place = vertex.ravel(), place.ravel()
+    count = np.bincount(place)[:, None]
+    middle, normals = np.zeros((len(count), 3)), np.zeros((len(count), 3))
+    np.add.at(middle, place, mesh.positions)
+    np.add.at(normals, place, mesh.normals)
+    triangles = vertex[mesh.triangles]
+    corners = place[first][triangles]
+    kept = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
+    triangles = np.unique(triangles[kept], axis=0)
+    if not len(triangles):
+        return mesh
+    at = place[first]
+    return Mesh((middle / count)[at].astype(np.float32), unit(normals)[at].astype(np.float32),
+                triangles.astype(np.uint32), mesh.joints[first], mesh.weights[first], mesh.open[first], mesh.paint[first])
