@@ -1,150 +1,365 @@
-"""The game: one character on a stage, driven by whoever holds the keys or the pad.
+"""The game as a host runs it: events in, seconds in, scenes out. It needs no window.
 
-`Play` is what a host runs. It needs no window: events in, seconds in, scenes out. Everything
-that happens is kept in values (world, camera, pilot), so a moment can be kept and returned to.
+What is played is a value that only wishes move (see `game.session`); they are all that
+the log keeps. Kept here is what is only looked at: overlays, panels, help, and where one is while
+looking back.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
-from controllers.contract import Intent
-from controllers.navigation import in_world
+from . import session, settings
+from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
+from .input import (DEFAULT, Bindings, Keyboard, Wish, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
+                    player_of, wheel_wish, wishes)
+from .input.names import key_label
+from .log import Log, LogWriter, strayed
+from .output import OutputError
+from .rewind import Look
+from .scene import Camera, Overlays, Scene
+from .session import Moment, Timeline
+from .studio import Studio
+from .views import scenes
+from .world import DT, RATE, FixedStep, World
 
-from .camera import Follow
-from .hosts.events import Event, KeyEvent, MouseMove, PadState, Scroll
-from .input import Keyboard, Pilot, Wish, help_sheet, pad_pressed, pad_wish
-from .input.bindings import pressed_by
-from .scene import Overlays, Scene
-from .world import DT, Character, FixedStep, World, figures, ground_between
-
-ORBIT = 4.0
-"""How far dragging the mouse over the height of the window turns the camera [rad]."""
-ZOOM_PER_NOTCH = 0.88
-LONGEST = 0.1
-"""The most time that one frame moves the camera [s]."""
+OVERLAYS = ("mesh", "skeleton", "contacts", "trail", "path")
+PANELS = ("space", "plots", "quality", "settings")
 SHOWN_SPEED = 0.03
 """Below this speed [m/s] or [rad/s] a character is said to stand."""
-
-
-def stage(controller: Any) -> World:
-    """The world the game opens with."""
-    return World((Character("Player", controller, controller.start(ground=(0.0, 0.0, 0.0))),))
+SAVED_EVERY = 0.75
+"""How often the log is written [s]."""
+NOTICE = 4.0
+"""How long something is said in the picture [s]."""
+PUSHED = 0.3
+"""How far a stick must be pushed to play on from a past moment."""
 
 
 class Play:
     """The game as an app: `handle` events, `tick` seconds, draw `scene`, until `done`.
 
-    log: the intents of every step since the last reset; from `opening` they replay the game to
-    the bit.
+    moment: the one that is shown, present or past; history: the last half minute up to it.
+    look: how one looks back; None while one plays. panels: what is shown of `PANELS`. log, studio:
+    where what is played and what is filmed of it is kept, if anywhere. tape: a log that is watched,
+    until somebody walks. clock, held: the time that was dropped, and spent in help, past or halt [s].
     """
 
-    def __init__(self, controller: Any, world: World | None = None):
-        self.opening = stage(controller) if world is None else world
-        self.overlays = Overlays(path=True)
-        self.done = self.paused = self.helping = False
-        self.pad, self.keyboard = None, Keyboard()
-        self.reset()
+    def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
+                 log: LogWriter | None = None, studio: Studio | None = None, tape: Log | None = None):
+        self.timeline = Timeline(session.opening(controller, players) if world is None else
+                                 session.begin(world, players))
+        self.bindings, self.log, self.studio, self.tape = bindings, log, studio, tape
+        self.overlays, self.panels = Overlays(path=True), frozenset()
+        self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
+        self.keyboard, self.pads = Keyboard(), [None] * PADS
+        self.pending: dict[int, Wish] = {}
+        self.clock, self.held, self.unsaved = FixedStep(), 0.0, 0.0
+        self.look: Look | None = None
+        self.filming: int | None = None
+        self.notices: list[tuple[float, str]] = []
 
-    def reset(self) -> None:
-        """Start again from the opening."""
-        self.before = self.after = self.opening
-        self.log: list[tuple[Intent, ...]] = []
-        self.clock, self.pilot = FixedStep(), Pilot()
-        self.camera = Follow.behind(self._hero.state.ground)
+    # --- what is shown
 
     @property
-    def _hero(self) -> Character:
-        return self.after.characters[0]
+    def now(self) -> Moment:
+        """The present moment."""
+        return self.timeline.now
+
+    @property
+    def moment(self) -> Moment:
+        """The moment that is shown."""
+        return self._back(self.look.behind if self.look else 0)
+
+    @property
+    def history(self) -> tuple[Moment, ...]:
+        """The moments of the last half minute, one for each step of the world, up to the one shown."""
+        past, behind = self.timeline.past, self.look.behind if self.look else 0
+        return (*islice(past, len(past) - behind), self._back(behind))
+
+    @property
+    def players(self) -> int:
+        """How many play."""
+        return len(self.now.players)
+
+    @property
+    def mouse_captured(self) -> bool:
+        """Whether the mouse steers a flying camera, and nothing needs a pointer."""
+        return self.now.players[0].camera.flown and not (self.look or self.helping or self.panels)
+
+    def _back(self, steps: int) -> Moment:
+        return self.timeline.past[-steps] if steps else self.now
+
+    # --- what happens
 
     def handle(self, event: Event) -> None:
         """Take one event from the host; those that mean nothing here are ignored."""
+        rewound = self.look is not None
         match event:
             case KeyEvent(key, True):
                 self.keyboard = self.keyboard.press(key)
-                for action in pressed_by(key):
+                for action in self.bindings.pressed_by(key, mode=mode_of(None, self.pads, self.players, rewound)):
                     self.do(action)
             case KeyEvent(key, False):
                 self.keyboard = self.keyboard.release(key)
-            case MouseMove(dx=dx, dy=dy) if self.keyboard.held("orbit"):
-                self.camera = self.camera.turned(-ORBIT * dx, ORBIT * dy)
-            case Scroll(dy=notches) if math.isfinite(notches):
-                self.camera = self.camera.zoomed(ZOOM_PER_NOTCH ** min(max(notches, -10.0), 10.0))
-            case PadState():
-                pad = event if event.name else None
-                for action in pad_pressed(self.pad, pad):
-                    self.do(action)
-                self.pad = pad
+            case MouseMove(dx=dx, dy=dy):
+                self._wish(mouse_wish(dx, dy, self.keyboard, self.bindings, self.mouse_captured))
+            case Scroll(dy=notches):
+                self._wish(wheel_wish(notches))
+            case PadState(slot=slot) if 0 <= slot < PADS:
+                pad, before = event if event.name else None, self.pads[slot]
+                self.pads[slot] = pad
+                mode = mode_of(slot, self.pads, self.players, rewound)
+                for action in pad_pressed(before, pad, self.bindings, mode):
+                    self.do(action, player_of(slot, self.pads, self.players))
+
+    def do(self, action: str, player: int = 0) -> None:
+        """Do what pressing the key or button of an action does, or set "name=value"."""
+        if action in OVERLAYS:
+            self.overlays = replace(self.overlays, **{action: not getattr(self.overlays, action)})
+        elif action == "panels":
+            self.panels = frozenset() if self.panels else frozenset(PANELS)
+        elif action.removesuffix("_panel") in PANELS and action.endswith("_panel"):
+            self.panels ^= {action.removesuffix("_panel")}
+        elif action == "help":
+            self.helping = not self.helping
+        elif action == "full_screen":
+            self.full_screen = not self.full_screen
+        elif action == "quit":
+            self.done, self.helping = not self.helping, False
+        elif action == "screenshot":
+            self.wants_picture = True
+        elif action == "film":
+            self._film()
+        elif action in session.ACTIONS or "=" in action or action == "resume":
+            self._ask(action, player)
+
+    def _ask(self, action: str, player: int) -> None:
+        """Something that the next tick is to do, unless one looks back or watches."""
+        if "=" in action:
+            try:
+                settings.read(action)
+            except settings.SettingError as error:
+                return self.say(str(error))
+        if self.look is not None:
+            self._ask_past(self.look, action, player)
+        elif self.tape is not None and action in ("pause", "resume"):
+            self.halted = not self.halted
+        elif self.tape is not None:
+            self.say("this is a log: walk to play on from here")
+        elif action != "resume":
+            self._wish(Wish(pressed=(action,)), player)
+
+    def _ask_past(self, look: Look, action: str, player: int) -> None:
+        if action == "step":
+            self.look = look.to(look.behind - 1, len(self.timeline.past))
+        elif action in ("resume", "pause", "reset"):
+            self._resume(look)
+            if action != "resume":
+                self._wish(Wish(pressed=(action,)), player)
+        else:
+            self.say(f"this is the past: {self._key('resume')} plays on from here")
+
+    def _wish(self, wish: Wish, player: int = 0) -> None:
+        """Add to what the next tick is asked for, unless the help holds everything."""
+        if not self.helping:
+            self.pending[player] = self.pending.get(player, Wish()).merged(wish)
 
     def tick(self, seconds: float) -> None:
-        """Let `seconds` of real time pass: whole steps, then the camera."""
-        running = not (self.paused or self.helping)
+        """Let `seconds` of real time pass, in whole ticks."""
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
-        wish = self._wish()
-        if running:
-            steps, self.clock = self.clock.add(seconds)
-            for _ in range(steps):
-                self._step(wish)
-        # the camera keeps to the display's frames, also while the world stands still
-        frame = min(seconds, LONGEST)
-        if wish.orbit != (0.0, 0.0):
-            rate = self.pilot.pace.orbit * frame
-            self.camera = self.camera.turned(rate * wish.orbit[0], rate * wish.orbit[1])
-        state = self._hero.state
-        velocity = in_world(state.ground, state.velocity) if running else np.zeros(2)
-        ground = ground_between(self.before.characters[0].state, state, self.clock.alpha)
-        self.camera = self.camera.step(ground, velocity, Wish(), frame, self.after.props)
+        self.notices = [(left - seconds, text) for left, text in self.notices if left > seconds]
+        for line in self.studio.tend() if self.studio is not None else ():
+            self.say(line)
+        if self.helping:
+            self.held += seconds
+        else:
+            due, self.clock = self.clock.add(seconds)
+            number = self.now.number
+            for _ in range(due):
+                self._tick()
+            self.held += (due - (self.now.number - number)) * DT
+        self.unsaved += seconds
+        if self.unsaved >= SAVED_EVERY:
+            self.save()
 
-    def _wish(self) -> Wish:
-        return self.keyboard.wish().merged(pad_wish(self.pad))
+    def _tick(self) -> None:
+        asked = any(wish.pressed for wish in self.pending.values())
+        if self.look is None and not asked and self.timeline.past and self._holds("rewind"):
+            self.look = Look()
+        asked_for = self._wishes()
+        if self.look is not None:
+            self._look(self.look, asked_for[0])
+        elif self.tape is None:
+            self._advance(asked_for)
+        elif self._pushed():
+            self._take_over("you play on from here")
+        elif not self.halted:
+            self._play_back(self.tape)
 
-    def _step(self, wish: Wish) -> None:
-        state = self._hero.state
-        self.pilot, command = self.pilot.command(wish, self.camera.yaw, float(state.ground[2]), DT)
-        if command.swing:
-            self.camera = self.camera.turned(command.swing * DT)
-        intents = (command.intent(state),) + (Intent(),) * (len(self.after.characters) - 1)
-        self.before, self.after = self.after, self.after.step(intents)
-        self.log.append(intents)
+    def _advance(self, asked_for: tuple[Wish, ...]) -> None:
+        self.timeline.advance(asked_for)
+        if self.log is not None:
+            self.log.add(asked_for)
 
-    def scene(self, size: tuple[int, int]) -> Scene:
-        """What to draw now; size: of the frame in pixels."""
-        return Scene(self.camera.view(), figures(self.before, self.after, self.clock.alpha), self.after.props,
-                     self.overlays, self._text(), self._panel())
+    def _play_back(self, tape: Log) -> None:
+        """One tick of a log that is watched."""
+        if self.now.number == len(tape.ticks):
+            return self._take_over("the log ends here; you play on")
+        try:
+            self._advance(tape.ticks[self.now.number])
+        except ValueError as error:
+            return self._take_over(f"the log can't be played further: {error}")
+        if strayed(tape, self.now) and not self.strayed:
+            self.strayed = True
+            self.say("from here on it is not what was played: another version of Gambol walks another way")
 
-    def _text(self) -> tuple[str, ...]:
-        v_f, omega, v_l = self._hero.state.velocity
+    def _take_over(self, why: str) -> None:
+        self.tape, self.halted = None, False
+        self.say(why)
+
+    def _wishes(self) -> tuple[Wish, ...]:
+        """What every player asks for in this tick; what was pressed is asked for once."""
+        held = wishes(self.keyboard, self.pads, self.players, self.bindings)
+        asked_for = tuple(wish.merged(self.pending.get(who, Wish())).rounded() for who, wish in enumerate(held))
+        self.pending.clear()
+        return asked_for
+
+    # --- looking back
+
+    def _holds(self, action: str) -> bool:
+        return self.keyboard.held(action, self.bindings) or any(
+            pad_held(pad, action, self.bindings) for pad in self.pads)
+
+    def _pushed(self) -> bool:
+        """Whether anybody asks to move, by other keys than those that scrub."""
+        scrubs = {key for action in ("scrub_back", "scrub_on") for key in self.bindings.row(action).keys}
+        return any(math.hypot(*wish.move) > PUSHED for wish in wishes(
+            Keyboard(self.keyboard.down - scrubs), self.pads, self.players, self.bindings))
+
+    def _look(self, look: Look, wish: Wish) -> None:
+        """One tick of looking back."""
+        rewinding, pushed = self._holds("rewind"), self._pushed()
+        if pushed and look.rested and not rewinding:
+            return self._resume(look)
+        look = look.step(rewinding, int(self._holds("scrub_back")) - int(self._holds("scrub_on")), pushed,
+                         len(self.timeline.past))
+        self.look = look.turned(wish, self._back(look.behind))
+
+    def _resume(self, look: Look) -> None:
+        """Play on from the moment that is shown; what came after it is forgotten."""
+        self.look = None
+        if look.behind:
+            self.tape = None
+            self._wish(Wish(pressed=(f"back={look.behind}",)))
+        elif self.now.paused:
+            self._wish(Wish(pressed=("pause",)))
+
+    # --- what is kept
+
+    def save(self) -> None:
+        """Write what was played since the last time."""
+        self.unsaved = 0.0
+        if self.log is not None:
+            try:
+                self.log.flush(self.now)
+            except OutputError as error:  # a full disk must not end the game
+                self.log = None
+                self.say(f"the log ends here: {error}")
+
+    def take(self, pixels: np.ndarray) -> None:
+        """Keep the picture (H, W, 3 or 4) that was asked for by `wants_picture`."""
+        self.wants_picture = False
+        if self.studio is not None:
+            try:
+                self.say(str(self.studio.screenshot(pixels)))
+            except OutputError as error:
+                self.say(str(error))
+
+    def _film(self) -> None:
+        """Begin a film, or end it and have it made."""
+        if self.studio is None or self.log is None:
+            return self.say("no film: no log is kept")
+        if self.filming is None:
+            self.filming = self.now.number
+            return
+        start, self.filming = self.filming, None
+        self.save()
+        if self.log is None or self.now.number == start:
+            return
+        try:
+            path = self.studio.film(self.log.path, start / RATE, self.now.number / RATE,
+                                    [name for name in OVERLAYS if getattr(self.overlays, name)])
+        except OutputError as error:
+            return self.say(str(error))
+        self.say(f"{path} is being made")
+
+    def close(self) -> None:
+        """Write the rest of the log; a film that was begun ends here."""
+        if self.filming is not None:
+            self._film()
+        self.save()
+        if self.log is not None:
+            self.log.close()
+
+    # --- the picture
+
+    def say(self, text: str) -> None:
+        """Say something in the picture for a few seconds."""
+        self.notices.append((NOTICE, text))
+
+    def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
+        """What to draw now, one scene for each player; size: of the frame in pixels."""
+        moment, fraction, cameras = self._shown(self.clock.alpha)
+        views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment))
+        if self.helping:
+            sheet = help_sheet(self.bindings, self.keyboard, self.pads, self.players)
+            views = tuple(replace(view, text=()) for view in views)
+            views = (replace(views[0], sheet=sheet), *views[1:])
+        return views[0] if len(views) == 1 else views
+
+    def _shown(self, alpha: float) -> tuple[Moment, float, tuple[Camera, ...]]:
+        """The moment to draw, how far it is between its worlds, and from where each player sees it."""
+        if self.look is not None:
+            behind, fraction = self.look.at(alpha)
+            moment = self._back(behind)
+            return moment, fraction, self.look.cameras(moment, fraction, alpha)
+        alpha = 1.0 if self.halted else alpha
+        return self.now, self.now.fraction(alpha), tuple(player.view(alpha) for player in self.now.players)
+
+    def _texts(self, moment: Moment) -> tuple[tuple[str, ...], ...]:
+        """The lines in each player's corner; what concerns all stands in the first one's."""
+        own = [(self._moving(moment, who),) for who in range(len(moment.players))]
+        lines = []
+        if self.look is not None:
+            lines += [f"{self.look.behind * DT:.1f} s ago, of {len(self.timeline.past) * DT:.0f} s",
+                      f"{self._key('scrub_back')} {self._key('scrub_on')} back and on, "
+                      f"{self._key('resume')} or walking plays on from here"]
+        elif self.tape is not None:
+            lines.append(f"watching {self.now.number * DT:.0f} of {self.tape.duration:.0f} s: "
+                         f"{self._key('pause')} halts, walking plays on from here")
+        elif moment.paused:
+            lines.append(f"paused: {self._key('pause')} goes on, {self._key('step')} makes one step")
+        if moment.slow > 1:
+            lines.append(f"slow motion 1/{moment.slow}")
+        if self.filming is not None:
+            lines.append(f"filming {(self.now.number - self.filming) * DT:.0f} s")
+        lines += self.studio.status() if self.studio is not None else ()
+        lines += [text for _, text in self.notices]
+        return ((*own[0], *lines, f"{self._key('help')} help"), *own[1:])
+
+    def _moving(self, moment: Moment, who: int) -> str:
+        v_f, omega, v_l = moment.after.characters[who].state.velocity
         if math.hypot(v_f, v_l) < SHOWN_SPEED and abs(omega) < SHOWN_SPEED:
             moving = "standing"
         else:
             moving = f"{math.hypot(v_f, v_l):.1f} m/s" + (f"   turning {omega:+.1f} rad/s" if abs(omega) > 0.2 else "")
-        return (moving + ("   facing held" if self.pilot.facing is not None else ""), "F1 help")
+        return moving + ("   facing held" if moment.players[who].pilot.facing is not None else "")
 
-    def _panel(self) -> tuple[str, ...]:
-        if self.helping:
-            return ("Controls", *help_sheet())
-        return ("Paused", "P goes on, . makes one step") if self.paused else ()
-
-    def do(self, action: str) -> None:
-        """Do what pressing the key or button of an action does."""
-        if action in ("mesh", "skeleton", "contacts", "trail", "path"):
-            self.overlays = replace(self.overlays, **{action: not getattr(self.overlays, action)})
-        elif action == "pause":
-            self.paused = not self.paused
-        elif action == "help":
-            self.helping = not self.helping
-        elif action == "reset":
-            self.reset()
-        elif action == "step" and self.paused:
-            self._step(self._wish())
-            self.clock = replace(self.clock, owed=DT)
-        elif action == "strafe_lock":
-            self.pilot = self.pilot.toggled()
-        elif action == "recentre":
-            self.camera = self.camera.recentred(float(self._hero.state.ground[2]))
-        elif action == "quit":
-            self.done, self.helping = not self.helping, False
+    def _key(self, action: str) -> str:
+        keys = self.bindings.row(action).keys
+        return key_label(keys[0]) if keys else action.replace("_", " ")

@@ -85,7 +85,7 @@ class Moment:
 
     def setting(self, name: str, player: int = 0) -> float | None:
         """What a player's setting stands at; None where the controller has no such thing."""
-        return settings.value(_owners(self, player), name)
+        return settings.value(owners(self, player), name)
 
 
 def opening(controller: Any, players: int = 1) -> Moment:
@@ -217,7 +217,8 @@ def _newcomer(controller: Any, number: int, ground: np.ndarray) -> Character:
         ground=(x - side * np.cos(heading), z + side * np.sin(heading), heading)))
 
 
-def _owners(moment: Moment, who: int) -> dict[str, Any]:
+def owners(moment: Moment, who: int) -> dict[str, Any]:
+    """Whose settings player `who` tunes, by the owner's name; None where there is no such owner."""
     player = moment.players[who]
     return {"locomotion": getattr(moment.after.characters[who].controller, "settings", None),
             "steering": player.steering, "pace": player.pilot.pace, "camera": player.camera.settings}
@@ -225,7 +226,7 @@ def _owners(moment: Moment, who: int) -> dict[str, Any]:
 
 def _tuned(moment: Moment, who: int, action: str) -> Moment:
     """The moment under another setting of one player."""
-    owner, new = settings.changed(_owners(moment, who), action)
+    owner, new = settings.changed(owners(moment, who), action)
     player, people = moment.players[who], moment.after.characters
     if owner == "locomotion":
         if new is None:

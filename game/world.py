@@ -6,7 +6,7 @@ rewinding, replaying and drawing in between need nothing more than keeping world
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -83,24 +83,19 @@ class World:
         raise KeyError(name)
 
 
-def replay(world: World, log: Iterable[Sequence[Intent]]) -> World:
-    """The world after the logged intents, one sequence for each step."""
-    for intents in log:
-        world = world.step(intents)
-    return world
-
-
 @dataclass(frozen=True)
 class FixedStep:
     """Turns the display's uneven frames into whole steps.
 
     cap: the most steps that one frame may ask for; what a late frame owes beyond is dropped,
     so that a slow machine runs slower instead of falling ever further behind.
-    owed: seconds not yet simulated, always less than one step.
+    owed: seconds not yet simulated, less than one step. dropped: seconds given up so far. Steps,
+    owed and dropped time are together exactly the time that has passed.
     """
 
     cap: int = 12
     owed: float = 0.0
+    dropped: float = 0.0
 
     def add(self, seconds: float) -> tuple[int, FixedStep]:
         """How many steps to make now that `seconds` have passed, and what is owed afterwards.
@@ -111,13 +106,13 @@ class FixedStep:
         # a hair of slack, so that frames of exactly one step never skip a beat by rounding
         steps = int(owed / DT + 1e-6)
         if steps > self.cap:
-            return self.cap, replace(self, owed=0.0)
-        return steps, replace(self, owed=max(owed - steps * DT, 0.0))
+            return self.cap, replace(self, owed=0.0, dropped=self.dropped + owed - self.cap * DT)
+        return steps, replace(self, owed=owed - steps * DT)
 
     @property
     def alpha(self) -> float:
         """How far the moment to draw lies between the last step but one and the last, 0 … 1."""
-        return min(self.owed / DT, 1.0)
+        return min(max(self.owed / DT, 0.0), 1.0)
 
 
 def ground_between(before: CharacterState, after: CharacterState, alpha: float) -> np.ndarray:

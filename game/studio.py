@@ -1,0 +1,131 @@
+"""What one keeps while playing: screenshots, and films that a second program makes of the log.
+
+Neither holds up the game: pictures are packed by a thread, films are drawn by a process that
+takes only what time is left over.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .output import output_folder
+
+PROGRESS = re.compile(r"(\d+) of (\d+)")
+
+
+def unused(folder: Path, stem: str, suffix: str) -> Path:
+    """A path that nothing stands at yet: STEM.suffix, STEM-2.suffix, …"""
+    for number in range(1, 100_000):
+        path = folder / f"{stem}{f'-{number}' if number > 1 else ''}{suffix}"
+        if not path.exists() and not path.with_name(f"{path.stem}.part{suffix}").exists():
+            return path
+    raise FileExistsError(f"{folder}: is full of {stem}{suffix}")
+
+
+def stamped(folder: Path, suffix: str) -> Path:
+    """A path named after the present time that nothing stands at yet."""
+    return unused(folder, time.strftime("gambol-%Y%m%d-%H%M%S"), suffix)
+
+
+class Film:
+    """A film of a part of a log that another process makes. arguments: of `gambol render`."""
+
+    def __init__(self, path: Path, arguments: Sequence[str]):
+        self.path, self.done, self.total, self.said = path, 0, 0, ""
+        command = [sys.executable, "-m", "game.cli", "render", *arguments, "-o", str(path), "--background"]
+        # one thread of software drawing leaves the game a core of its own
+        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                         stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                         env=os.environ | {"LP_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"})
+        self._reader = threading.Thread(target=self._listen, daemon=True)
+        self._reader.start()
+
+    def _listen(self) -> None:
+        for line in self._process.stderr:
+            if found := PROGRESS.fullmatch(line.strip()):
+                self.done, self.total = int(found[1]), int(found[2])
+            elif line.strip():
+                self.said = line.strip().removeprefix("gambol: ")
+
+    @property
+    def running(self) -> bool:
+        """Whether it is still being made."""
+        return self._process.poll() is None
+
+    def status(self) -> str:
+        """One line for the picture."""
+        if self.running:
+            return f"{self.path}: {100 * self.done // self.total} %" if self.total else f"{self.path}: beginning"
+        self._reader.join(1.0)
+        return self.said or str(self.path)
+
+    def stop(self) -> None:
+        """Give it up; what was drawn so far is kept beside it."""
+        self._process.terminate()
+        self._process.wait()
+
+
+class Studio:
+    """Where screenshots and films go. options: what `gambol render` needs to draw the same character."""
+
+    def __init__(self, folder: Path, options: Sequence[str] = ()):
+        self.folder, self.options = folder, tuple(options)
+        self.films: list[Film] = []
+        self._waiting: list[tuple[Path, tuple[str, ...]]] = []
+        self._threads: list[threading.Thread] = []
+
+    def screenshot(self, pixels: np.ndarray) -> Path:
+        """Keep a picture (H, W, 3 or 4) uint8. Its path; it is there a moment later. OutputError."""
+        from PIL import Image
+
+        path = stamped(output_folder(self.folder), ".png")
+        path.touch(exist_ok=False)  # the name is taken from now on
+        image = Image.fromarray(np.ascontiguousarray(pixels[..., :3]))
+        self._threads.append(threading.Thread(target=image.save, args=(path,), kwargs={"compress_level": 4}))
+        self._threads[-1].start()
+        return path
+
+    def film(self, log: Path, start: float, end: float, overlays: Sequence[str]) -> Path:
+        """Have a part of a log [s] filmed, after the films before it. Its path. OutputError."""
+        taken = {film.path for film in self.films} | {path for path, _ in self._waiting}
+        folder, number = output_folder(self.folder), 1
+        while (path := folder / f"film-{number}.mp4") in taken or path.exists() or path.with_stem(f"{path.stem}.part").exists():
+            number += 1
+        self._waiting.append((path, ("--replay", str(log), "--from", f"{start:.6f}", "--to", f"{end:.6f}",
+                                     "--overlay", ",".join(overlays), *self.options)))
+        self.tend()
+        return path
+
+    def tend(self) -> tuple[str, ...]:
+        """Begin the next film if its turn has come. A line about each film that has ended since."""
+        over = [film for film in self.films if not film.running]
+        self.films = [film for film in self.films if film not in over]
+        if self._waiting and not self.films:
+            self.films.append(Film(*self._waiting.pop(0)))
+        return tuple(film.status() for film in over)
+
+    def status(self) -> tuple[str, ...]:
+        """A line about each film that is being made."""
+        return tuple(film.status() for film in self.films)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is still being made."""
+        return bool(self.films or self._waiting)
+
+    def stop(self) -> None:
+        """Give up what is being made."""
+        self._waiting.clear()
+        for film in self.films:
+            film.stop()
+        for thread in self._threads:
+            thread.join()
