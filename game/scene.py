@@ -24,9 +24,10 @@ class Camera:
 class Figure:
     """One character to draw.
 
-    body: the mesh it wears (`game.render.mesh.Mesh`); None for Gambol's mannequin. positions, orientations: (J, 3) [m], (J, 3, 3) world transforms of the standard human's joints.
+    positions, orientations: (J, 3) [m], (J, 3, 3) world transforms of the standard human's joints.
     tint: (3,) linear RGB. contacts: (4,) bool, left heel, left ball, right heel, right ball.
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
+    body: what it wears (`game.render.mesh.Body`); None for Gambol's mannequin.
     """
 
     positions: np.ndarray
@@ -94,7 +95,8 @@ class Overlays:
 class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
-    text: lines for the top-left corner; panel: lines of a centred sheet (pause). sheet: the help sheet.
+    text: lines for the top-left corner; panel: lines of a centred sheet (pause). sheet: the help
+    sheet, in the middle of the whole picture.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
 
