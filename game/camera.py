@@ -95,6 +95,13 @@ class Orbit(Armed):
     pivot: np.ndarray
     tracks: bool = True
 
+    @staticmethod
+    def round(pivot: np.ndarray, settings: CameraSettings = CameraSettings(), yaw: float = 0.0, pitch: float = 0.25,
+              distance: float = 4.0, tracks: bool = True) -> Orbit:
+        """A camera at rest that looks at a point (3,) [m] along `yaw`."""
+        return Orbit(eye=pivot - distance * forward(yaw, pitch), target=pivot, pivot=pivot, yaw=yaw, wanted_yaw=yaw,
+                     pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance, settings=settings, tracks=tracks)
+
     def recentred(self, heading: float) -> Orbit:
         """Back to the character, seen from behind `heading` [rad]."""
         return replace(super().recentred(heading), tracks=True)

@@ -1,7 +1,7 @@
 """A scenario as it runs: the worlds between which each frame lies, and the scenes that film it.
 
-Time is frame / fps and the simulation keeps its own rate, so another frame rate films the same
-motion.
+Time is frame / fps; simulation and cameras keep the simulation's own rate, so another frame rate
+films the same motion from the same places.
 """
 
 from __future__ import annotations
@@ -9,23 +9,30 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from controllers.body.springs import damp
 from controllers.navigation import in_world
 
-from .camera import CameraSettings, Follow
+from .camera import CameraSettings, Follow, Orbit, between
 from .input import Wish
 from .rail import dolly, fixed
-from .scenario import Scenario, ShotTable, overlays
-from .scene import Camera, Overlays, Scene
-from .world import DT, RATE, Character, World, figures, ground_between
+from .scenario import Scenario
+from .scene import Camera, Caption, Overlays, Scene
+from .shots import CameraTable, ShotTable, overlays, parts
+from .world import DT, RATE, Character, World, figures
 
-TITLE_SECONDS = 3.0
+TITLE = (0.4, 3.4)
+CAPTION = (0.4, 4.4)
+"""When a title or caption comes and when it is gone again [s], counted from the start or the cut."""
+FADE = 0.5
+"""How long coming and going take [s]."""
 LOOK_HALFLIFE = 0.15
-LOOK_HEIGHT = 1.0
+HANDS_OFF = Wish()
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +48,7 @@ class Frame:
 
 def opening(scenario: Scenario, controller: Any) -> World:
     """The world before the first step, every actor under the same controller."""
-    return World(props=tuple(prop.box() for prop in scenario.props), characters=tuple(
+    return World(props=scenario.stage(), characters=tuple(
         Character(actor.name, controller, tint=actor.tint,
                   state=controller.start(ground=(actor.start[0], actor.start[1], math.radians(actor.start[2]))))
         for actor in scenario.actors))
@@ -60,84 +67,143 @@ def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:
 
 def run(scenario: Scenario, controller: Any) -> Iterator[Frame]:
     """Every frame of a scenario, in order."""
-    steps = worlds(scenario, controller)
-    before, after = next(steps), next(steps)
-    for number in range(scenario.frames):
-        # in whole numbers, so that no frame rate drifts
-        wanted, rest = divmod(number * RATE, scenario.fps)
-        while before.number < wanted:
-            before, after = after, next(steps)
-        yield Frame(number, number / scenario.fps, before, after, rest / scenario.fps)
+    for number, before, after, alpha in _sampled(worlds(scenario, controller), scenario):
+        yield Frame(number, number / scenario.fps, before, after, alpha)
 
 
-def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None) -> Iterator[tuple[Frame, Scene]]:
-    """Every frame with the scene that films it; `shown` replaces the scenario's own overlays."""
-    shown = overlays(scenario.overlays) if shown is None else shown
-    shot, operator = None, None
-    for frame in run(scenario, controller):
-        due = [s for s in scenario.shots if s.at <= frame.time + 1e-9][-1]
-        if due is not shot:
-            shot, operator = due, Operator.ready(due, frame)
+def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
+           ) -> Iterator[tuple[Frame, tuple[Scene, ...]]]:
+    """Every frame with the scenes that film it, one for each view.
+
+    shown: replaces the overlays of the scenario and all its shots.
+    """
+    for number, (before, old), (after, new), alpha in _sampled(takes(scenario, controller), scenario):
+        frame = Frame(number, number / scenario.fps, before, after, alpha)
+        held = new.crew if new.shot is old.shot else old.crew  # nothing lies between two shots
+        cameras = [between(a, b, alpha) for a, b in zip(old.crew, held)]
+        drawn = figures(before, after, alpha)
+        caption, made = _caption(scenario, old.shot, frame.time), []
+        places = parts(len(cameras), scenario.size)
+        lowest = max(top for _, top, _, _ in places)
+        for table, camera, part in zip(old.shot.cameras, cameras, places):
+            names = next(o for o in (table.overlays, old.shot.overlays, scenario.overlays) if o is not None)
+            corner = part[0] == 0.0 and part[1] == lowest
+            title = getattr(table, "title", "")
+            made.append(Scene(camera, drawn, after.props, overlays(names) if shown is None else shown,
+                              (title,) if title else (), caption=caption if corner else None, part=part))
+        yield frame, tuple(made)
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """A shot being made, and who holds its cameras."""
+
+    shot: ShotTable
+    crew: tuple[Operator, ...]
+
+
+def takes(scenario: Scenario, controller: Any) -> Iterator[tuple[World, Take]]:
+    """Every world of a scenario with the take that films it, without end."""
+    take = None
+    cuts = [round(shot.at * RATE) for shot in scenario.shots]
+    ends = [shot.at for shot in scenario.shots[1:]] + [scenario.duration]
+    for world in worlds(scenario, controller):
+        i = [i for i, cut in enumerate(cuts) if cut <= world.number][-1]
+        shot = scenario.shots[i]
+        if take is None or take.shot is not shot:
+            take = Take(shot, tuple(Operator.ready(table, world, ends[i]) for table in shot.cameras))
         else:
-            operator = operator.step(frame, 1.0 / scenario.fps)
-        until = min([s.at for s in scenario.shots if s.at > shot.at], default=scenario.duration)
-        camera = operator.view((frame.time - shot.at) / max(until - shot.at, 1e-9))
-        text = (scenario.title,) if frame.time < TITLE_SECONDS else ()
-        yield frame, Scene(camera, figures(frame.before, frame.after, frame.alpha), frame.after.props,
-                           shown, text)
+            take = replace(take, crew=tuple(operator.step(world) for operator in take.crew))
+        yield world, take
 
 
 @dataclass(frozen=True, eq=False)
 class Operator:
-    """Who holds the camera during one shot. whom: the number of the actor watched.
+    """Who holds a camera during one shot, at one tick.
 
-    Props don't shorten the arm here: a film's author sees where they stand.
+    watched: the numbers of the actors that it is about; held: a camera on an arm, else the target
+    (3,) [m] that it looks at. start, end: of the shot [s]; time: now.
     """
 
-    shot: ShotTable
-    whom: int
-    follow: Follow | None = None
+    table: CameraTable
+    watched: tuple[int, ...]
+    start: float
+    end: float
+    time: float
+    held: Follow | Orbit | None = None
     target: np.ndarray | None = None
 
     @staticmethod
-    def ready(shot: ShotTable, frame: Frame) -> Operator:
-        """At the cut."""
-        name = shot.actor if shot.kind == "follow" else shot.look_at
-        whom = 0 if name is None else frame.after.index(name)
-        ground = _ground(frame, whom)
-        if shot.kind != "follow":
-            return Operator(shot, whom, target=_aim(ground) if shot.target is None else np.array(shot.target))
-        settings = CameraSettings(fov=math.radians(shot.fov), rest=0.0 if shot.swing else math.inf)
-        return Operator(shot, whom, follow=Follow.behind(
-            ground, settings, float(ground[2]) + math.radians(shot.around), math.radians(shot.above), shot.distance))
+    def ready(table: CameraTable, world: World, end: float) -> Operator:
+        """At the cut; the shot lasts until `end` [s]."""
+        watched = tuple(world.index(name) for name in table.names) or (0,)
+        operator = Operator(table, watched, world.time, end, world.time)
+        if table.kind in ("fixed", "dolly"):
+            return replace(operator, target=_middle(world, watched, table.height) if table.target is None else np.array(table.target))
+        ground = world.characters[watched[0]].state.ground
+        yaw, above = math.radians(table.around), math.radians(table.above)
+        settings = CameraSettings(height=table.height, fov=math.radians(table.fov), nearest=0.5, highest=1.45,
+                                  rest=0.0 if table.swing else math.inf)
+        if table.target is None:
+            held = Follow.behind(ground, settings, float(ground[2]) + yaw, above, table.distance)
+            if table.kind == "follow":
+                return replace(operator, held=held.placed(ground, world.props))
+            target, yaw = held.target, held.yaw
+        else:
+            target = np.array(table.target)
+        held = Orbit.round(target, settings, yaw, above, table.distance, tracks=table.target is None)
+        return replace(operator, held=held.placed(ground, world.props))
 
-    def step(self, frame: Frame, dt: float) -> Operator:
-        """One frame on."""
-        ground = _ground(frame, self.whom)
-        if self.follow is not None:
-            return replace(self, follow=self.follow.step(ground, _velocity(frame, self.whom), Wish(), dt))
-        if self.shot.target is None:
-            return replace(self, target=damp(self.target, _aim(ground), LOOK_HALFLIFE, dt))
-        return self
+    def step(self, world: World) -> Operator:
+        """One tick on."""
+        moved = replace(self, time=world.time)
+        state = world.characters[self.watched[0]].state
+        if self.held is None:
+            if self.table.target is not None:
+                return moved
+            return replace(moved, target=damp(self.target, _middle(world, self.watched, self.table.height), LOOK_HALFLIFE, DT))
+        held, velocity = self.held, in_world(state.ground, state.velocity)
+        if self.table.kind == "orbit":
+            held = held.turned(math.radians(self.table.turn) * DT / max(self.end - self.start, DT))
+        return replace(moved, held=held.step(state.ground, velocity, HANDS_OFF, DT, world.props))
 
-    def view(self, progress: float) -> Camera:
-        """The camera, `progress` (0 … 1) into the shot."""
-        if self.follow is not None:
-            return self.follow.view()
-        fov = math.radians(self.shot.fov)
-        if self.shot.kind == "dolly":
-            return dolly((self.shot.eye, self.shot.to), self.target, progress, fov)
-        return fixed(self.shot.eye, self.target, fov)
-
-
-def _ground(frame: Frame, whom: int) -> np.ndarray:
-    return ground_between(frame.before.characters[whom].state, frame.after.characters[whom].state, frame.alpha)
-
-
-def _velocity(frame: Frame, whom: int) -> np.ndarray:
-    state = frame.after.characters[whom].state
-    return in_world(state.ground, state.velocity)
+    def view(self) -> Camera:
+        """The camera."""
+        if self.held is not None:
+            return self.held.view()
+        fov = math.radians(self.table.fov)
+        if self.table.kind == "dolly":
+            return dolly(self.table.path, self.target, (self.time - self.start) / (self.end - self.start), fov)
+        return fixed(self.table.eye, self.target, fov)
 
 
-def _aim(ground: np.ndarray) -> np.ndarray:
-    return np.array([ground[0], LOOK_HEIGHT, ground[1]])
+def _sampled(ticks: Iterator[T], scenario: Scenario) -> Iterator[tuple[int, T, T, float]]:
+    """Number, the ticks before and after, and the way between them of every frame of a film."""
+    before, after, reached = next(ticks), next(ticks), 0
+    for number in range(scenario.frames):
+        # in whole numbers, so that no frame rate drifts
+        wanted, rest = divmod(number * RATE, scenario.fps)
+        while reached < wanted:
+            before, after, reached = after, next(ticks), reached + 1
+        yield number, before, after, rest / scenario.fps
+
+
+def _middle(world: World, watched: tuple[int, ...], height: float) -> np.ndarray:
+    """The middle (3,) [m] of some actors."""
+    ground = np.mean([world.characters[i].state.ground[:2] for i in watched], axis=0)
+    return np.array([ground[0], height, ground[1]])
+
+
+def _caption(scenario: Scenario, shot: ShotTable, time: float) -> Caption | None:
+    """The title while it is there, else the shot's caption."""
+    opening = Caption(scenario.title, scenario.under, _fade(time, *TITLE))
+    if opening.opacity > 0.0:
+        return opening
+    start = max(shot.at, TITLE[1] - CAPTION[0])
+    following = min([s.at for s in scenario.shots if s.at > shot.at], default=scenario.duration)
+    opacity = _fade(time, start + CAPTION[0], min(start + CAPTION[1], following))
+    return Caption(shot.caption, shot.under, opacity) if shot.caption and opacity > 0.0 else None
+
+
+def _fade(time: float, comes: float, goes: float) -> float:
+    return min(max(min(time - comes, goes - time) / FADE, 0.0), 1.0)

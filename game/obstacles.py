@@ -105,6 +105,14 @@ def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) 
     return point
 
 
+def blocked(point: np.ndarray, props: tuple[Prop, ...], margin: float = 0.1) -> int | None:
+    """The number of a prop that a point (3,) lies inside of, if there is one."""
+    for i, prop in enumerate(props):
+        if (solids := _solids((prop,), margin)) is not None and _top_around(point, solids) is not None:
+            return i
+    return None
+
+
 def _no_zeros(x: np.ndarray) -> np.ndarray:
     return np.where(np.abs(x) < 1e-12, 1e-12, x)
 

@@ -149,6 +149,10 @@ class Armed(Turned):
         """What to draw with."""
         return Camera(self.eye, self.target, fov=self.settings.fov)
 
+    def placed(self, ground, props: Sequence[Prop]):
+        """The camera at rest, as far from its target as props let it; ground: (3,) of whom it spares."""
+        return self._reached(ground, math.inf, props, clear=False)
+
     def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool):
         """The camera with its eye at the end of its arm. clear: whether the arm may meet nobody."""
         props = tuple(props)

@@ -3,59 +3,28 @@
 from __future__ import annotations
 
 import math
-import re
 import tomllib
 from pathlib import Path as File
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
 from assets import path as asset
 from controllers.contract import Intent
 
+from .fields import Colour, Degrees, FileName, Length, Metres, Moment, Pace, Point, Point3, Seconds, Table, Velocity, short
 from .input.script import Move, Script
-from .scene import Box, Overlays
-
-OVERLAYS = ("mesh", "skeleton", "contacts", "trail", "path")
-NAME = re.compile(r"[\w-]+( [\w-]+)*")
-
-
-def _signed(most: float):
-    return Annotated[float, Field(ge=-most, le=most, allow_inf_nan=False)]
-
-
-def _positive(most: float):
-    return Annotated[float, Field(gt=0, le=most, allow_inf_nan=False)]
-
-
-# as far, fast and long as anybody can mean it: more is a slip, and numbers stay sound
-Metres, Length = _signed(1e5), _positive(1e5)
-Speed, Pace = _signed(20), _positive(20)  # m/s
-Turning = _signed(20)  # rad/s
-Degrees = _signed(3600)
-Seconds = _positive(3600)
-Point = tuple[Metres, Metres]
-Point3 = tuple[Metres, Metres, Metres]
-Velocity = tuple[Speed, Turning, Speed]
-Colour = tuple[*(Annotated[float, Field(ge=0, le=1)],) * 3]
+from .obstacles import blocked
+from .rail import on_rail
+from .scene import Box, Goal, Pillar, Prop
+from .shots import ShotTable, Shown
 
 
 class ScenarioError(ValueError):
     """A scenario that cannot be used; the message names file and field, one line for each fault."""
 
 
-def _file_name(name: str) -> str:
-    if not NAME.fullmatch(name) or len(name) > 40:
-        raise ValueError("files are named after it, so it needs letters, digits, - and _, with single spaces "
-                         f"between, 40 at most; got {_short(name)}")
-    return name
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=False)
-
-
-class MoveTable(_Table):
+class MoveTable(Table):
     """One move: exactly one of velocity, walk_to, path and stop. Angles in degrees."""
 
     seconds: Seconds | None = Field(None, alias="for")
@@ -98,10 +67,10 @@ class MoveTable(_Table):
                     facing=None if self.facing is None else math.radians(self.facing))
 
 
-class ActorTable(_Table):
+class ActorTable(Table):
     """Somebody. start: x, z [m] and heading [degrees]."""
 
-    name: Annotated[str, AfterValidator(_file_name)] = "A"
+    name: FileName = "A"
     tint: Colour = (0.75, 0.42, 0.22)
     start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
     moves: tuple[MoveTable, ...] = ()
@@ -111,66 +80,75 @@ class ActorTable(_Table):
         return Script(tuple(move.move() for move in self.moves))
 
 
-class BoxTable(_Table):
-    """A wall, pillar or platform: centre and full size [m], heading [degrees]."""
+class BoxTable(Table):
+    """A wall or platform: centre and full size [m], heading [degrees]."""
 
+    kind: Literal["box"] = "box"
     centre: Point3
     size: tuple[Length, Length, Length]
     heading: Degrees = 0.0
     tint: Colour = (0.55, 0.56, 0.60)
 
-    def box(self) -> Box:
+    def prop(self) -> Box:
         """The same in SI units."""
         return Box(self.centre, self.size, math.radians(self.heading), self.tint)
 
 
-class ShotTable(_Table):
-    """What the camera does from `at` seconds on.
+class PillarTable(Table):
+    """An upright cylinder: the middle of its foot, radius and height [m]."""
 
-    follow: an actor, looking `around` degrees to the left of its heading at the cut and from
-    `above` degrees over the horizon; with `swing` it comes round behind. fixed: from `eye`. dolly: from `eye` to `to`. Both look at `target`, or
-    at the actor named in `look_at`.
+    kind: Literal["pillar"]
+    foot: Point3
+    radius: Length = 0.25
+    height: Length = 2.5
+    tint: Colour = (0.55, 0.56, 0.60)
+
+    def prop(self) -> Pillar:
+        """The same as the renderer takes it."""
+        return Pillar(self.foot, self.radius, self.height, self.tint)
+
+
+class GoalTable(Table):
+    """A place to reach: x, y, z and radius [m]."""
+
+    kind: Literal["goal"]
+    place: Point3
+    radius: Length = 0.4
+    tint: Colour = (0.95, 0.62, 0.15)
+
+    def prop(self) -> Goal:
+        """The same as the renderer takes it."""
+        return Goal(self.place, self.radius, self.tint)
+
+
+_PROPS = ("box", "pillar", "goal")
+
+
+def _kind(prop) -> str:
+    return prop.get("kind", "box") if isinstance(prop, dict) else getattr(prop, "kind", "box")
+
+
+PropTable = Annotated[Annotated[BoxTable, Tag("box")] | Annotated[PillarTable, Tag("pillar")] | Annotated[GoalTable, Tag("goal")],
+                      Discriminator(_kind)]
+
+
+class Scenario(Table):
+    """A scripted run, and the short film of it.
+
+    title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
+    pixels. overlays: what is drawn where a shot says nothing else. poster: the moment [s] that
+    stands for the film.
     """
 
-    kind: Literal["follow", "fixed", "dolly"] = "follow"
-    at: Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)] = 0.0
-    actor: str | None = None
-    distance: Length = 4.5
-    around: Degrees = 0.0
-    above: Annotated[float, Field(gt=-20, lt=80)] = 12.0
-    swing: bool = True
-    eye: Point3 | None = None
-    to: Point3 | None = None
-    target: Point3 | None = None
-    look_at: str | None = None
-    fov: Annotated[float, Field(gt=5, lt=120)] = 46.0
-
-    @model_validator(mode="after")
-    def _complete(self):
-        if self.kind == "follow":
-            wrong = [n for n in ("eye", "to", "target", "look_at") if getattr(self, n) is not None]
-            if wrong:
-                raise ValueError(f"a follow shot has no {wrong[0]}; use kind = \"fixed\" or \"dolly\"")
-            return self
-        if self.eye is None:
-            raise ValueError(f"a {self.kind} shot needs eye = [x, y, z]")
-        if (self.target is None) == (self.look_at is None):
-            raise ValueError(f"a {self.kind} shot needs either target = [x, y, z] or look_at = an actor's name")
-        if (self.to is None) == (self.kind == "dolly"):
-            raise ValueError("`to` = [x, y, z] goes with a dolly shot, and only there")
-        return self
-
-
-class Scenario(_Table):
-    """A scripted run. duration [s], fps of the film, size of its frames in pixels."""
-
     title: str
+    under: str = ""
     duration: Seconds
     fps: Annotated[int, Field(ge=1, le=240)] = 60
     size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
-    overlays: tuple[Literal[OVERLAYS], ...] = ("mesh",)
+    overlays: Shown = ("mesh",)
+    poster: Moment | None = None
     shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
-    props: tuple[BoxTable, ...] = ()
+    props: tuple[PropTable, ...] = ()
     actors: Annotated[tuple[ActorTable, ...], Field(min_length=1)]
 
     @model_validator(mode="after")
@@ -178,14 +156,24 @@ class Scenario(_Table):
         names = [actor.name for actor in self.actors]
         if len({name.casefold() for name in names}) < len(names):  # some disks know no capitals
             raise ValueError(f"actors need different names, in more than capitals; got {', '.join(names)}")
-        for i, shot in enumerate(self.shots):
-            for name in (shot.actor, shot.look_at):
-                if name is not None and name not in names:
-                    raise ValueError(f"shots[{i}]: no actor is called {name!r}; there are {', '.join(names)}")
         times = [shot.at for shot in self.shots]
         if times[0] != 0.0 or times != sorted(set(times)):
             raise ValueError(f"shots must begin at = 0 and then rise; got {', '.join(f'{t:g}' for t in times)}")
+        if self.poster is not None and self.poster >= self.duration:
+            raise ValueError(f"poster is a moment of the film, before its end at {self.duration:g} s; got {self.poster:g}")
+        solid = self.stage()
+        for i, shot in enumerate(self.shots):
+            for j, camera in enumerate(shot.cameras):
+                where = f"shots[{i}]" if shot.views is None else f"shots[{i}].views[{j}]"
+                for name in camera.names:
+                    if name not in names:
+                        raise ValueError(f"{where}: no actor is called {name!r}; there are {', '.join(names)}")
+                _check_rail(where, camera, solid)
         return self
+
+    def stage(self) -> tuple[Prop, ...]:
+        """The props in SI units."""
+        return tuple(prop.prop() for prop in self.props)
 
     @property
     def frames(self) -> int:
@@ -196,10 +184,19 @@ class Scenario(_Table):
         """The same run filmed at another frame rate; the motion stays as it is."""
         return self.model_copy(update={"fps": fps})
 
+    def at_size(self, size: tuple[int, int]) -> Scenario:
+        """The same run filmed in pictures of `size` pixels."""
+        return self.model_copy(update={"size": size})
 
-def overlays(names) -> Overlays:
-    """Overlays by name."""
-    return Overlays(**{name: name in names for name in OVERLAYS})
+
+def _check_rail(where: str, camera, props: tuple[Prop, ...]) -> None:
+    """A camera that stands or goes where a prop is would show its inside."""
+    rail = {"fixed": (camera.eye,), "dolly": camera.path}.get(camera.kind, ())
+    for part in [k / 64 for k in range(65)] if len(rail) > 1 else [0.0] * len(rail):
+        at = blocked(on_rail(rail, part), props)
+        if at is not None:
+            name = "eye" if camera.kind == "fixed" else "path"
+            raise ValueError(f"{where}.{name}: the camera would be inside of props[{at}]; lead it round or over it")
 
 
 def shipped() -> tuple[str, ...]:
@@ -235,21 +232,20 @@ def load(name: str | File) -> Scenario:
 def _fault(file: File, fault: dict) -> str:
     """One line about one fault: file, field, what would be right."""
     where = ""
-    for part in fault["loc"]:
+    for i, part in enumerate(fault["loc"]):
+        if part in _PROPS and fault["loc"][i - 2:i - 1] == ("props",):
+            continue  # which kind of prop it is: no field of the file
         where += f"[{part}]" if isinstance(part, int) else f"{'.' if where else ''}{part}"
     kind, text = fault["type"], fault["msg"].removeprefix("Value error, ")
     if kind == "extra_forbidden":
         text = "there is no such field"
     elif kind == "missing":
         text = "is missing, and needed"
+    elif kind == "union_tag_invalid":
+        text = f"kind should be one of {', '.join(_PROPS)}, got {short(fault['ctx']['tag'])}"
     elif kind not in ("value_error",):
-        text = f"{text[0].lower()}{text[1:]}, got {_short(fault['input'])}"
+        text = f"{text[0].lower()}{text[1:]}, got {short(fault['input'])}"
     return f"{file}: {where + ': ' if where else ''}{text}"
-
-
-def _short(value) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "…"
 
 
 def _forward(velocity) -> tuple[float, float, float]:

@@ -6,8 +6,9 @@ import pytest
 from controllers.contract import Intent
 from game import film
 from game.input.script import Move, Script
-from game.scenario import OVERLAYS, Scenario, ScenarioError, load, shipped
+from game.scenario import Scenario, ScenarioError, load, shipped
 from game.scene import Overlays
+from game.shots import OVERLAYS
 from game.world import DT
 from stand_in import Glide
 
@@ -167,22 +168,21 @@ overlays = ["skeleton", "trail"]
 props = [{ centre = [0, 1, 5], size = [1, 2, 1], heading = 45 }]
 [[shots]]
 kind = "dolly"
-eye = [5, 2, 0]
-to = [3, 2, 0]
+path = [[5, 2, 0], [3, 2, 0]]
 look_at = "B"
 [[shots]]
 at = 1
 kind = "follow"
 actor = "B"''')
     scenario = load(written(tmp_path, text))
-    pictures = [scene for _, scene in film.scenes(scenario, Glide())]
+    pictures = [scene for _, (scene,) in film.scenes(scenario, Glide())]
     assert len(pictures) == scenario.frames and len(pictures[0].figures) == 2 and len(pictures[0].props) == 1
     assert pictures[0].overlays == Overlays(mesh=False, skeleton=True, trail=True)
-    assert pictures[0].camera.eye == pytest.approx([5, 2, 0]) and pictures[0].text == ("Test",)
+    assert pictures[0].camera.eye == pytest.approx([5, 2, 0]) and pictures[90].caption.text == "Test"
     assert np.linalg.norm(pictures[60].camera.eye - pictures[59].camera.eye) > 0.5
     for a, b in zip(pictures[60:], pictures[61:]):
         assert np.linalg.norm(a.camera.eye - b.camera.eye) < 0.1
-    _, first = next(film.scenes(scenario, Glide(), Overlays(path=True)))
+    _, (first,) = next(film.scenes(scenario, Glide(), Overlays(path=True)))
     assert first.overlays.path and not first.overlays.trail
     assert set(OVERLAYS) == set(vars(Overlays()))
 

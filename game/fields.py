@@ -1,0 +1,51 @@
+"""What the fields of a scenario may hold: sound numbers with their units, points, colours, names."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+NAME = re.compile(r"[\w-]+( [\w-]+)*")
+
+
+def _signed(most: float):
+    return Annotated[float, Field(ge=-most, le=most, allow_inf_nan=False)]
+
+
+def _positive(most: float):
+    return Annotated[float, Field(gt=0, le=most, allow_inf_nan=False)]
+
+
+def _file_name(name: str) -> str:
+    if not NAME.fullmatch(name) or len(name) > 40:
+        raise ValueError("files are named after it, so it needs letters, digits, - and _, with single spaces "
+                         f"between, 40 at most; got {short(name)}")
+    return name
+
+
+# as far, fast and long as anybody can mean it: more is a slip, and numbers stay sound
+Metres, Length = _signed(1e5), _positive(1e5)
+Speed, Pace = _signed(20), _positive(20)  # m/s
+Turning = _signed(20)  # rad/s
+Degrees = _signed(3600)
+Seconds = _positive(3600)
+Moment = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]  # s
+Point = tuple[Metres, Metres]
+Point3 = tuple[Metres, Metres, Metres]
+Velocity = tuple[Speed, Turning, Speed]
+Colour = tuple[*(Annotated[float, Field(ge=0, le=1)],) * 3]
+FileName = Annotated[str, AfterValidator(_file_name)]
+
+
+class Table(BaseModel):
+    """A table of a scenario: frozen, and with no field that is not known."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=False)
+
+
+def short(value) -> str:
+    """A value as it is quoted in an error."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "…"
