@@ -73,7 +73,10 @@ def _say(text: str) -> None:
 @plainly
 def play(library: Library = None, preset: Quality = Preset.full,
          size: Annotated[str, typer.Option(help="Size of the window.")] = "1280x720",
-         bindings: Hands = None) -> None:
+         bindings: Hands = None,
+         players: Annotated[int, typer.Option(min=1, max=2, help="How many play; a second one may also join later.")] = 1,
+         record: Annotated[Path | None, typer.Option(help="Keep the input log in this new .gambol file; by default in out/.")] = None,
+         replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from .input.remap import load as load_bindings
 
@@ -81,13 +84,25 @@ def play(library: Library = None, preset: Quality = Preset.full,
     controller = _controller(library)
 
     from .hosts import DisplayError, run_window
+    from .log import LogWriter, of_library, read
     from .play import Play
+    from .studio import OUT, Studio, log_file
 
+    tape = None if replay is None else of_library(read(replay), controller)
+    players = players if tape is None else tape.players
+    log = LogWriter(log_file(record), controller, players)
+    studio = Studio(OUT, () if library is None else ("--library", str(library)))
+    game = Play(controller, players, bindings=hands, log=log, studio=studio, tape=tape)
     try:
-        run_window(Play(controller, bindings=hands), pixels, preset.value)
+        run_window(game, pixels, preset.value)
     except DisplayError as error:
         _say(f"gambol: {error}")
         raise typer.Exit(NO_DISPLAY) from None
+    finally:
+        game.close()
+        if log.begun:
+            _say(f"{log.path}: {game.now.number / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
+        studio.finish(_say)
 
 
 @app.command()
@@ -111,14 +126,31 @@ def bindings(file: Hands = None,
 
 @app.command()
 @plainly
-def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")],
-           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")],
-           size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default.")] = None,
-           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default.")] = None,
+def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")] = None,
+           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")] = ...,
+           replay: Annotated[Path | None, typer.Option(help="Film this input log instead of a scenario, as its player saw it.")] = None,
+           start: Annotated[float | None, typer.Option("--from", min=0.0, help="Where in the log to begin, in seconds.")] = None,
+           end: Annotated[float | None, typer.Option("--to", min=0.0, help="Where in the log to end, in seconds.")] = None,
+           size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,
+           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
            overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path.")] = None,
-           library: Library = None) -> None:
-    """Film a scenario without a display, or write its motion as BVH."""
+           library: Library = None,
+           background: Annotated[bool, typer.Option("--background", hidden=True, help="Yield to other programs; print progress as lines.")] = False) -> None:
+    """Film a scenario or an input log without a display, or write a scenario's motion as BVH."""
+    if (scenario is None) == (replay is None):
+        raise Mistake("render needs either a scenario or --replay LOG")
+    if background and hasattr(os, "nice"):
+        os.nice(15)
+    if replay is not None:
+        if out.lower().endswith(".bvh"):
+            raise Mistake(f"{out}: a log is filmed; name a .mp4 file or a folder for PNG frames")
+        _film_log(replay, start, end, out, _size(size or "1920x1080"), fps or 60, preset, overlay, library, background)
+        return
+    for option, given in (("--from", start), ("--to", end)):
+        if given is not None:
+            raise Mistake(f"{option} goes with --replay")
+
     from . import scenario as scenarios
 
     film = scenarios.load(scenario)
@@ -130,20 +162,48 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
         _write_motion(film, out, library)
         return
     from .film import scenes
-    from .recorder import recorder
     from .shots import overlays
 
     film = film if size is None else film.at_size(_size(size))
-    width, height = film.size
     shown = None if overlay is None else overlays(_overlays(overlay))
     controller = _controller(library)
-    target = recorder(out, (width, height), film.fps)
+    _draw((scene for _, scene in scenes(film, controller, shown)), film.frames, film.title, out, film.size, film.fps,
+          preset, background)
+
+
+def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
+              preset: Preset | None, overlay: str | None, library: Path | None, background: bool) -> None:
+    from .log import of_library, read
+    from .shots import overlays
+    from .views import filmed, frames
+
+    log = read(file)
+    start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
+    if not start < end:
+        raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
+    shown = overlays(_overlays(overlay or "mesh"))
+    controller = _controller(library)
+    of_library(log, controller)
+
+    def stray() -> None:
+        _say(f"gambol: {file} was played with another version of Gambol, which walks another way: "
+             "the film is not quite what was played")
+    _draw(filmed(log, controller, fps, start, end, shown, stray), frames(log, fps, start, end), file.name, out, size, fps,
+          preset, background)
+
+
+def _draw(scenes, frames: int, title: str, out: str, size: tuple[int, int], fps: int, preset: Preset | None,
+          background: bool) -> None:
+    """Draw scenes into a film or a folder."""
+    from .recorder import recorder
+
+    target = recorder(out, size, fps)
 
     from .hosts import GraphicsError, Offscreen
 
     try:
-        with Offscreen((width, height), (preset or Preset.full).value) as stage, target, _progress() as bar:
-            for _, scene in bar.track(scenes(film, controller, shown), film.frames, description=film.title):
+        with Offscreen(size, (preset or Preset.full).value) as stage, target, _progress() as bar:
+            for scene in _told(scenes, frames) if background else bar.track(scenes, frames, description=title):
                 target.write(stage.frame(scene))
     except BaseException as error:
         if target.count:
@@ -151,7 +211,14 @@ def render(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see
         if isinstance(error, GraphicsError):
             raise Mistake(str(error)) from None
         raise
-    _say(f"{target.path}: {film.frames} frames, {film.duration:g} s, {width} × {height}")
+    _say(f"{target.path}: {frames} frames, {frames / fps:g} s, {size[0]} × {size[1]}")
+
+
+def _told(scenes, frames: int):
+    """The scenes, with a line of progress for each: whoever began this in the background reads them."""
+    for number, scene in enumerate(scenes, 1):
+        _say(f"{number} of {frames}")
+        yield scene
 
 
 def _write_motion(film, out: str, library: Path | None) -> None:

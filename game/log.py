@@ -80,6 +80,11 @@ class LogWriter:
         self._head = {"gambol": "input log", "format": FORMAT, "library": digest(controller), "players": players}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
 
+    @property
+    def begun(self) -> bool:
+        """Whether there is a file."""
+        return self._file is not None
+
     def add(self, wishes: Sequence[Wish]) -> None:
         """One tick more; the wishes must be `rounded`."""
         if self._waiting and len(self._waiting[0]) != len(wishes):  # somebody has joined
@@ -94,6 +99,7 @@ class LogWriter:
         data = self._packer.compress(block) + self._packer.flush(zlib.Z_SYNC_FLUSH)
         with named(self.path):
             if self._file is None:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
                 self._file = open(self.path, "xb", buffering=0)
                 self._file.write(json.dumps(self._head).encode() + b"\n")
             self._file.write(b"%08x %s\n" % (zlib.crc32(data), _escaped(data)))
@@ -185,13 +191,18 @@ def _unpacked(block: bytes) -> tuple[list[tuple[Wish, ...]], int | None]:
             for t, rows in enumerate(numbers.tolist())], print_
 
 
+def of_library(log: Log, controller: Any) -> Log:
+    """The log, if it was played with this controller's library; else LogError."""
+    if log.library != digest(controller):
+        raise LogError(f"{log.path}: was played with another gait library; name that one with --library")
+    return log
+
+
 def replay(log: Log, controller: Any) -> Iterator[Moment]:
     """The opening and the moment after every tick, to the bit as they were played.
 
-    LogError for another library than the log was played with, and for what can't be played.
+    LogError for what can't be played.
     """
-    if log.library != digest(controller):
-        raise LogError(f"{log.path}: was played with another gait library; name that one with --library")
     timeline = Timeline(opening(controller, log.players))
     yield timeline.now
     for number, wishes in enumerate(log.ticks):

@@ -12,13 +12,16 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from .output import output_folder
+from .log import SUFFIX
+from .output import OutputError, output_file, output_folder
 
+OUT = Path("out")
+"""Where what is kept while playing goes, unless it is named."""
 PROGRESS = re.compile(r"(\d+) of (\d+)")
 
 
@@ -34,6 +37,19 @@ def unused(folder: Path, stem: str, suffix: str) -> Path:
 def stamped(folder: Path, suffix: str) -> Path:
     """A path named after the present time that nothing stands at yet."""
     return unused(folder, time.strftime("gambol-%Y%m%d-%H%M%S"), suffix)
+
+
+def log_file(named: Path | None) -> Path:
+    """Where to keep the log of a game: in the file that is named, else in one of its own.
+
+    OutputError for a name that is there already, or where this user may not write; where that is
+    not asked for, one plays without rather than not at all.
+    """
+    if named is None:
+        return stamped(OUT, SUFFIX)
+    if named.exists() and not named.is_dir():
+        raise OutputError(f"{named}: is there already, and a log is never overwritten; name another file")
+    return output_file(named, SUFFIX)
 
 
 class Film:
@@ -67,6 +83,10 @@ class Film:
             return f"{self.path}: {100 * self.done // self.total} %" if self.total else f"{self.path}: beginning"
         self._reader.join(1.0)
         return self.said or str(self.path)
+
+    def wait(self) -> None:
+        """Wait until it is made."""
+        self._process.wait()
 
     def stop(self) -> None:
         """Give it up; what was drawn so far is kept beside it."""
@@ -117,15 +137,18 @@ class Studio:
         """A line about each film that is being made."""
         return tuple(film.status() for film in self.films)
 
-    @property
-    def busy(self) -> bool:
-        """Whether something is still being made."""
-        return bool(self.films or self._waiting)
-
-    def stop(self) -> None:
-        """Give up what is being made."""
-        self._waiting.clear()
-        for film in self.films:
-            film.stop()
+    def finish(self, say: Callable[[str], None]) -> None:
+        """Wait until everything is made, and say so line by line; an interruption gives up the films."""
         for thread in self._threads:
             thread.join()
+        try:
+            while self.films or self._waiting:
+                for film in self.films:
+                    say(f"{film.path} is still being made; Ctrl-C gives it up")
+                    film.wait()
+                for line in self.tend():
+                    say(line)
+        except KeyboardInterrupt:
+            for film in self.films:
+                film.stop()
+            raise

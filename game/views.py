@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
+from .log import Log, replay, strayed
 from .scene import Camera, Overlays, Scene
 from .session import Moment
-from .world import figures
+from .world import RATE, figures
 
 
 def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays: Overlays,
@@ -20,3 +22,28 @@ def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays:
     text = tuple(text) or ((),) * len(cameras)
     return tuple(Scene(camera, people, moment.after.props, overlays, lines, part=(i * width, 0.0, width, 1.0))
                  for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))
+
+
+def frames(log: Log, fps: int, start: float, end: float) -> int:
+    """How many frames a part of a log has, from `start` to `end` [s]."""
+    return max(int((min(end, log.duration) - start) * fps + 1e-6), 1)
+
+
+def filmed(log: Log, controller: Any, fps: int, start: float, end: float, overlays: Overlays,
+           stray: Callable[[], None] = lambda: None) -> Iterator[tuple[Scene, ...]]:
+    """Every frame of a part of a log, as the players saw it; stray: called once if it goes another way.
+
+    LogError where the log can't be played.
+    """
+    moments, told = replay(log, controller), False
+    moment, first = next(moments), round(start * RATE)
+    for frame in range(frames(log, fps, start, end)):
+        # in whole numbers, so that no frame rate drifts
+        ticks, rest = divmod(frame * RATE, fps)
+        while moment.number < min(first + ticks + 1, len(log.ticks)):
+            moment = next(moments)
+            if not told and strayed(log, moment):
+                stray()
+                told = True
+        alpha = rest / fps
+        yield scenes(moment, moment.fraction(alpha), [player.view(alpha) for player in moment.players], overlays)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from ..scene import Scene
 
 PADS = 4
@@ -103,6 +105,8 @@ class App(Protocol):
     """Whether it wants the whole screen."""
     mouse_captured: bool
     """Whether it wants the mouse without a pointer, so that no edge of the screen stops it."""
+    wants_picture: bool
+    """Whether it wants to `take` the next picture."""
 
     def handle(self, event: Event) -> None:
         """Take an event. For each pad that is there one PadState comes every frame, before the tick;
@@ -111,5 +115,8 @@ class App(Protocol):
     def tick(self, seconds: float) -> None:
         """So much wall time has passed since the last tick."""
 
-    def scene(self, size: tuple[int, int]) -> Scene:
-        """What to show now in a picture of width × height pixels."""
+    def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
+        """What to show now in a picture of width × height pixels: a scene, or several side by side."""
+
+    def take(self, pixels: np.ndarray) -> None:
+        """The picture (H, W, 4) uint8 that it wanted, top row first."""

@@ -14,8 +14,6 @@ from .events import PADS, App, Focus, KeyEvent, MouseMove, PadState, Resize, Scr
 
 PACE = 1.0 / 60.0
 """Seconds between frames where the display sets no pace."""
-LONGEST = 0.25
-"""The most wall time one tick reports [s]: a laptop waking from sleep is no long frame."""
 
 
 class DisplayError(RuntimeError):
@@ -94,10 +92,12 @@ class _Loop:
             for pad in self.pads.read():
                 app.handle(pad)
             now = time.perf_counter()
-            app.tick(min(now - last, LONGEST))
+            app.tick(now - last)
             last = now
             if self._visible():
                 self.renderer.draw(app.scene(self.size))
+                if app.wants_picture:
+                    app.take(self.renderer.read())
                 self.renderer.blit()
                 glfw.swap_buffers(self.window)
                 frames += 1
