@@ -46,7 +46,7 @@ class Box:
     centre: tuple[float, float, float]
     size: tuple[float, float, float]
     heading: float = 0.0
-    tint: tuple[float, float, float] = (0.55, 0.56, 0.60)
+    tint: tuple[float, float, float] = (0.36, 0.37, 0.40)
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Pillar:
     foot: tuple[float, float, float]
     radius: float = 0.25
     height: float = 2.5
-    tint: tuple[float, float, float] = (0.55, 0.56, 0.60)
+    tint: tuple[float, float, float] = (0.36, 0.37, 0.40)
 
 
 @dataclass(frozen=True)

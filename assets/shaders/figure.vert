@@ -1,5 +1,6 @@
 #include frame.glsl
 #include skin.glsl
+#include occlusion.glsl
 in float open;
 in vec3 paint;
 out vec3 v_at;
@@ -11,7 +12,7 @@ flat out vec3 v_tint;
 void main() {
     skinned(v_at, v_normal);
     v_paint = paint;
-    v_open = open;
+    v_open = open * sky_seen(v_at, v_normal);
     v_tint = look[gl_InstanceID].rgb;
     gl_Position = view_projection * vec4(v_at, 1.0);
 }

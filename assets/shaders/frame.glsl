@@ -2,11 +2,13 @@
 // which lies near the camera so that single floats stay fine far from the world's own origin.
 layout(std140) uniform Frame {
     mat4 view_projection;
-    mat4 light;      // to shadow map coordinates, 0 … 1 in all three
+    mat4 figures_light;   // to shadow map coordinates, 0 … 1 in all three
+    mat4 solids_light;
     vec4 eye;        // xyz; w: 1 / (fog distance)^4
     vec4 sun;        // xyz towards the sun
     vec4 viewport;   // width, height, 1 / width, 1 / height
-    vec4 shade;      // xy: reach of a soft shadow in the map; z: normal offset [m]; w: 1 if there is a map
+    vec4 shade;      // figures' map: xy: 1 / its size [1/m]; z: margin along a normal [m]; w: depth [m], 0 if there is none
+    vec4 stage;      // the same of the solids' map
 };
 
 const vec3 SUN = vec3(1.30, 1.18, 1.00);
@@ -21,6 +23,9 @@ float fog(vec3 at) {
     float t = d2 * d2 * eye.w;
     return t / (1.0 + t);
 }
+
+// Creases that the sky hardly sees, the sun seldom finds either: what is left of it there.
+float through(float open) { return clamp(2.2 * open - 0.35, 0.0, 1.0); }
 
 // Linear light to what the screen shows: a filmic shoulder, then sRGB's curve in three square roots.
 vec3 display(vec3 c) {

@@ -1,9 +1,8 @@
 // One surface under the sun and the sky.
 vec3 shaded(vec3 at, vec3 n, vec3 colour, float open, float gloss) {
     float facing = dot(n, sun.xyz);
-    float lit = shade.w > 0.0 && facing > 0.0 ? sunlight(at + n * shade.z) : 1.0;
-    // creases that the sky hardly sees, the sun seldom finds either
-    lit *= clamp(2.2 * open - 0.35 + 0.4 * max(facing, 0.0), 0.0, 1.0);
+    float lit = facing > 0.0 ? sunlight(at, n) : 0.0;
+    lit *= min(through(open) + 0.4 * max(facing, 0.0), 1.0);
     vec3 view = normalize(eye.xyz - at);
     vec3 middle = normalize(view + sun.xyz);
     float shine = pow(max(dot(n, middle), 0.0), 40.0) * gloss;

@@ -7,10 +7,12 @@ from typing import Any
 
 import assets
 
-FRAME, FIGURES = 0, 1
+BLOCKS = {"Frame": 0, "Figures": 1, "Occluders": 2}
 """Binding points of the uniform blocks."""
-PICTURES = 4
-"""The texture unit of bodies' pictures."""
+FRAME, FIGURES, OCCLUDERS = BLOCKS.values()
+SAMPLERS = {"atlas": 0, "figures_map": 0, "solids_map": 1, "figures_depth": 2, "solids_depth": 3, "pictures": 4}
+"""Texture units."""
+PICTURES = SAMPLERS["pictures"]
 
 
 def source(name: str, defines: dict[str, int]) -> str:
@@ -28,14 +30,12 @@ def program(ctx: Any, vertex: str, fragment: str, varyings: tuple[str, ...] = ()
         made = ctx.program(vertex_shader=source(vertex, defines), varyings=varyings)
     else:
         made = ctx.program(vertex_shader=source(vertex, defines), fragment_shader=source(fragment, defines))
-    for name, binding in (("Frame", FRAME), ("Figures", FIGURES)):
+    for name, binding in BLOCKS.items():
         if name in made:
             made[name].binding = binding
-    for name in ("shadow_map", "atlas"):
+    for name, unit in SAMPLERS.items():
         if name in made:
-            made[name] = 0
-    if "pictures" in made:
-        made["pictures"] = PICTURES
+            made[name] = unit
     return made
 
 
@@ -57,6 +57,27 @@ class Stream:
 
     def release(self) -> None:
         self.buffer.release()
+
+
+class ShadowMap:
+    """A depth texture of `texels` a side. Shaders compare with it, filtered over four texels, or read it as it is."""
+
+    def __init__(self, ctx: Any, texels: int):
+        self.texture = ctx.depth_texture((texels, texels))
+        self.texture.compare_func = "<="
+        self.texture.filter = ctx.LINEAR, ctx.LINEAR
+        self.texture.repeat_x = self.texture.repeat_y = False
+        self.target = ctx.framebuffer(depth_attachment=self.texture)
+        self.plain = ctx.sampler(texture=self.texture, filter=(ctx.NEAREST, ctx.NEAREST), repeat_x=False, repeat_y=False)
+
+    def use(self, compared: int, read: int) -> None:
+        """Bind to these two texture units."""
+        self.texture.use(compared)
+        self.plain.use(read)
+
+    def release(self) -> None:
+        for part in (self.target, self.plain, self.texture):
+            part.release()
 
 
 class Target:

@@ -7,17 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from ..scene import Box, Figure, Scene
+from ..scene import Figure, Goal, Scene
 from . import gl, view
 from .figures import Figures, drawable
-from .ground import Boxes, Ground, dark_floor, shaded_floor
+from .ground import Ground, touched_floor
+from .occlusion import Occluders
 from .overlays import OverlayPass
 from .presets import Preset, preset
+from .props import Goals, Solids
 from .sheet import SheetPass
+from .sun import SUN, LightBox, figures_box, solids_box
 from .text import TextPass
 
-FOG = 30.0
-"""Where the floor is half fog [m]."""
+FLOATS = 68
+"""In the uniform block of frame.glsl."""
 GAP = (0.02, 0.022, 0.026)
 """The colour of the line between parts of a picture, and of what no part covers."""
 
@@ -33,13 +36,11 @@ class Renderer:
         self.ctx, self.preset = ctx, preset(chosen)
         floor, body = self.preset.floor_taps, self.preset.body_taps
         self.target = gl.Target(ctx, size, self.preset.samples)
-        self.shadow_map = ctx.depth_texture((self.preset.shadow_size,) * 2)
-        self.shadow_map.compare_func = "<="
-        self.shadow_map.filter = ctx.LINEAR, ctx.LINEAR
-        self.shadow_map.repeat_x = self.shadow_map.repeat_y = False
-        self.shadow_target = ctx.framebuffer(depth_attachment=self.shadow_map)
-        self.frame = ctx.buffer(reserve=192, dynamic=True)
-        self.figures, self.boxes = Figures(ctx, body), Boxes(ctx, floor)
+        self.figures_map, self.solids_map = (gl.ShadowMap(ctx, self.preset.shadow_size) for _ in range(2))
+        self.kept: Any = None  # what the solids' map shows: solids and light box
+        self.frame = ctx.buffer(reserve=4 * FLOATS, dynamic=True)
+        self.occluders = Occluders(ctx)
+        self.figures, self.solids, self.goals = Figures(ctx, body), Solids(ctx, floor), Goals(ctx)
         self.ground, self.overlays, self.text = Ground(ctx, floor), OverlayPass(ctx), TextPass(ctx)
         self.sheet = SheetPass(ctx)
 
@@ -75,30 +76,31 @@ class Renderer:
         origin = view.origin_of(camera)
         eye = np.asarray(camera.eye, float) - origin
         figures = tuple(figure for figure in scene.figures if drawable(figure))
-        boxes = tuple(prop for prop in scene.props if isinstance(prop, Box))
+        solids = tuple(prop for prop in scene.props if not isinstance(prop, Goal))
         shown = figures if scene.overlays.mesh else ()
-        box = view.light_box(camera, shown, boxes, self.preset.shadow_size, origin)
+        texels = self.preset.shadow_size
+        boxes = figures_box(camera, shown, texels), solids_box(camera, solids, texels)
         projection = view.perspective(camera.fov, size[0] / size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
-        self._frame(matrix, eye, box, size)
+        self._frame(matrix, eye, origin, boxes, view.clear_air(camera), size)
         metre = size[1] / (2.0 * np.tan(0.5 * camera.fov))  # pixels, one metre away
         self.figures.prepare(shown, camera.eye, origin, [metre / least for least in self.preset.detail])
-        self.boxes.prepare(boxes, origin)
-        if box is not None:
-            self._shadows()
+        self.solids.prepare(solids, origin)
+        self.occluders.prepare(camera, shown if boxes[0] else (), solids, origin)
+        self._shadows(solids, *boxes)
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
         ctx.cull_face, ctx.depth_func = "back", "<="
         # the sky and the floor cover every pixel: only the depth needs clearing, and the line around
         self.target.masked(colour=framed != inside).clear(*GAP, depth=1.0, viewport=framed)
         self.target.masked(viewport=inside)
-        self.shadow_map.use(0)
+        self.figures_map.use(gl.SAMPLERS["figures_map"], gl.SAMPLERS["figures_depth"])
+        self.solids_map.use(gl.SAMPLERS["solids_map"], gl.SAMPLERS["solids_depth"])
         self.figures.draw("body")
-        self.boxes.draw("body")
+        self.solids.draw("body")
         if scene.overlays.skeleton:
             self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
-        self.ground.draw(dark_floor(boxes, origin), shaded_floor(shown if box else (), origin),
-                         np.linalg.inv(matrix))
+        self.ground.draw(touched_floor(shown if boxes[0] else (), solids, origin), np.linalg.inv(matrix))
         self._over(scene, figures, origin, inside)
 
     def read(self, out: np.ndarray | None = None) -> np.ndarray:
@@ -121,33 +123,47 @@ class Renderer:
 
     def release(self) -> None:
         """Give back all that was made on the graphics card."""
-        for part in (self.figures, self.boxes, self.ground, self.overlays, self.text, self.sheet,
-                     self.shadow_target, self.shadow_map, self.frame, self.target):
+        for part in (self.figures, self.solids, self.goals, self.ground, self.overlays, self.text, self.sheet,
+                     self.occluders, self.figures_map, self.solids_map, self.frame, self.target):
             part.release()
 
-    def _frame(self, matrix: np.ndarray, eye: np.ndarray, box: view.LightBox | None, size: tuple[int, int]) -> None:
+    def _frame(self, matrix: np.ndarray, eye: np.ndarray, origin: np.ndarray, boxes: Sequence[LightBox | None],
+               fog: float, size: tuple[int, int]) -> None:
         """Fill the uniform block of frame.glsl."""
-        data = np.zeros(48, np.float32)
+        data = np.zeros(FLOATS, np.float32)
         data[:16] = matrix.T.ravel()
-        data[32:36], data[36:39] = (*eye, FOG**-4), view.SUN
-        data[40:44] = *size, 1.0 / size[0], 1.0 / size[1]
-        if box is not None:
-            data[16:32] = box.matrix.T.ravel()
-            reach = max(self.preset.softness, 1.2 * box.texel)
-            data[44:48] = *(reach / box.size), 1.6 * box.texel + 0.002, 1.0
+        data[48:52], data[52:55] = (*eye, fog**-4), SUN
+        data[56:60] = *size, 1.0 / size[0], 1.0 / size[1]
+        for k, box in enumerate(boxes):
+            if box is not None:
+                data[16 + 16 * k:][:16] = box.matrix(origin).T.ravel()
+                # solids show their near side, and so need a margin as wide as the blur
+                margin = 1.6 * box.texel + 0.002 + (0.009 if k else 0.0)
+                data[60 + 4 * k:][:4] = *(1.0 / box.size), margin, box.top - box.bottom
         self.frame.orphan()
         self.frame.write(data.tobytes())
         self.frame.bind_to_uniform_block(gl.FRAME)
 
-    def _shadows(self) -> None:
+    def _shadows(self, solids: tuple, figures_light: LightBox | None, solids_light: LightBox | None) -> None:
+        """Draw the shadow maps: the figures' for every frame, the solids' only where something changed."""
         ctx = self.ctx
-        self.shadow_target.use()
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
-        # far sides only: what faces the sun then never shadows itself by a rounding error
-        ctx.cull_face, ctx.depth_func = "front", "<="
-        self.shadow_target.clear(depth=1.0)
-        self.figures.draw("shadow")
-        self.boxes.draw("shadow")
+        ctx.depth_func = "<="
+        if figures_light is not None:
+            # far sides only: what faces the sun then never shadows itself by a rounding error
+            ctx.cull_face = "front"
+            self.figures_map.target.use()
+            self.figures_map.target.clear(depth=1.0)
+            self.figures.draw("shadow")
+        if solids_light is not None:
+            shows = solids, tuple(solids_light.corner), float(solids_light.size[0])
+            if shows != self.kept:
+                # near sides: the floor under a box is dark up to the box's very edge
+                ctx.cull_face = "back"
+                self.solids_map.target.use()
+                self.solids_map.target.clear(depth=1.0)
+                self.solids.draw("shadow")
+                self.kept = shows
 
     def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray, inside: view.Rectangle) -> None:
         """Marks on the floor, then text over everything."""
@@ -157,6 +173,7 @@ class Renderer:
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
         self.target.masked(depth=False, viewport=inside)
         self.overlays.draw_marks(figures, scene.overlays, origin)
+        self.goals.draw([prop for prop in scene.props if isinstance(prop, Goal)], origin)
         self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)
         self.text.draw(scene.text, scene.panel, scene.caption, inside[2:])

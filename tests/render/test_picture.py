@@ -7,7 +7,7 @@ import pytest
 from poses import CROUCH, STAND, STRIDE, camera, figure
 
 from game.render import FULL, Renderer, preset
-from game.scene import Box, Caption, Overlays, Scene
+from game.scene import Box, Caption, Goal, Overlays, Pillar, Scene
 
 WALKER = figure(heading=0.6, options=dict(
     contacts=np.array([1, 0, 0, 1], bool),
@@ -21,6 +21,10 @@ GOLDEN = {
     "company": Scene(camera(eye=(0, 2.2, 6.5)), tuple(figure(heading=k, at=(k - 2, -0.8 * (k % 2)), options=dict(
         tint=(0.2 + 0.15 * k, 0.4, 0.7 - 0.12 * k)), **STAND) for k in range(5)),
         props=(Box((2.6, 0.5, -1.0), (0.6, 1.0, 0.6), 0.4), Box((-2.5, 0.1, 0.5), (1.0, 0.2, 1.0)))),
+    "stage": Scene(camera(eye=(2.4, 1.6, 4.6), target=(-0.1, 0.7, -0.6)), (
+        WALKER, figure(heading=-0.3, at=(-0.1, -1.5), lift=0.5, options=dict(tint=(0.2, 0.4, 0.8)), **STRIDE)), props=(
+        Box((0, 0.25, -1.5), (3.0, 0.5, 1.6)), Box((2.2, 0.5, -1.2), (1.0, 1.0, 1.0), 0.4, (0.5, 0.3, 0.2)),
+        Pillar((-2.0, 0, -0.4)), Pillar((-0.9, 0.5, -1.8), 0.2, 1.2), Goal((1.2, 0, 1.0)))),
     "panel": Scene(camera(), (WALKER,), panel=("        keyboard  gamepad", "walk    W A S D   left stick",
                                                "run     Shift     right trigger", "turn    ← →       right stick")),
 }

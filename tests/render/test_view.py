@@ -1,12 +1,11 @@
-"""Cameras, the sun's box and what lies on the floor: no GL."""
+"""Cameras, parts of a picture and what lies on the floor: no GL."""
 
 import numpy as np
 import pytest
 from poses import STAND, STRIDE, camera, figure
 
 from game.render import overlays, view
-from game.render.ground import dark_floor, shaded_floor
-from game.scene import Box, Camera, Overlays
+from game.scene import Camera, Overlays
 
 
 def seen(matrix, points):
@@ -25,50 +24,6 @@ def test_the_target_is_in_the_middle_and_left_is_left():
 def test_odd_cameras_still_look_somewhere(target):
     matrix = view.look_at(np.array([0, 1.0, 5]), np.array(target, float), np.array([0, 1.0, 0]))
     assert np.allclose(matrix[:3, :3] @ matrix[:3, :3].T, np.eye(3)) and np.isfinite(matrix).all()
-
-
-def test_the_light_box_holds_the_figure_and_its_shadow():
-    for posed in (figure(**STAND), figure(**STRIDE, at=(3.3, -7.7)), figure()):
-        shot = camera(eye=posed.positions[0] + [1, 1, 4], target=posed.positions[0])
-        box = view.light_box(shot, (posed,), (), 1024)
-        for points in (posed.positions, shaded_floor((posed,), np.zeros(3))):
-            inside = seen(box.matrix, points)
-            assert inside.min() > -0.1 and inside.max() < 1.1
-        at = seen(box.matrix, posed.positions)
-        assert at.min() > 0.0 and at.max() < 1.0
-        shadow = posed.positions - view.SUN * (posed.positions[:, 1:2] / view.SUN[1])
-        assert np.allclose(seen(box.matrix, shadow)[:, :2], at[:, :2])
-
-
-def test_the_light_box_moves_in_whole_texels_and_keeps_its_size():
-    corners, sizes = [], []
-    for k in range(20):
-        posed = figure(**STRIDE, at=(0.013 * k, 0.021 * k))
-        box = view.light_box(camera(), (posed,), (), 2048)
-        corners.append(box.matrix[:2, 3] * 2048)
-        sizes.append(box.size)
-    assert np.ptp(sizes, axis=0).max() < 1e-12
-    assert np.abs(np.array(corners) - np.round(corners)).max() < 1e-6
-
-
-def test_no_light_box_where_nothing_near_casts_a_shadow():
-    assert view.light_box(camera(), (), (), 1024) is None
-    assert view.light_box(camera(), (figure(at=(500, 0)),), (), 1024) is None
-    broken = figure()
-    broken.positions[:] = np.nan
-    assert view.light_box(camera(), (broken,), (), 1024) is None
-
-
-def test_the_outline_of_a_shadow_holds_the_shadow_and_little_more():
-    posed = figure(**STAND)
-    box = view.light_box(camera(), (posed,), (), 1024)
-    triangles = shaded_floor((posed,), np.zeros(3)).reshape(-1, 3, 3)
-    area = 0.5 * np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])[:, 1]
-    assert (area > -1e-9).all() and area.sum() < 0.35 * box.size.prod() / view.SUN[1]
-    shadow = posed.positions - view.SUN * (posed.positions[:, 1:2] / view.SUN[1])
-    for p in shadow:
-        sides = [np.cross(np.roll(t, -1, 0) - t, p - t)[:, 1].min() for t in triangles]
-        assert max(sides) > -1e-9
 
 
 def test_a_far_walk_keeps_the_floor_in_place():
@@ -101,20 +56,14 @@ def test_every_bone_runs_from_joint_to_joint():
     assert np.allclose(ends[:21], posed.positions[1:]) and len(rows) == 26
 
 
-@pytest.mark.parametrize("box", [Box((0, 0.5, 0), (1, 1, 1)), Box((3, 1.2, -2), (0.2, 1.0, 9.0), 0.7),
-                                 Box((0, 0.05, 0), (2, 0.1, 2), -2.0)])
-def test_a_box_shadow_is_the_hull_of_its_corners_shadows(box):
-    rim = view.box_shadows((box,))[0]
-    corners = view.box_corners(box)
-    flat = corners - view.SUN * (corners[:, 1:2] / view.SUN[1])
-    side = np.cross(np.roll(rim, -1, 0) - rim, flat[:, None] - rim)[..., 1]
-    assert side.min() > -1e-9
-    assert all(np.linalg.norm(flat - corner, axis=1).min() < 1e-9 for corner in rim)
+def test_parts_that_share_a_border_share_it_in_pixels():
+    for width in (320, 321, 1279):
+        left, right = (view.part_of((x, 0.0, 0.5, 1.0), (width, 180)) for x in (0.0, 0.5))
+        assert left[0][0] == 0 and left[0][2] == right[0][0] and right[0][0] + right[0][2] == width
+        assert left[1][0] == 0 and left[1][2] + 2 == right[1][0] - 0 and right[1][0] + right[1][2] == width
+    assert view.part_of((0.5, 0.0, 0.5, 0.5), (100, 100))[0] == (50, 50, 50, 50)  # the top is high in OpenGL
 
 
-def test_a_wall_does_not_make_shadows_coarse():
-    wall = Box((0, 1.5, -2), (14, 3, 0.2))
-    plain, walled = (view.light_box(camera(), (figure(),), boxes, 1024) for boxes in ((), (wall,)))
-    assert plain.texel == walled.texel
-    assert seen(walled.matrix, view.box_corners(wall))[:, 2].min() > 0.0
-    assert dark_floor((wall,), np.zeros(3)).shape == (12, 3)
+def test_far_cameras_see_through_the_fog():
+    near, far = (view.clear_air(Camera(np.array([0, 2.0, z]), np.zeros(3))) for z in (5.0, 25.0))
+    assert near == 30.0 and far > 45.0

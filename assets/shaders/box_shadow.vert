@@ -1,6 +1,0 @@
-#include frame.glsl
-#include box.glsl
-
-void main() {
-    gl_Position = vec4((light * vec4(placed(), 1.0)).xyz * 2.0 - 1.0, 1.0);
-}
