@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .ink import Ink
 from .sheet import Sheet
 
 

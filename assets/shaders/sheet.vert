@@ -1,4 +1,4 @@
-#include frame.glsl
+uniform vec2 size;  // of the picture [px]
 in vec4 place;      // per piece: left, top, width, height [px] from the top-left corner
 in vec4 cell;       // per glyph: the same in the atlas, 0 … 1
 in vec4 tint;       // display RGB and opacity
@@ -18,5 +18,5 @@ void main() {
     v_size = place.zw;
     v_tint = tint;
     v_edge = edge;
-    gl_Position = vec4(at.x * viewport.z * 2.0 - 1.0, 1.0 - at.y * viewport.w * 2.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * at.x / size.x - 1.0, 1.0 - 2.0 * at.y / size.y, 0.0, 1.0);
 }

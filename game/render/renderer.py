@@ -68,6 +68,8 @@ class Renderer:
             self.target.masked().clear(*GAP, viewport=whole)
         for scene, (framed, inside) in zip(scenes, parts):
             self._part(scene, framed, inside)
+        for sheet in [scene.sheet for scene in scenes if scene.sheet is not None][-1:]:
+            self.sheet.draw(sheet, self.target.masked())
         self.target.resolve()
 
     def _part(self, scene: Scene, framed: view.Rectangle, inside: view.Rectangle) -> None:
@@ -177,5 +179,4 @@ class Renderer:
         self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)
         self.text.draw(scene.text, scene.panel, scene.caption, inside[2:])
-        self.sheet.draw(scene.sheet, inside[2:])
         ctx.disable(ctx.BLEND)

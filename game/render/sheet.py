@@ -166,15 +166,20 @@ class SheetPass:
         self.fitted: tuple[tuple[int, int], int] | None = None
         self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f 2f/i", "place", "cell", "tint", "edge")])
 
-    def draw(self, sheet: Sheet | None, size: tuple[int, int]) -> None:
-        """Draw over the middle of a picture of `size` pixels."""
-        if sheet is None:
-            return
+    def draw(self, sheet: Sheet, target: Any) -> None:
+        """Draw over the middle of a framebuffer."""
+        ctx, size = self.ctx, target.size
+        target.viewport = (0, 0, *size)
+        target.use()
+        ctx.enable_only(ctx.BLEND)
+        ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
         rows, _ = layout(sheet, size, self._letters(sheet, size))
         rows[:, 4:8] /= np.tile(self.texture.size, 2)
         self.stream.write(rows.tobytes())
         self.texture.use(0)
-        self.array.render(mode=self.ctx.TRIANGLE_STRIP, vertices=4, instances=len(rows))
+        self.program["size"] = size
+        self.array.render(mode=ctx.TRIANGLE_STRIP, vertices=4, instances=len(rows))
+        ctx.disable(ctx.BLEND)
 
     def _letters(self, sheet: Sheet, size: tuple[int, int]) -> int:
         shown = size, len(sheet.pads)  # what lights up changes no size
