@@ -97,7 +97,7 @@ class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
     text: lines for the top-left corner; panel: lines of a centred sheet (pause). sheet: the help
-    sheet, in the middle of the whole picture.
+    sheet, in the middle of the whole picture. ink: panels, over the whole picture.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
 
@@ -109,4 +109,5 @@ class Scene:
     panel: tuple[str, ...] = ()
     caption: Caption | None = None
     sheet: Sheet | None = None
+    ink: Ink | None = None
     part: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)

@@ -11,6 +11,7 @@ from ..scene import Figure, Goal, Scene
 from . import gl, view
 from .figures import Figures, drawable
 from .ground import Ground, touched_floor
+from .ink import InkPass
 from .occlusion import Occluders
 from .overlays import OverlayPass
 from .presets import Preset, preset
@@ -42,7 +43,7 @@ class Renderer:
         self.occluders = Occluders(ctx)
         self.figures, self.solids, self.goals = Figures(ctx, body), Solids(ctx, floor), Goals(ctx)
         self.ground, self.overlays, self.text = Ground(ctx, floor), OverlayPass(ctx), TextPass(ctx)
-        self.sheet = SheetPass(ctx)
+        self.sheet, self.ink = SheetPass(ctx), InkPass(ctx)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -71,6 +72,8 @@ class Renderer:
         for sheet in [scene.sheet for scene in scenes if scene.sheet is not None][-1:]:
             self.sheet.draw(sheet, self.target.masked())
         self.target.resolve()
+        for ink in [scene.ink for scene in scenes if scene.ink is not None]:  # sharp enough without samples
+            self.ink.draw(ink, self.target.resolved)
 
     def _part(self, scene: Scene, framed: view.Rectangle, inside: view.Rectangle) -> None:
         """Draw one scene into the pixels `inside`; a line around them fills what is left of `framed`."""
@@ -125,7 +128,7 @@ class Renderer:
 
     def release(self) -> None:
         """Give back all that was made on the graphics card."""
-        for part in (self.figures, self.solids, self.goals, self.ground, self.overlays, self.text, self.sheet,
+        for part in (self.figures, self.solids, self.goals, self.ground, self.overlays, self.text, self.sheet, self.ink,
                      self.occluders, self.figures_map, self.solids_map, self.frame, self.target):
             part.release()
 

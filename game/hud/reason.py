@@ -1,0 +1,44 @@
+"""Which controller moves a character, and why it does what it does, in a sentence."""
+
+from __future__ import annotations
+
+from ..world import Character
+
+RUN = 1
+"""How the walking controller's memory numbers the running family."""
+
+
+def family(character: Character) -> str:
+    """What a character is at: "walk", "run" or "rest"; "" where its controller knows no such thing."""
+    memory = character.state.memory
+    names = getattr(getattr(memory, "dtype", None), "names", None) or ()
+    if not {"family", "settled"} <= set(names):
+        return ""
+    return "rest" if memory["settled"] else "run" if memory["family"] == RUN else "walk"
+
+
+def reason(character: Character) -> str:
+    """Why a character walks, runs or rests: what was asked against where its gaits change."""
+    gait = family(character)
+    if not gait:
+        status = character.controller.status(character.state)
+        return status.kind + (f": {status.reason}" if status.reason else "")
+    s, asked = character.controller.settings, float(character.intent.velocity[0])
+    reached = float(character.state.memory["command"][0])
+    if gait == "rest":
+        return "rests: nothing is asked of it"
+    if gait == "run":
+        if reached < s.walk_below:
+            return "runs on until the foot stands that walking begins with"
+        if reached <= s.run_above:
+            return f"runs still: {reached:.1f} m/s is not yet below {s.walk_below:.2f} m/s"
+        return f"runs: asked {asked:.1f} m/s is above {s.run_above:.2f} m/s"
+    if reached > s.run_above:
+        return "walks on until the foot stands that running begins with"
+    if asked > s.run_above:
+        return f"speeds up: {reached:.1f} of {asked:.1f} m/s, and runs above {s.run_above:.2f} m/s"
+    if asked > s.walk_below:
+        return f"walks still: {asked:.1f} m/s is not above {s.run_above:.2f} m/s"
+    if not character.intent.velocity.any():
+        return "stops: nothing is asked any more"
+    return f"walks: asked {asked:.1f} m/s is below {s.run_above:.2f} m/s"
