@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .bindings import DEFAULT, JOINING, REWOUND, Bindings, Sticks
+from .bindings import JOINING, REWOUND, Bindings, Sticks
 from .names import TRIGGERS
 from .wish import Wish, unit_disc
 
@@ -36,11 +36,11 @@ class Keyboard:
         """With one key up."""
         return Keyboard(self.down - {key})
 
-    def held(self, action: str, bindings: Bindings = DEFAULT) -> bool:
+    def held(self, action: str, bindings: Bindings) -> bool:
         """Whether any key of an action is down."""
         return not self.down.isdisjoint(bindings.row(action).keys)
 
-    def wish(self, bindings: Bindings = DEFAULT) -> Wish:
+    def wish(self, bindings: Bindings) -> Wish:
         """What the held keys ask for; opposite keys cancel out."""
         def axis(plus: str, minus: str) -> float:
             return float(self.held(plus, bindings)) - float(self.held(minus, bindings))
@@ -49,7 +49,7 @@ class Keyboard:
                     slow=self.held("slow", bindings), strafe=self.held("strafe", bindings))
 
 
-def dead_zone(x: float, y: float, sticks: Sticks = DEFAULT.sticks) -> tuple[float, float]:
+def dead_zone(x: float, y: float, sticks: Sticks) -> tuple[float, float]:
     """A stick's reading within the unit circle: 0 inside the dead zone, rising to 1 where it counts in full.
 
     Radial, so that the direction stays as it is pushed. A reading that is no number counts as 0.
@@ -63,31 +63,31 @@ def dead_zone(x: float, y: float, sticks: Sticks = DEFAULT.sticks) -> tuple[floa
     return x / length * wanted, y / length * wanted
 
 
-def trigger(value: float, sticks: Sticks = DEFAULT.sticks) -> float:
+def trigger(value: float, sticks: Sticks) -> float:
     """A trigger's reading, −1 released … 1 pressed, as 0 … 1 with a dead zone; no number counts as 0."""
     if not math.isfinite(value):
         return 0.0
     return dead_zone(0.5 * (max(value, -1.0) + 1.0), 0.0, replace(sticks, dead_zone=sticks.trigger_dead_zone))[0]
 
 
-def pulls(pad: Any, sticks: Sticks = DEFAULT.sticks) -> dict[str, float]:
+def pulls(pad: Any, sticks: Sticks) -> dict[str, float]:
     """How far the triggers LT and RT are pulled, 0 … 1."""
     return dict(zip(TRIGGERS, (trigger(pad.left_trigger, sticks), trigger(pad.right_trigger, sticks))))
 
 
-def buttons_down(pad: Any, sticks: Sticks = DEFAULT.sticks) -> frozenset[str]:
+def buttons_down(pad: Any, sticks: Sticks) -> frozenset[str]:
     """The buttons of a pad that are down; a trigger that is pulled far enough is one."""
     if pad is None:
         return frozenset()
     return pad.buttons | {name for name, pull in pulls(pad, sticks).items() if pull > PULLED}
 
 
-def pad_held(pad: Any, action: str, bindings: Bindings = DEFAULT) -> bool:
+def pad_held(pad: Any, action: str, bindings: Bindings) -> bool:
     """Whether any button of an action is down."""
     return not buttons_down(pad, bindings.sticks).isdisjoint(bindings.row(action).buttons)
 
 
-def pad_wish(pad: Any, bindings: Bindings = DEFAULT) -> Wish:
+def pad_wish(pad: Any, bindings: Bindings) -> Wish:
     """What a gamepad asks for."""
     if pad is None:
         return Wish()
@@ -108,7 +108,7 @@ def pad_wish(pad: Any, bindings: Bindings = DEFAULT) -> Wish:
                 run=max([float(pressed), *pulled]), slow=held("slow"), strafe=held("strafe"))
 
 
-def pad_pressed(before: Any, after: Any, bindings: Bindings = DEFAULT, mode: str = "") -> tuple[str, ...]:
+def pad_pressed(before: Any, after: Any, bindings: Bindings, mode: str = "") -> tuple[str, ...]:
     """The actions that the buttons gone down between two states of a pad set off.
 
     A pad that has just been plugged in sets off nothing: what is down then was not pressed here.
@@ -146,7 +146,7 @@ def mode_of(slot: int | None, pads: Sequence[Any], players: int, rewound: bool =
     return JOINING if players < PLAYERS and (slot is None or slot != first) else ""
 
 
-def wishes(keyboard: Keyboard, pads: Sequence[Any], players: int, bindings: Bindings = DEFAULT) -> tuple[Wish, ...]:
+def wishes(keyboard: Keyboard, pads: Sequence[Any], players: int, bindings: Bindings) -> tuple[Wish, ...]:
     """What the held controls ask for, one wish for each player."""
     asked = []
     for player, slots in enumerate(drivers(pads, players)):
@@ -157,7 +157,7 @@ def wishes(keyboard: Keyboard, pads: Sequence[Any], players: int, bindings: Bind
     return tuple(asked)
 
 
-def mouse_wish(dx: float, dy: float, keyboard: Keyboard, bindings: Bindings = DEFAULT, captured: bool = False) -> Wish:
+def mouse_wish(dx: float, dy: float, keyboard: Keyboard, bindings: Bindings, captured: bool = False) -> Wish:
     """What a movement of the mouse by parts of the window's height asks for; nothing unless it drags.
 
     captured: the mouse has no pointer, and every movement turns the camera.

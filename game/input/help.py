@@ -33,7 +33,7 @@ def help_sheet(bindings: Bindings, keyboard: Keyboard = Keyboard(), pads: Sequen
     shown = tuple(_pad(slot, pads, players, bindings) for slot, pad in enumerate(pads) if pad is not None)
     waiting = players > 1 and not all(drivers(pads, players)[1:])
     if not shown:
-        note = "no pad is plugged in" + (": player 2 waits for one" if waiting else "; one may be at any time")
+        note = "no pad is plugged in" + (": player 2 waits for one" if waiting else "; plug one in at any time")
     else:
         note = "player 2 waits for a pad" if waiting else ""
     return Sheet("Controls", (left, right), shown, note)

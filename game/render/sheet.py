@@ -58,8 +58,7 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
     """
     font = atlas(letters)
     unit, inner = font.line, _Pen(font)
-    width, bottom = 0.0, 1.6 * unit
-    tall = 0.0
+    width, tall, bottom = 0.0, 0.0, 1.6 * unit
     for table in sheet.tables:
         left = width + (BETWEEN * unit if width else 0.0)
         width = left + _table(inner, table, left, bottom)
@@ -72,10 +71,11 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
     half = 0.5 * (width + BETWEEN * unit)
     for i, pad in enumerate(sheet.pads):
         row, column = divmod(i, 2)
-        end = _pad(inner, pad, column * half, bottom + row * (DIAL + 1.6) * unit)
-        width = max(width, end)
-    bottom += math.ceil(len(sheet.pads) / 2) * (DIAL + 1.6) * unit
+        width = max(width, _pad(inner, pad, column * half, bottom + row * (DIAL + 1.8) * unit))
+    if sheet.pads:
+        bottom += (math.ceil(len(sheet.pads) / 2) * (DIAL + 1.8) - 0.6) * unit
     if sheet.note:
+        bottom += 0.5 * unit * bool(sheet.pads)
         inner.write(sheet.note, 0.0, bottom, DIM)
         bottom += unit
     outer = _Pen(font)

@@ -9,9 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from game.hosts.events import PadState
-from game.input import (DEFAULT, JOINING, REWOUND, Keyboard, Pilot, Sticks, Wish, dead_zone, drivers, mode_of, mouse_wish,
-                        pad_held, pad_pressed, pad_wish, player_of, wheel_wish, wishes)
-from game.input.devices import trigger
+from game.input import DEFAULT, JOINING, REWOUND, Keyboard, Pilot, Sticks, Wish, devices, drivers, mode_of, player_of, wheel_wish
 from game.input.names import PAD_BUTTONS
 from game.input.remap import remapped
 from stand_in import Glide
@@ -19,6 +17,26 @@ from stand_in import Glide
 INNER, OUTER = DEFAULT.sticks.dead_zone, DEFAULT.sticks.full
 stick = st.floats(-1, 1)
 anything = st.floats(allow_nan=True, allow_infinity=True)
+
+
+def dead_zone(x, y, sticks=DEFAULT.sticks):
+    return devices.dead_zone(x, y, sticks)
+
+
+def pad_wish(pad, bindings=DEFAULT):
+    return devices.pad_wish(pad, bindings)
+
+
+def pad_pressed(before, after, bindings=DEFAULT, mode=""):
+    return devices.pad_pressed(before, after, bindings, mode)
+
+
+def wishes(keyboard, pads, players):
+    return devices.wishes(keyboard, pads, players, DEFAULT)
+
+
+def mouse_wish(dx, dy, keyboard, captured=False):
+    return devices.mouse_wish(dx, dy, keyboard, DEFAULT, captured)
 
 
 def pad(left=(0.0, 0.0), right=(0.0, 0.0), triggers=(-1.0, -1.0), *buttons, slot=0):
@@ -66,7 +84,7 @@ def test_a_curve_is_finer_in_the_middle():
 
 def test_readings_that_are_no_numbers_count_as_rest():
     assert pad_wish(pad((math.nan, 1.0), (math.inf, 0.0), (math.inf, math.nan))) == Wish()
-    assert trigger(-1.0) == 0 and trigger(1.0) == 1
+    assert devices.trigger(-1.0, DEFAULT.sticks) == 0 and devices.trigger(1.0, DEFAULT.sticks) == 1
 
 
 @given(st.tuples(*[anything] * 6), st.sets(st.sampled_from(PAD_BUTTONS)))
@@ -79,13 +97,13 @@ def test_whatever_a_pad_says_is_a_wish_in_bounds(axes, buttons):
 
 @given(st.sets(st.sampled_from([key for row in DEFAULT if row.held for key in row.keys])))
 def test_no_keys_are_faster_than_one(keys):
-    assert math.hypot(*Keyboard(frozenset(keys)).wish().move) <= 1 + 1e-12
+    assert math.hypot(*Keyboard(frozenset(keys)).wish(DEFAULT).move) <= 1 + 1e-12
 
 
 def test_keys_cancel_out_and_let_go():
     board = Keyboard().press("W").press("S").press("LEFT_SHIFT")
-    assert board.wish() == Wish(run=1.0)
-    assert board.release("S").wish().move == (0.0, 1.0)
+    assert board.wish(DEFAULT) == Wish(run=1.0)
+    assert board.release("S").wish(DEFAULT).move == (0.0, 1.0)
     assert board.release("never pressed") == board
 
 
@@ -114,7 +132,8 @@ def test_triggers_are_buttons_that_also_tell_how_far():
     assert pad_wish(pad(triggers=(1.0, -1.0)), other).run == 1.0
     assert pad_wish(pad((0, 0), (0, 0), (-1, -1), "X", "UP"), other) == Wish(strafe=True, move=(0.0, 1.0))
     assert pad_pressed(pad(), pad(triggers=(-1.0, 1.0)), other) == ("pause",)
-    assert pad_held(pad((0, 0), (0, 0), (-1, -1), "X"), "rewind") and not pad_held(pad(), "rewind")
+    held = [devices.pad_held(p, "rewind", DEFAULT) for p in (pad((0, 0), (0, 0), (-1, -1), "X"), pad(), None)]
+    assert held == [True, False, False]
 
 
 def test_remapped_keys_walk_and_the_old_ones_do_not():
