@@ -59,6 +59,8 @@ class Play:
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
         self.clock, self.held, self.unsaved = FixedStep(), 0.0, 0.0
+        self.hud: Any = None
+        self.undrawn = 0.0  # seconds since panels were drawn
         self.look: Look | None = None
         self.filming: int | None = None
         self.notices: list[tuple[float, str]] = []
@@ -98,6 +100,8 @@ class Play:
 
     def handle(self, event: Event) -> None:
         """Take one event from the host; those that mean nothing here are ignored."""
+        if self.panels and self.hud is not None and self.hud.handle(event):
+            return
         rewound = self.look is not None
         match event:
             case KeyEvent(key, True):
@@ -125,6 +129,9 @@ class Play:
             self.panels = frozenset() if self.panels else frozenset(PANELS)
         elif action.removesuffix("_panel") in PANELS and action.endswith("_panel"):
             self.panels ^= {action.removesuffix("_panel")}
+        elif action.startswith("look="):
+            behind = int(action.removeprefix("look="))
+            self.look = (self.look or Look()).to(behind, len(self.timeline.past))
         elif action == "help":
             self.helping = not self.helping
         elif action == "full_screen":
@@ -172,6 +179,7 @@ class Play:
     def tick(self, seconds: float) -> None:
         """Let `seconds` of real time pass, in whole ticks."""
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
+        self.undrawn = self.undrawn + seconds if self.panels else 0.0
         self.notices = [(left - seconds, text) for left, text in self.notices if left > seconds]
         for line in self.studio.tend() if self.studio is not None else ():
             self.say(line)
@@ -305,6 +313,9 @@ class Play:
         self.save()
         if self.log is not None:
             self.log.close()
+        if self.hud is not None:
+            self.hud.release()
+            self.hud = None
 
     # --- the picture
 
@@ -320,7 +331,24 @@ class Play:
             sheet = help_sheet(self.bindings, self.keyboard, self.pads, self.players)
             views = tuple(replace(view, text=()) for view in views)
             views = (replace(views[0], sheet=sheet), *views[1:])
+        if self.panels and not self.helping:
+            views = (self._with_panels(views[0], size), *views[1:])
         return views[0] if len(views) == 1 else views
+
+    def _with_panels(self, view: Scene, size: tuple[int, int]) -> Scene:
+        """The first player's view under the open panels, whose buttons and sliders are obeyed."""
+        if self.hud is None:
+            from .hud import Hud  # loads ImGui, for those only who open a panel
+
+            self.hud = Hud()
+        seconds, self.undrawn = self.undrawn, 0.0
+        moment, behind = self.moment, self.look.behind if self.look else 0
+        ink, actions = self.hud.frame(self.panels, self.history, self.now, behind, len(self.timeline.past), size, seconds)
+        for action in actions:
+            self.do(action, self.hud.who)
+        # the strip tells of looking back, pause and slow motion
+        text = (view.text[0], *(text for _, text in self.notices)) if view.text else ()
+        return replace(view, ink=ink, text=text, figures=view.figures + self.hud.ghosts(view.figures, moment))
 
     def _shown(self, alpha: float) -> tuple[Moment, float, tuple[Camera, ...]]:
         """The moment to draw, how far it is between its worlds, and from where each player sees it."""
