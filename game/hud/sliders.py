@@ -16,13 +16,14 @@ from .toolkit import imgui
 
 
 @lru_cache(maxsize=None)
-def meaning(owner: type) -> dict[str, str]:
-    """What a class's docstring says of each of its fields: sentences that begin "one, other: …"."""
+def meaning(owner: type, field: str) -> str:
+    """What a class's docstring says of one of its fields: "one, other: …", or the sentence that names it."""
     text = " ".join((owner.__doc__ or "").split())
-    said: dict[str, str] = {}
     for names, words in re.findall(r"((?:\w+, )*\w+): (.*?[^\d])(?:[.](?= |$)|$)", text):
-        said |= {name: words for name in names.split(", ")}
-    return said
+        if field in names.split(", "):
+            return words
+    sentences = re.split(r"(?<=\D)[.] ", text)
+    return next((s for s in sentences if re.search(rf"\b{field}\b", s)), sentences[0]).rstrip(".")
 
 
 def draw(moment: Moment, who: int, scale: float) -> list[str]:
@@ -64,7 +65,7 @@ class Row:
         if value is None or not math.isfinite(value):
             return None
         kind = type(held[owner])
-        return Row(setting, float(value), float(getattr(kind(), field)), meaning(kind).get(field, ""))
+        return Row(setting, float(value), float(getattr(kind(), field)), meaning(kind, field))
 
     @property
     def differs(self) -> bool:
