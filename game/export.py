@@ -15,7 +15,7 @@ import numpy as np
 
 from controllers.body import Pose, Skeleton, forward_kinematics
 
-from .character import write as glb
+from . import character as glb
 from .output import OutputError, output_file
 from .recorder import motion_clip, write_motion
 from .render import skin

@@ -2,5 +2,7 @@
 
 from .bind import load
 from .gltf import CharacterError
+from .tailor import Build, BuildError, tailored
+from .write import Actor, Motion, joints_of, write
 
-__all__ = ["CharacterError", "load"]
+__all__ = ["Actor", "Build", "BuildError", "CharacterError", "Motion", "joints_of", "load", "tailored", "write"]

@@ -106,7 +106,7 @@ def _primitive(document, primitive, skin, node, world) -> Surface:
         raise ValueError("a triangle names a vertex that is not there")
     if not np.isfinite(at).all():
         raise ValueError("a vertex is not at a finite place")
-    normals = document.accessor(attributes["NORMAL"]).astype(float) if "NORMAL" in attributes else _smooth(at, faces)
+    normals = document.accessor(attributes["NORMAL"]).astype(float) if "NORMAL" in attributes else smooth(at, faces)
     if skin is None:
         bones, weights = np.full((count, 1), node), np.ones((count, 1))
         at, normals = _moved(at, normals, world[node])
@@ -147,7 +147,8 @@ def unit(v: np.ndarray) -> np.ndarray:
     return np.where(length > 1e-12, v / np.maximum(length, 1e-12), [0.0, 1.0, 0.0])
 
 
-def _smooth(at, faces):
+def smooth(at: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Unit normals (V, 3) of vertices: those of the triangles around, by their area."""
     a, b, c = (at[faces[:, i]] for i in range(3))
     face, out = np.cross(b - a, c - a), np.zeros_like(at)
     for i in range(3):
