@@ -1,0 +1,183 @@
+"""A jumper's body as masses: centre of mass and momenta, compiled for the loops of a plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from ..body import Skeleton, human
+from ..body.anatomy import Anatomy, anatomy
+from ..body.contact import contact_height, heel_offset
+from ..body.human import STATURE
+from ..compiled import kernel
+
+GRAVITY = np.array([0.0, -9.81, 0.0])
+"""On Earth [m/s²]."""
+
+
+@dataclass(frozen=True)
+class Physique:
+    """Whose body jumps: mass [kg], height [m], strength and flexibility as shares of an adult's, sex.
+
+    Strength counts per kilogram: 1 is an adult who jumps 0.4 m high.
+    ValueError for values that no body has.
+    """
+
+    mass: float = 73.0
+    height: float = STATURE
+    strength: float = 1.0
+    flexibility: float = 1.0
+    sex: Literal["male", "female"] = "male"
+
+    def __post_init__(self):
+        for name, low, high in (("mass", 5.0, 400.0), ("height", 0.5, 3.0), ("strength", 0.05, 20.0),
+                                ("flexibility", 0.3, 2.0)):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise ValueError(f"{name} must be within {low:g} … {high:g}, got {value!r}")
+
+    @cached_property
+    def skeleton(self) -> Skeleton:
+        """The standard human at this height."""
+        return human(self.height)
+
+    @cached_property
+    def anatomy(self) -> Anatomy:
+        """Its masses (de Leva 1996)."""
+        return anatomy(self.skeleton, self.mass, self.sex)
+
+    @cached_property
+    def tables(self) -> BodyTables:
+        """The same for compiled loops."""
+        skeleton, masses = self.skeleton, self.anatomy
+        hip = np.array([skeleton.index("LeftUpLeg"), skeleton.index("RightUpLeg")])
+        offsets = skeleton.offsets
+        return BodyTables(
+            skeleton.parents, offsets, masses.joints, masses.masses, masses.centres, masses.inertias, self.mass,
+            hip, -offsets[hip[0] + 1, 1], -offsets[hip[0] + 2, 1], offsets[hip[0] + 3], heel_offset(skeleton),
+            skeleton.end_offsets[skeleton.end_index["LeftToe"]], contact_height(skeleton))
+
+
+class BodyTables(NamedTuple):
+    """A body for compiled loops. Joints of a leg follow each other: hip, knee, ankle, ball.
+
+    parents, offsets: of the skeleton. joint, mass, centre, inertia: of the segments. hip: (2,)
+    numbers of the hip joints. thigh, shank: [m]. toe, heel: ball and heel in the foot's frame.
+    tip: the toes' end in the toe's frame. sole: how high balls and heels stand [m].
+    """
+
+    parents: np.ndarray
+    offsets: np.ndarray
+    joint: np.ndarray
+    mass: np.ndarray
+    centre: np.ndarray
+    inertia: np.ndarray
+    total: float
+    hip: np.ndarray
+    thigh: float
+    shank: float
+    toe: np.ndarray
+    heel: np.ndarray
+    tip: np.ndarray
+    sole: float
+
+
+@kernel
+def place_kernel(body, root, local, positions, orientations):
+    """Forward kinematics of one body: positions (J, 3), orientations (J, 3, 3)."""
+    for j in range(local.shape[0]):
+        p = body.parents[j]
+        if p < 0:
+            positions[j] = root
+            orientations[j] = local[j]
+            continue
+        for i in range(3):
+            a, b, c = orientations[p, i, 0], orientations[p, i, 1], orientations[p, i, 2]
+            positions[j, i] = positions[p, i] + a * body.offsets[j, 0] + b * body.offsets[j, 1] + c * body.offsets[j, 2]
+            for k in range(3):
+                orientations[j, i, k] = a * local[j, 0, k] + b * local[j, 1, k] + c * local[j, 2, k]
+
+
+@kernel
+def centre_kernel(body, positions, orientations, out):
+    """Write the whole body's centre of mass (3,) [m]."""
+    out[:] = 0.0
+    for s in range(len(body.mass)):
+        j = body.joint[s]
+        for i in range(3):
+            at = positions[j, i]
+            for k in range(3):
+                at += orientations[j, i, k] * body.centre[s, k]
+            out[i] += body.mass[s] / body.total * at
+
+
+@kernel
+def momentum_kernel(body, before, turned_before, after, turned_after, dt, angular, inertia):
+    """Angular momentum (3,) [kg m²/s] about the centre of mass over the step between two placements,
+    and the whole body's inertia (3, 3) [kg m²] about it in the middle of the step.
+
+    Each segment's mean velocity and mean angular velocity over the step count, so that a motion
+    whose steps conserve this conserves it to rounding, however long the steps are.
+    """
+    angular[:] = 0.0
+    inertia[:] = 0.0
+    first, second, mean, rate = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
+    centre_kernel(body, before, turned_before, first)
+    centre_kernel(body, after, turned_after, second)
+    turn = np.empty((3, 3))
+    middle = np.empty((3, 3))
+    for s in range(len(body.mass)):
+        j, m = body.joint[s], body.mass[s]
+        for i in range(3):
+            a, b = before[j, i], after[j, i]
+            for k in range(3):
+                a += turned_before[j, i, k] * body.centre[s, k]
+                b += turned_after[j, i, k] * body.centre[s, k]
+            a -= first[i]
+            b -= second[i]
+            mean[i], rate[i] = 0.5 * (a + b), (b - a) / dt
+        angular[0] += m * (mean[1] * rate[2] - mean[2] * rate[1])
+        angular[1] += m * (mean[2] * rate[0] - mean[0] * rate[2])
+        angular[2] += m * (mean[0] * rate[1] - mean[1] * rate[0])
+        square = mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2
+        for i in range(3):
+            inertia[i, i] += m * square
+            for k in range(3):
+                inertia[i, k] -= m * mean[i] * mean[k]
+                turn[i, k] = 0.0
+                middle[i, k] = 0.5 * (turned_before[j, i, k] + turned_after[j, i, k])
+                for n in range(3):
+                    turn[i, k] += turned_after[j, i, n] * turned_before[j, k, n]
+        log_kernel(turn, rate)
+        # the segment's own inertia, turned into the world: R I Rᵀ
+        own = middle @ body.inertia[s] @ middle.T
+        for i in range(3):
+            for k in range(3):
+                inertia[i, k] += own[i, k]
+                angular[i] += own[i, k] * rate[k] / dt
+
+
+@kernel
+def log_kernel(matrix, out):
+    """Write the rotation vector (3,) [rad] of a rotation matrix (3, 3) by less than half a turn."""
+    x, y, z = matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]
+    sine = 0.5 * np.sqrt(x * x + y * y + z * z)
+    cosine = 0.5 * (matrix[0, 0] + matrix[1, 1] + matrix[2, 2] - 1.0)
+    scale = 0.5 if sine < 1e-9 else 0.5 * np.arctan2(sine, cosine) / sine
+    out[0], out[1], out[2] = scale * x, scale * y, scale * z
+
+
+@kernel
+def exp_kernel(x, y, z, out):
+    """Write the rotation matrix (3, 3) of a rotation vector [rad]."""
+    angle = np.sqrt(x * x + y * y + z * z)
+    if angle < 1e-8:
+        s, c = 1.0 - angle * angle / 6.0, 0.5
+    else:
+        s, c = np.sin(angle) / angle, (1.0 - np.cos(angle)) / (angle * angle)
+    out[0, 0], out[0, 1], out[0, 2] = 1.0 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y
+    out[1, 0], out[1, 1], out[1, 2] = c * x * y + s * z, 1.0 - c * (x * x + z * z), c * y * z - s * x
+    out[2, 0], out[2, 1], out[2, 2] = c * x * z - s * y, c * y * z + s * x, 1.0 - c * (x * x + y * y)

@@ -1,0 +1,205 @@
+"""The path estimate (Ooi 2015, 3.1.1): where the centre of mass goes, from the lowest point of the
+wind-up over take-off to landing, and what stops a body from going there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..body.rotations import yaw
+from . import style
+from .ballistics import apex_airtime, least_effort, take_off_velocity
+from .dynamics import BodyTables, Physique
+from .posture import stand_kernel
+from .thrust import Push, push
+
+HEEL_UP, TOES_DOWN = 0.70, 0.30
+"""How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
+FLEX = np.radians(38.0)
+"""How far a loaded ankle bends [rad]; times flexibility."""
+TAKE_OFF_REACH, TOUCH_REACH, STAND_REACH = 0.965, 0.955, 0.98
+"""How straight legs are, as shares of their length, as they take off, touch down, stand."""
+HALF_STANCE, SHOE = 0.10, 0.045
+"""From the middle to a landing foot, and from a foot's line to the edge of its sole [m], at standard height."""
+MOST_LEAD = 0.62
+"""How far ahead of its foot a body may leave the floor, as a share of the leg."""
+LEAST_AIRTIME = 0.30
+"""Shorter flights look like stumbling [s]; on Earth, at standard height."""
+
+
+class Refused(ValueError):
+    """A jump that this body can't make; the message says why. nearest: a place (3,) [m] that it can reach."""
+
+    def __init__(self, reason: str, nearest: np.ndarray | None = None):
+        super().__init__(reason)
+        self.nearest = nearest
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """From where a jump starts.
+
+    root: (3,) [m], rotations: (J, 3, 3) of the pose. rates: (J, 3) [rad/s] how fast the joints turn,
+    each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet: (2, 5)
+    ball x, y, z [m], yaw, pitch [rad]. heading [rad]. single: the foot that pushes off a run, 0 left
+    or 1 right; None for both.
+    """
+
+    root: np.ndarray
+    rotations: np.ndarray
+    rates: np.ndarray
+    centre: np.ndarray
+    velocity: np.ndarray
+    feet: np.ndarray
+    heading: float
+    single: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at
+    the lowest point and at take-off, the flight's and the wind-up's time [s], the push between."""
+
+    low: np.ndarray
+    leave: np.ndarray
+    land: np.ndarray
+    passing: np.ndarray
+    velocity: np.ndarray
+    airtime: float
+    wind_up: float
+    gravity: np.ndarray
+    push: Push
+
+    @property
+    def falling(self) -> np.ndarray:
+        """The velocity (3,) [m/s] at landing."""
+        return self.velocity + self.gravity * self.airtime
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Heights [m] of a body's centre of mass over the floor: standing, as it takes off, as it touches down."""
+
+    stand: float
+    leave: float
+    touch: float
+
+
+@lru_cache(maxsize=64)
+def measures(physique: Physique) -> Measures:
+    """The heights of the centre of mass of a body over its own feet."""
+    feet = landing_feet(np.zeros(3), 0.0, physique.tables)
+    found = []
+    for angles, pitch, share in ((style.STAND, 0.0, STAND_REACH), (style.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH),
+                                 (style.TOUCH, TOES_DOWN, TOUCH_REACH)):
+        found.append(_height(physique, angles, pitch, share, feet))
+    return Measures(*found)
+
+
+def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray) -> float:
+    """The centre of mass's height over two feet, the legs `share` of their length."""
+    body, skeleton = physique.tables, physique.skeleton
+    local = np.tile(np.eye(3), (len(skeleton), 1, 1))
+    positions, turned = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3))
+    style.carry_kernel(angles, style.joints_of(skeleton), local)
+    local[0] = Rotation.from_rotvec([angles[0], 0.0, 0.0]).as_matrix()
+    free = np.column_stack([feet[:, :4], [pitch, pitch], [0.0, 0.0]])
+    tilt = np.stack([yaw(f[3]) @ Rotation.from_rotvec([f[4], 0.0, 0.0]).as_matrix() for f in free])
+    ankles = free[:, :3] - tilt @ body.toe
+    centre = np.array([0.0, body.sole + 1.1 * (body.thigh + body.shank), 0.0])
+    root = centre.copy()
+    for _ in range(40):
+        stand_kernel(body, centre, free.copy(), 1.0, root, local, positions, turned)
+        line = positions[body.hip] - ankles
+        wanted = np.sqrt((share * (body.thigh + body.shank)) ** 2 - line[:, 0] ** 2 - line[:, 2] ** 2)
+        centre[1] += (wanted - line[:, 1]).min()
+    return float(centre[1])
+
+
+def soles(feet: np.ndarray, body: BodyTables) -> np.ndarray:
+    """The corners (4 F, 3) [m] of the soles of flat feet (F, 5): heels and tips."""
+    half = SHOE * body.sole / 0.02
+    corners = [(side * half, -body.sole, along) for along in (body.heel[2] - body.toe[2], body.tip[2])
+               for side in (-1.0, 1.0)]
+    return np.concatenate([foot[:3] + np.array(corners) @ yaw(foot[3]).T for foot in feet])
+
+
+def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndarray:
+    """Two feet (2, 5) whose soles' middle is at `place` (3,), toes slightly out."""
+    middle = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])
+    feet = np.zeros((2, 5))
+    for side, sign in enumerate((1.0, -1.0)):
+        feet[side, 3] = heading + sign * 0.08
+        ball = np.array([sign * HALF_STANCE * body.sole / 0.02, body.sole, 0.0])
+        feet[side, :3] = place + yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
+    return feet
+
+
+def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray, floor: float,
+         gravity: np.ndarray, airtime: float | None = None) -> Path:
+    """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
+
+    airtime: [s], or None for the least effort. Where it lies between, the crouch gives as much
+    way as the push needs for `style` and muscles; see `windup`.
+    """
+    body, heights = physique.tables, measures(physique)
+    size = body.sole / 0.02
+    ground = soles(feet, body)
+    middle, goal = ground.mean(0), soles(landing, body).mean(0)
+    flat = (goal - middle) * [1.0, 0.0, 1.0]
+    far = float(np.linalg.norm(flat))
+    towards = flat / far if far > 1e-6 else np.zeros(3)
+    running = start.single is not None
+    passing = start.velocity * [1.0, 0.0, 1.0] if running else np.zeros(3)
+    reach = ((ground - middle) @ towards)
+    ahead, behind = float(reach.max()) - 0.01, -float(reach.min()) - 0.01
+    g = -float(gravity[1])
+    wind_up = 0.10
+    low = start.centre + start.velocity * wind_up * [1.0, 0.0, 1.0]
+    stance = feet[:, :3].mean(0) * [1.0, 0.0, 1.0]
+    leave = middle * [1, 0, 1] + [0.0, floor + heights.leave, 0.0]
+    trail, deep = 0.0, 0.1
+    for _ in range(6):
+        land = goal * [1, 0, 1] - trail * towards + [0.0, goal[1] + _over(heights.touch, trail), 0.0]
+        flight = airtime if airtime is not None else max(
+            least_effort(leave, land, passing, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
+            apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
+        velocity = take_off_velocity(leave, land, flight, gravity)
+        speed = float(velocity @ towards)
+        trail = min(0.30 * size, max(0.16 * speed, 0.0))
+        if running:
+            deep = 0.06 * size
+            height = min(start.centre[1] - 0.02 * size, floor + heights.stand - deep)
+            way = (passing + velocity * [1, 0, 1]) * 0.5
+            pushed = push(np.array([0.0, leave[1] - height, 0.0]), np.zeros(3), velocity, gravity)
+            low = low * [1, 0, 1] + [0.0, height, 0.0]
+            ahead_of = low + way * pushed.duration - stance
+            ahead_of[1] = 0.0
+            lead = float(np.linalg.norm(ahead_of))
+            ahead_of *= min(1.0, MOST_LEAD * (body.thigh + body.shank) / max(lead, 1e-9))
+            leave = stance + ahead_of
+            leave[1] = floor + _over(heights.leave, np.linalg.norm(ahead_of))
+        else:
+            rise = leave[1] - floor - heights.stand
+            deep = depth(physique, float(velocity[1]), rise, g)
+            need = 0.45 * push(np.array([0.0, deep + rise, 0.0]), np.zeros(3), velocity, gravity).duration * speed
+            lead = min(ahead, 0.5 * need + 0.5 * max(ahead - behind, 0.0))
+            leave = middle * [1, 0, 1] + lead * towards + [0.0, floor + _over(heights.leave, lead), 0.0]
+            low = leave * [1, 0, 1] - towards * min(need, lead + behind) + [0.0, floor + heights.stand - deep, 0.0]
+            wind_up = 0.34 + 0.9 * np.sqrt(max(start.centre[1] - low[1], 0.0) / max(g, 3.0))
+    return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
+                push(leave - low, passing, velocity, gravity))
+
+
+def depth(physique: Physique, velocity: float, rise: float, gravity: float) -> float:
+    """How deep [m] a body crouches so that its push brings it to `velocity` [m/s] upward."""
+    return max(velocity**2 / (2.0 * 0.85 * max(gravity, 3.0)) - rise, 0.07)
+
+
+def _over(height: float, aside: float) -> float:
+    """How high a centre of mass stands that leans `aside` from where it would stand `height` [m] high."""
+    return float(np.sqrt(max(height**2 - aside**2, 0.25 * height**2)))

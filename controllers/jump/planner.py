@@ -1,0 +1,292 @@
+"""Planning a jump: path, wind-up, push, flight and landing, one after the other, and a pose for each moment.
+
+Where the centre of mass goes is decided first; trunk, arms and head are carried by `style`, legs
+follow from where the feet are, and in the air the turning of the whole body follows from its momentum.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+from scipy.spatial.transform import Rotation
+
+from ..body.rotations import exp, log, wrap, yaw
+from ..compiled import kernel
+from . import style
+from .dynamics import BodyTables, Physique, exp_kernel, momentum_kernel, place_kernel
+from .flight import flight_kernel
+from .landing import TIME, absorb
+from .path import FLEX, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, path, soles
+from .plan import Plan
+from .posture import stand_kernel
+
+GROUND_RATE, PUSH_RATE, AIR_RATE = 80.0, 240.0, 120.0
+"""Poses a second over planted feet, during the push, in the air."""
+PLANT = 0.09
+"""From the toes' landing to the heels' [s]."""
+FADE = 0.14
+"""Half-life with which the start's pose gives way to the jump's [s]."""
+STEADY = 0.12
+"""Half-life with which the pelvis loses the turn it landed with [s]."""
+FOOT_FADE = 0.05
+"""Half-life with which feet settle flat where they stand [s]."""
+FREE = -1.0
+"""A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
+ROUNDS, CLOSE = 5, 0.02
+"""At most so many flights are tried until the body lands this upright [rad]."""
+
+
+def plan(physique: Physique, start: Start, place: np.ndarray, floor: float, gravity: np.ndarray,
+         airtime: float | None = None) -> Plan:
+    """The whole jump from `start`, off a floor at height `floor` [m], to a `place` (3,) [m] under the feet.
+
+    gravity: (3,) [m/s²]. airtime: [s], or None for the least effort. Checks nothing: see `reach`.
+    """
+    body = physique.tables
+    landing = landing_feet(np.asarray(place, float), start.heading, body)
+    pushing = slice(0, 2) if start.single is None else slice(start.single, start.single + 1)
+    planted = start.feet.copy()
+    planted[:, 1], planted[:, 4] = floor + body.sole, 0.0
+    way = path(physique, start, planted[pushing], landing, floor, gravity, airtime)
+    return _Draft(physique, start, way, planted, landing, gravity).plan()
+
+
+class _Draft:
+    """One plan in the making: what its parts share."""
+
+    def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray,
+                 gravity: np.ndarray):
+        self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
+        self.planted, self.landing, self.gravity = planted, landing, gravity
+        self.joints = style.joints_of(physique.skeleton)
+        self.count = len(physique.skeleton)
+        self.flex = FLEX * physique.flexibility
+        self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
+        self.off = way.wind_up
+        self.leave = self.off + way.push.duration
+        self.down = self.leave + way.airtime
+        self.keys = np.array([0.0, self.off, self.leave, self.leave + 0.45 * way.airtime, self.down,
+                              self.down + 0.28, self.down + TIME])
+        self.shapes = style.shapes(np.linalg.norm(way.velocity - way.passing), np.linalg.norm(way.falling),
+                                   start.single is not None)
+
+    def plan(self) -> Plan:
+        """Everything, in order."""
+        self._prepare_ground()
+        self._prepare_air()
+        spin = self._fly()
+        self._stand(spin, 0)
+        after, landed = self._land()
+        way, mass, g = self.way, self.physique.mass, self.gravity
+        contacts = np.zeros((len(self.times) + len(self.flying) - 1 + len(after), 4), bool)
+        heel_up = self.feet[:, :, 4] > 0.03
+        on = self.feet[:, :, 5] >= 0.0
+        contacts[:len(self.times), 1::2], contacts[:len(self.times), ::2] = on, on & ~heel_up
+        contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, (after > PLANT)[:, None]
+        flying = self.flying[1:]
+        return Plan(
+            np.concatenate([self.times, self.leave + flying, self.down + after]),
+            np.concatenate([self.roots, self.air_roots[1:], landed[0]]),
+            np.concatenate([self.local, self.air[1:], landed[1]]),
+            np.concatenate([self.centres, self.arc[1:], landed[2]]),
+            np.concatenate([self.velocities, way.velocity + g * flying[:, None], landed[3]]),
+            mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
+            contacts, self.off, self.leave, self.down, self.down + 0.28, self.landing, self.momentum.copy(), way)
+
+    def _prepare_ground(self) -> None:
+        """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
+        way, start = self.way, self.start
+        before = np.linspace(0.0, self.off, max(int(np.ceil(self.off * GROUND_RATE)), 3) + 1)
+        pushing = np.linspace(0.0, way.push.duration, max(int(np.ceil(PUSH_RATE * way.push.duration)), 8) + 1)[1:]
+        c, v, a = quintic(start.centre, start.velocity, np.zeros(3), way.low, way.passing,
+                          way.push.force(np.array(0.0)) + self.gravity, before)
+        gone, speed = way.push.moved(pushing, way.passing)
+        self.times = np.concatenate([before, self.off + pushing])
+        self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
+        self.forces = np.concatenate([a - self.gravity, way.push.force(pushing)])
+        self.angles = style.keyed(self.keys, self.shapes, self.times)
+        self._leftovers()
+        share = np.clip((self.times - self.off) / way.push.duration, 0.0, 1.0)
+        late = np.clip((share - 0.45) / 0.55, 0.0, 1.0)
+        self.nudge = (share**3 - share**2)[:, None] * way.push.duration
+        self.feet = np.ones((len(self.times), 2, 6))
+        fade = 2.0 ** (-self.times / FOOT_FADE)[:, None, None]
+        self.feet[..., :5] = self.planted + (start.feet - self.planted) * fade
+        self.feet[..., 4] += (HEEL_UP * late**2 * (3.0 - 2.0 * late))[:, None]
+        self.pitches = self.feet[..., 4].copy()
+        self.roots = np.empty((len(self.times), 3))
+        self.local = np.tile(np.eye(3), (len(self.times), self.count, 1, 1))
+        if start.single is not None:
+            swing = 1 - start.single
+            self.feet[:, swing, 5] = FREE
+            self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
+
+    def _leftovers(self) -> None:
+        """What the start's pose differs by from the carried one, fading: of the joints, of the pelvis' turn."""
+        start, local = self.start, np.tile(np.eye(3), (self.count, 1, 1))
+        style.carry_kernel(self.angles[0], self.joints, local)
+        turn = self._upright(self.angles[:1, 0])[0]
+        offset, root = log(start.rotations @ np.swapaxes(local, -1, -2)), log(start.rotations[0] @ turn.T)
+        self.offsets = faded(offset, start.rates, FADE, self.times)
+        self.offsets[:, 0] = self.offsets[:, self.legs] = 0.0
+        self.offsets[np.abs(self.offsets).max(-1) < 1e-6] = 0.0
+        self.turns = exp(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0])
+
+    def _upright(self, lean: np.ndarray) -> np.ndarray:
+        """The pelvis' turns (N, 3, 3), facing where the jumper faces and leaning (N,) [rad]."""
+        return yaw(self.start.heading) @ exp(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
+
+    def _knee_drive(self, side: int) -> np.ndarray:
+        """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: forward and up."""
+        ids = self.legs[4 * side:4 * side + 4]
+        start = log(self.start.rotations[ids])
+        high = np.zeros((4, 3))
+        high[0, 0], high[1, 0], high[2, 0] = -1.05, 1.25, -0.1
+        times = np.array([0.0, self.leave])
+        slopes = np.stack([self.start.rates[ids], np.zeros((4, 3))])
+        return exp(CubicHermiteSpline(times, np.stack([start, high]), slopes)(self.times))
+
+    def _stand(self, spin: np.ndarray, first: int) -> None:
+        """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""
+        turns = exp(self.nudge[first:] * spin) @ self.turns[first:]
+        root = np.array(self.start.root if first == 0 else self.roots[first], float)
+        self.feet[first:, :, 4] = self.pitches[first:]
+        ground_kernel(self.body, self.flex, self.angles[first:], self.joints, self.offsets[first:], turns,
+                      self.centres[first:], self.feet[first:], root, self.roots[first:], self.local[first:])
+
+    def _prepare_air(self) -> None:
+        """The flight's times, arc and carriage."""
+        way = self.way
+        self.flying = np.linspace(0.0, way.airtime, max(int(np.ceil(AIR_RATE * way.airtime)), 8) + 1)
+        t = self.flying[:, None]
+        self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
+        self.air_angles = style.keyed(self.keys, self.shapes, self.leave + self.flying)
+        self.air = np.tile(np.eye(3), (len(t), self.count, 1, 1))
+        for angles, local in zip(self.air_angles, self.air):
+            style.carry_kernel(angles, self.joints, local)
+        self.air_roots, self.momentum = np.empty((len(t), 3)), np.empty(3)
+
+    def _fly(self) -> np.ndarray:
+        """Find the spin (3,) at take-off with which the body lands upright, and fly with it.
+
+        A spin turns the body by about itself times the airtime; Broyden's method learns the rest.
+        """
+        self._stand(np.zeros(3), 0)
+        wanted = self._upright(self.air_angles[-1:, 0])[0]
+        spin, gain = np.array([-1.8 / self.way.airtime, 0.0, 0.0]), 0.57 * self.way.airtime * np.eye(3)
+        for attempt in range(ROUNDS):
+            self._flight(spin, wanted, 1e-4)
+            miss = log(wanted @ self.air[-1, 0].T)
+            if attempt:
+                gain += np.outer(before - miss - gain @ change, change) / (change @ change)
+            if np.abs(miss).max() < CLOSE:
+                break
+            change, before = np.clip(np.linalg.solve(gain, miss), -5.0, 5.0), miss
+            spin = spin + change
+        # the legs reach for where this very body comes down
+        self._flight(spin, self.air[-1, 0].copy(), 1e-9)
+        return spin
+
+    def _flight(self, spin: np.ndarray, landed: np.ndarray, tolerance: float) -> None:
+        """The flight after a take-off with `spin`, its legs reaching as if it came down turned `landed` (3, 3)."""
+        self._stand(spin, len(self.times) - 3)
+        step = self.times[-1] - self.times[-2]
+        placed = np.empty((2, self.count, 3)), np.empty((2, self.count, 3, 3))
+        for k in range(2):
+            place_kernel(self.body, self.roots[k - 2], self.local[k - 2], placed[0][k], placed[1][k])
+        momentum_kernel(self.body, placed[0][0], placed[1][0], placed[0][1], placed[1][1], step,
+                        self.momentum, np.empty((3, 3)))
+        self.air[:, self.legs] = self._legs_in_flight(step, self._touching(landed)[1])
+        self.air[0] = self.local[-1]
+        rate = log(self.local[-1, 0] @ self.local[-2, 0].T) / step
+        flight_kernel(self.body, self.arc, self.air, rate, self.momentum, self.flying[1], self.air_roots, tolerance)
+
+    def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pelvis (3,) and local rotations at touch-down, the body turned `turn` (3, 3)."""
+        local = self.air[-1].copy()
+        local[0] = turn
+        root = self.way.land + [0.0, -0.05, 0.0]
+        feet = np.column_stack([self.landing[:, :4], np.full(2, TOES_DOWN), np.zeros(2)])
+        stand_kernel(self.body, self.way.land, feet, self.flex, root, local,
+                     np.empty((self.count, 3)), np.empty((self.count, 3, 3)))
+        return root, local
+
+    def _legs_in_flight(self, step: float, end: np.ndarray) -> np.ndarray:
+        """The legs' local rotations (N, 8, 3, 3): out of the push straight, then tucked, then reaching."""
+        airtime, ids = self.way.airtime, self.legs
+        before, last, reach = log(self.local[-2, ids]), log(self.local[-1, ids]), log(end[ids])
+        tuck = np.clip((airtime - 0.25) / 0.35, 0.0, 1.0)
+        straight, folded = last.copy(), reach.copy()
+        for side, hip in enumerate((0, 4)):
+            if self.feet[-1, side, 5] != FREE:
+                straight[hip, 0], straight[hip + 1, 0], straight[hip + 2, 0] = last[hip, 0] + 0.10, 0.12, last[hip + 2, 0] + 0.08
+            folded[hip, 0] = reach[hip, 0] - 0.45 * tuck
+            folded[hip + 1, 0] = reach[hip + 1, 0] + 0.85 * tuck
+            folded[hip + 2, 0] = 0.25
+        times = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
+        slopes = np.zeros((4, 8, 3))
+        slopes[0] = (last - before) / step
+        return exp(CubicHermiteSpline(times, np.stack([last, straight, folded, reach]), slopes)(self.flying))
+
+    def _land(self):
+        """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of
+        mass's place, velocity and acceleration."""
+        way, body = self.way, self.body
+        after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
+        middle = soles(self.landing, body).mean(0)
+        goal = middle + [0.0, measures(self.physique).stand, 0.0]
+        c, v, a = absorb(way.land, way.falling, goal).motion(after)
+        angles = style.keyed(self.keys, self.shapes, self.down + after)
+        feet = np.ones((len(after), 2, 6))
+        feet[..., :5] = self.landing
+        feet[..., 4] = (TOES_DOWN * np.clip(1.0 - after / PLANT, 0.0, 1.0) ** 2)[:, None]
+        upright = self._upright(angles[:, 0])
+        rate = log(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
+        turns = exp(faded(log(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
+        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
+        ground_kernel(body, self.flex, angles, self.joints, np.zeros((len(after), self.count, 3)), turns, c, feet,
+                      self.air_roots[-1].copy(), roots, local)
+        return after, (roots, local, c, v, a)
+
+
+def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
+    """Offsets (N, ...) at times (N,) [s] of one (...) that settles critically damped from its rate."""
+    y = 2.0 * np.log(2.0) / halflife
+    t = times.reshape((-1,) + (1,) * np.ndim(offset))
+    return np.exp(-y * t) * (offset + (rate + offset * y) * t)
+
+
+def quintic(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
+    """Place, velocity, acceleration (N, 3) along the quintic with these ends at times[0] = 0 and times[-1]."""
+    t = times[-1]
+    powers = np.array([[t**3, t**4, t**5], [3 * t**2, 4 * t**3, 5 * t**4], [6 * t, 12 * t**2, 20 * t**3]])
+    c = np.linalg.solve(powers, np.stack([
+        end - start - velocity * t - 0.5 * acceleration * t**2,
+        end_velocity - velocity - acceleration * t, end_acceleration - acceleration]))
+    s = times[:, None]
+    return (start + velocity * s + 0.5 * acceleration * s**2 + c[0] * s**3 + c[1] * s**4 + c[2] * s**5,
+            velocity + acceleration * s + 3 * c[0] * s**2 + 4 * c[1] * s**3 + 5 * c[2] * s**4,
+            acceleration + 6 * c[0] * s + 12 * c[1] * s**2 + 20 * c[2] * s**3)
+
+
+@kernel
+def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
+    """Poses over planted feet: angles (N, 6), what is left of the start (N, J, 3), the pelvis' turns
+    (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), whose pitch is written.
+
+    root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
+    """
+    count = local.shape[1]
+    positions, orientations, turn = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((3, 3))
+    for n in range(len(centres)):
+        style.carry_kernel(angles[n], joints, local[n])
+        for j in range(1, count):
+            if offsets[n, j, 0] != 0.0 or offsets[n, j, 1] != 0.0 or offsets[n, j, 2] != 0.0:
+                exp_kernel(offsets[n, j, 0], offsets[n, j, 1], offsets[n, j, 2], turn)
+                local[n, j] = turn @ local[n, j]
+        local[n, 0] = turns[n]
+        if n > 0:
+            for i in range(3):
+                root[i] += centres[n, i] - centres[n - 1, i]
+        stand_kernel(body, centres[n], feet[n], flex, root, local[n], positions, orientations)
+        roots[n] = root
