@@ -7,10 +7,11 @@ import glfw
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
+from game.cli import app
 from game.hosts.events import PadState
-from game.input import DEFAULT, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet
-from game.input import names
+from game.input import DEFAULT, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, names
 from game.input.remap import BindingsError, as_toml, clashes, load, remapped, user_file
 
 
@@ -113,13 +114,27 @@ def test_a_users_own_file_is_found(tmp_path, monkeypatch):
     assert user_file({"APPDATA": str(tmp_path)}, "win32") == tmp_path / "gambol" / "bindings.toml"
     for system in ("linux", "darwin", "win32"):
         assert user_file({"XDG_CONFIG_HOME": "not/absolute"}, system).is_absolute()
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    monkeypatch.setattr("sys.platform", "linux")
-    monkeypatch.setattr(user_file, "__defaults__", (user_file.__defaults__[0], "linux"))
+    for name in ("XDG_CONFIG_HOME", "APPDATA", "HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
     assert load() == DEFAULT
-    (tmp_path / "gambol").mkdir()
-    (tmp_path / "gambol" / "bindings.toml").write_text('keys.pause = "O"')
+    user_file().parent.mkdir(parents=True)
+    user_file().write_text('keys.pause = "O"')
     assert load().row("pause").keys == ("O",)
+
+
+def test_the_command_prints_and_writes_what_is_in_force(tmp_path):
+    def run(*words):
+        return CliRunner().invoke(app, ["bindings", *map(str, words)])
+    mine, out = tmp_path / "mine.toml", tmp_path / "new" / "out.toml"
+    mine.write_text('keys.pause = "O"')
+    printed = run("--bindings", mine)
+    assert printed.exit_code == 0 and 'pause          = ["O"]' in printed.stdout
+    assert run("--bindings", mine, "--write", out).exit_code == 0 and load(out) == load(mine)
+    again = run("--write", out)
+    assert again.exit_code == 2 and "is there already" in again.stderr and load(out) == load(mine)
+    mine.write_text('keys.pause = "R"')
+    faulty = run("--bindings", mine)
+    assert faulty.exit_code == 2 and "R already does 'reset'" in faulty.stderr
 
 
 def lines(sheet):
