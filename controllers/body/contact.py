@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compiled import kernel
 from .human import CONTACT_HEIGHT, HEEL, human
-from .skeleton import Skeleton
+from .skeleton import Skeleton, end_positions
 
 POINTS = ("left heel", "left ball", "right heel", "right ball")
 WALK_SPEEDS = np.array([0.50, 0.35, 0.50, 0.35])
@@ -102,6 +102,31 @@ def foot_drift(points: np.ndarray, contacts: np.ndarray) -> Stances:
     ground = np.asarray(points)[..., [0, 2]]
     drift = [np.linalg.norm(ground[a:b, k] - ground[a, k], axis=-1).max() for k, a, b in zip(point, start, stop)]
     return Stances(point, start, stop, np.array(drift))
+
+
+def feet_apart(skeleton: Skeleton, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
+    """How far apart the centre lines of the feet are, seen from above (...) [m]; 0 where they cross.
+
+    positions, orientations: what forward kinematics returned. A centre line runs from the heel to
+    the end of the toes; shoes are 7 (heel) to 10 cm (ball) wide.
+    """
+    points, ends = contact_points(skeleton, positions, orientations), end_positions(skeleton, positions, orientations)
+    a, c = points[..., 0, [0, 2]], points[..., 2, [0, 2]]
+    b, d = (ends[..., skeleton.end_index[side + "Toe"], :][..., [0, 2]] for side in ("Left", "Right"))
+    gaps = [_from_line(*line) for line in ((a, c, d), (b, c, d), (c, a, b), (d, a, b))]
+    cross = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
+    return np.where(cross, 0.0, np.minimum.reduce(gaps))
+
+
+def _from_line(point, start, stop):
+    along = stop - start
+    share = np.clip(np.sum((point - start) * along, -1) / np.sum(along**2, -1), 0.0, 1.0)
+    return np.linalg.norm(point - start - share[..., None] * along, axis=-1)
+
+
+def _side(start, stop, point):
+    along, off = stop - start, point - start
+    return along[..., 0] * off[..., 1] - along[..., 1] * off[..., 0]
 
 
 def _foot_size(skeleton):

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..body.springs import spring_kernel
 from ..compiled import kernel
+from .apart import HALFLIFE, aside_kernel
 from .cycles import EVENTS
 from .kernel import LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
@@ -57,7 +58,7 @@ def place_feet(m, body, legs, clearance, positions, orientations, local, dt, wor
     ankle = np.empty((2, 3))
     before = m.offset.copy()
     _hold_standing(m, legs.height, dt)
-    _hold_free(m, before, dt)
+    _hold_free(m, body, before, legs.height, dt)
     need = 0.0
     for foot in range(2):
         hip = legs.hip[foot]
@@ -219,19 +220,28 @@ def _hold_standing(m, height, dt):
 
 
 @kernel
-def _hold_free(m, before, dt):
-    """Take the free points along with their foot's standing point, or else back to the blend.
+def _hold_free(m, body, before, height, dt):
+    """Take the free points along with their foot's standing point, or else back to the blend, but
+    aside of the other foot.
 
     before: (4, 3) the offsets one step ago.
     """
+    aside, wanted = m.aside.copy(), np.empty(3)
+    for foot in range(2):
+        aside_kernel(m, body, foot, height, wanted)
+        for i in range(3):
+            m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i], wanted[i],
+                                                                    HALFLIFE, dt)
     for k in range(4):
         if m.standing[k] == 1:
             continue
         other = k ^ 1
         for i in range(3):
-            was, goal = 0.0, 0.0
-            if m.standing[other] == 1 and i != 1:
-                was, goal = before[other, i], m.offset[other, i]
+            was, goal = aside[k // 2, i], m.aside[k // 2, i]
+            if m.standing[other] == 1:
+                was, goal = 0.0, 0.0
+                if i != 1:
+                    was, goal = before[other, i], m.offset[other, i]
             m.offset[k, i], m.offset_rate[k, i] = spring_kernel(m.offset[k, i] + goal - was, m.offset_rate[k, i],
                                                                 goal, OFFSET_HALFLIFE, dt)
 

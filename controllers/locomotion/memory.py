@@ -83,6 +83,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("lock", "f8", (4, 2)),  # x, z where each point is locked, in the world
         ("offset", "f4", (4, 3)), ("offset_rate", "f4", (4, 3)),  # shown minus blended, in the world
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
+        ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
         ("rise", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
@@ -98,7 +99,7 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     there, here = ground[..., None, :], memory["ground"][..., None, :]
     memory["lock"] = compose(there, relative(here, _flat(memory["lock"])))[..., :2]
     turn = (there - here) * [0.0, 0.0, 1.0]
-    for name in ("offset", "offset_rate"):
+    for name in ("offset", "offset_rate", "aside", "aside_rate"):
         memory[name][..., [0, 2]] = compose(turn, _flat(memory[name][..., [0, 2]]))[..., :2]
     memory["ground"] = ground
 

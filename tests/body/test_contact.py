@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from controllers.body import forward_kinematics, human
+from controllers.body import end_positions, forward_kinematics, human
 from controllers.body.contact import (HEIGHT_GATE, WALK_SPEEDS, contact_height, contact_points, detect_contacts,
-                                      foot_drift, point_speeds)
+                                      feet_apart, foot_drift, point_speeds)
 
 
 @pytest.mark.parametrize("batch", [(), (1,), (3, 1, 2, 1)], ids=str)
@@ -96,3 +97,19 @@ def test_no_contact_no_stance():
 def test_shapes_that_do_not_fit_are_named():
     with pytest.raises(ValueError, match=r"\(5, 3\)"):
         detect_contacts(np.zeros((5, 3)), np.zeros((5, 3)))
+
+
+def test_feet_apart_is_the_nearest_of_many_points():
+    """Centre lines sampled densely agree, and lines that cross are no distance apart."""
+    skeleton, rng = human(), np.random.default_rng(2)
+    local = Rotation.from_rotvec(rng.normal(size=(200, len(skeleton), 3)) * 0.3).as_matrix()
+    positions, orientations = forward_kinematics(skeleton, np.zeros((200, 3)), local)
+    heels = contact_points(skeleton, positions, orientations)[:, [0, 2]]
+    ends = end_positions(skeleton, positions, orientations)
+    toes = np.stack([ends[:, skeleton.end_index[side + "Toe"]] for side in ("Left", "Right")], 1)
+    share = np.linspace(0, 1, 150)[:, None]
+    lines = (heels[:, :, None] + share * (toes - heels)[:, :, None])[..., [0, 2]]
+    gap = np.linalg.norm(lines[:, 0, :, None] - lines[:, 1, None], axis=-1).min((1, 2))
+    found = feet_apart(skeleton, positions, orientations)
+    np.testing.assert_allclose(found, gap, atol=2.5e-3)
+    assert (found == 0).any() and (found > 0.02).any()

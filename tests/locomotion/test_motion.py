@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.body import end_positions, forward_kinematics
-from controllers.body.contact import contact_height, detect_contacts, foot_drift
+from controllers.body.contact import contact_height, detect_contacts, feet_apart, foot_drift
 from controllers.locomotion import Locomotion, Settings
 from playing import FPS, WISHES, hold, mean_velocity, play
 
@@ -163,6 +163,15 @@ def test_no_foot_goes_through_the_floor(locomotion, steadily, whimsical):
         sink = floor - lowest
         assert np.mean(sink > 3e-3) < 1e-3 and sink.max() < 0.01
         assert np.all(lowest > 0), "no contact point under the floor itself"
+
+
+def test_feet_pass_without_touching(library, locomotion, steadily, whimsical):
+    """Seen from above: near a shoe's width in steady turns, and never through each other at any whim."""
+    apart = [feet_apart(locomotion.skeleton, motion.positions, motion.orientations) for motion in (steadily, whimsical)]
+    assert apart[0].min() > 0.05 and apart[1].min() > 0.02
+    assert np.mean(apart[0] < 0.07) < 0.05 and np.mean(apart[1] < 0.07) < 0.03
+    loose = play(Locomotion(library, Settings(footing=False)), hold(4, (0, -1.2, 0)))
+    assert feet_apart(locomotion.skeleton, loose.positions, loose.orientations).min() < 0.04, "which the blend alone does not"
 
 
 def test_bones_keep_their_lengths(locomotion, whimsical):
