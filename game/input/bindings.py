@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 REWOUND = "rewound"
 """The mode while a past moment is shown."""
@@ -76,12 +77,13 @@ class Bindings:
     def __iter__(self) -> Iterator[Binding]:
         return (row for _, rows in self.sections for row in rows)
 
+    @cached_property
+    def _by_action(self) -> dict[str, Binding]:
+        return {row.action: row for row in self}
+
     def row(self, action: str) -> Binding:
         """The row of an action. KeyError, naming it, if there is none."""
-        for row in self:
-            if row.action == action:
-                return row
-        raise KeyError(action)
+        return self._by_action[action]
 
     def rows_of(self, name: str, kind: str = "keys", mode: str = "") -> tuple[Binding, ...]:
         """What a key (or, with kind "buttons", a pad's button) does in a mode.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from .bindings import JOINING, REWOUND, Bindings, Sticks
@@ -54,20 +54,21 @@ def dead_zone(x: float, y: float, sticks: Sticks) -> tuple[float, float]:
 
     Radial, so that the direction stays as it is pushed. A reading that is no number counts as 0.
     """
-    if not (math.isfinite(x) and math.isfinite(y)):
-        return 0.0, 0.0
     length = math.hypot(x, y)
-    if length <= sticks.dead_zone:
+    if not math.isfinite(length) or length <= sticks.dead_zone:
         return 0.0, 0.0
-    wanted = min((length - sticks.dead_zone) / (sticks.full - sticks.dead_zone), 1.0) ** sticks.curve
+    wanted = _share(length, sticks.dead_zone, sticks)
     return x / length * wanted, y / length * wanted
 
 
 def trigger(value: float, sticks: Sticks) -> float:
     """A trigger's reading, −1 released … 1 pressed, as 0 … 1 with a dead zone; no number counts as 0."""
-    if not math.isfinite(value):
-        return 0.0
-    return dead_zone(0.5 * (max(value, -1.0) + 1.0), 0.0, replace(sticks, dead_zone=sticks.trigger_dead_zone))[0]
+    pull = 0.5 * (value + 1.0)
+    return _share(pull, sticks.trigger_dead_zone, sticks) if sticks.trigger_dead_zone < pull < math.inf else 0.0
+
+
+def _share(length: float, inner: float, sticks: Sticks) -> float:
+    return min((length - inner) / (sticks.full - inner), 1.0) ** sticks.curve
 
 
 def pulls(pad: Any, sticks: Sticks) -> dict[str, float]:
@@ -94,18 +95,17 @@ def pad_wish(pad: Any, bindings: Bindings) -> Wish:
     sticks = bindings.sticks
     walk, look = (pad.left, pad.right) if sticks.walk == "left" else (pad.right, pad.left)
     move, look = dead_zone(walk[0], -walk[1], sticks), dead_zone(look[0], -look[1], sticks)
+    pulled, down = pulls(pad, sticks), buttons_down(pad, sticks)
     def held(action: str) -> bool:
-        return pad_held(pad, action, bindings)
+        return not down.isdisjoint(bindings.row(action).buttons)
     def axis(plus: str, minus: str) -> float:
         return float(held(plus)) - float(held(minus))
     move = max(move, unit_disc(axis("right", "left"), axis("forward", "back")), key=lambda v: math.hypot(*v))
     orbit = (look[0] if sticks.invert_x else -look[0], -look[1] if sticks.invert_y else look[1])
     # a trigger that runs does so by degrees
-    pulled = [pull for name, pull in pulls(pad, sticks).items() if name in bindings.row("run").buttons]
-    pressed = not pad.buttons.isdisjoint(bindings.row("run").buttons)
+    run = max((pulled.get(name, float(name in pad.buttons)) for name in bindings.row("run").buttons), default=0.0)
     return Wish(move=move, look=(0.0, 0.0) if held("orbit") else look, orbit=orbit if held("orbit") else (0.0, 0.0),
-                turn=axis("turn_left", "turn_right"),
-                run=max([float(pressed), *pulled]), slow=held("slow"), strafe=held("strafe"))
+                turn=axis("turn_left", "turn_right"), run=run, slow=held("slow"), strafe=held("strafe"))
 
 
 def pad_pressed(before: Any, after: Any, bindings: Bindings, mode: str = "") -> tuple[str, ...]:
