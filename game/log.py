@@ -53,7 +53,8 @@ class Log:
 
 def digest(controller: Any) -> str:
     """What tells the motion of one controller from that of another."""
-    library, hashed = getattr(controller, "library", None), hashlib.sha256(type(controller).__name__.encode())
+    kind = getattr(controller, "kind", type(controller).__name__)
+    library, hashed = getattr(controller, "library", None), hashlib.sha256(kind.encode())
     if library is not None:
         for array in (library.velocities, library.coefficients, library.reference):
             hashed.update(np.ascontiguousarray(array))

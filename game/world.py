@@ -33,9 +33,9 @@ FLOOR_LIFT = 0.01
 class Character:
     """Somebody in the world.
 
-    controller: keeps `controllers.contract.Controller` and has the `skeleton` that it moves.
+    controller: keeps `controllers.contract.Controller` and has the `skeleton` that it moves; one with a
+    `body` (`game.render.mesh.Body`) is drawn in it.
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
-    body: what it wears (`game.render.mesh.Body`), None for the mannequin.
     """
 
     name: str
@@ -44,7 +44,6 @@ class Character:
     tint: tuple[float, float, float] = (0.75, 0.42, 0.22)
     intent: Intent = field(default_factory=Intent)
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
-    body: Any = None
 
     def step(self, intent: Intent, number: int) -> Character:
         """One step on; `number` is that of the step that ends."""
@@ -150,5 +149,6 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         contacts = (old if alpha < 0.5 else new).state.contacts
         drawn.append(Figure(positions, orientations, new.tint, contacts,
                             np.concatenate([old.trail, here]),
-                            np.stack([ahead[:, 0], np.full(len(ahead), FLOOR_LIFT), ahead[:, 1]], -1), new.body))
+                            np.stack([ahead[:, 0], np.full(len(ahead), FLOOR_LIFT), ahead[:, 1]], -1),
+                            getattr(new.controller, "body", None)))
     return tuple(drawn)

@@ -1,0 +1,49 @@
+"""Somebody else's body walks as large as it is."""
+
+import numpy as np
+import pytest
+
+from controllers.contract import Intent
+from controllers.locomotion import Locomotion
+from game.character import Build, tailored
+from game.embodied import Embodied
+from game.render.mesh import mannequin
+from game.render.wear import leg_length
+from game.world import DT, Character, World, figures
+
+
+@pytest.fixture(scope="module")
+def walking():
+    return Locomotion.load(None)
+
+
+def walked(controller, speed, steps=90):
+    world = World((Character("A", controller, controller.start(ground=(1.0, 2.0, 0.5))),))
+    for _ in range(steps):
+        before, world = world, world.step([Intent(np.array([speed, 0.2, 0.0]))])
+    return before, world
+
+
+def test_in_the_standard_body_nothing_changes(walking):
+    (_, plain), (_, own) = walked(walking, 1.2), walked(Embodied(walking, mannequin(), 1.0), 1.2)
+    a, b = plain.characters[0].state, own.characters[0].state
+    assert np.array_equal(a.pose.rotations, b.pose.rotations) and np.array_equal(a.ground, b.ground)
+
+
+def test_a_child_takes_a_childs_steps_where_it_is(walking):
+    child = Embodied.of(walking, tailored(Build(height=1.1, child=1.0)))
+    assert 0.5 < child.factor < 0.65
+    before, world = walked(child, 0.8)
+    state = world.characters[0].state
+    assert abs(state.velocity[0] - 0.8) < 0.1, "it goes as fast as it is asked to"
+    start = child.start(ground=(1.0, 2.0, 0.5))
+    assert np.allclose(start.ground, [1.0, 2.0, 0.5]) and start.pose.root[1] < 0.65
+    drawn, = figures(before, world, 1.0)
+    assert drawn.body is child.body and abs(leg_length(drawn.positions) / leg_length(child.body.joints) - 1.0) < 0.02
+    moved = np.linalg.norm(world.characters[0].state.ground[:2] - before.characters[0].state.ground[:2])
+    assert abs(moved / DT - np.hypot(*state.velocity[[0, 2]])) < 0.15
+
+
+def test_a_body_in_another_unit_is_fitted(walking):
+    from dataclasses import replace
+    assert Embodied.of(walking, replace(mannequin(), joints=mannequin().joints * 100.0)).factor == 1.0
