@@ -81,7 +81,7 @@ def _stick(row: Binding, bindings: Bindings) -> str:
 
 def _pad(slot: int, pads: Sequence[Any], players: int, bindings: Bindings) -> Pad:
     pad, sticks = pads[slot], bindings.sticks
-    name = pad.name if len(pad.name) <= 32 else pad.name[:31] + "…"
+    name = pad.name if len(pad.name) <= 30 else pad.name[:29] + "…"
     return Pad(f"{name}: player {player_of(slot, pads, players) + 1}",
                tuple(Dial(_on_dial(*at), sticks.dead_zone, sticks.full) for at in (pad.left, pad.right)),
                tuple(Bar(trigger, pull) for trigger, pull in pulls(pad, sticks).items()),

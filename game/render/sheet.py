@@ -20,7 +20,7 @@ SMALLEST = 6
 """Letters are never smaller [px]; a picture where they would be shows a part of the sheet."""
 INK, DIM, ACCENT, DARK = (0.95, 0.95, 0.93, 1.0), (0.70, 0.73, 0.76, 1.0), (0.97, 0.66, 0.36, 1.0), (0.10, 0.08, 0.06, 1.0)
 SHEET, LIT, FAINT = (0.05, 0.06, 0.08, 0.90), (0.93, 0.62, 0.33, 0.22), (0.70, 0.73, 0.76, 0.45)
-GAP, BETWEEN, PAD = 0.9, 1.7, 0.9
+GAP, BETWEEN, MARGIN = 0.9, 1.7, 0.9
 """Lines between columns, between tables and around everything."""
 DIAL = 2.6
 """Lines that a dial is high."""
@@ -79,12 +79,12 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
         inner.write(sheet.note, 0.0, bottom, DIM)
         bottom += unit
     outer = _Pen(font)
-    pad = PAD * unit
-    outer.shape(-pad, -pad, width + 2 * pad, bottom + 2 * pad, SHEET, 0.5 * unit)
+    margin = MARGIN * unit
+    whole = width + 2 * margin, bottom + 2 * margin
+    outer.shape(-margin, -margin, *whole, SHEET, 0.5 * unit)
     outer.write(sheet.title, 0.0, 0.0, ACCENT)
     rows = np.array(outer.rows + inner.rows, np.float32)
-    whole = width + 2 * pad, bottom + 2 * pad
-    rows[:, :2] += np.round(0.5 * (np.array(size) - whole) + pad)
+    rows[:, :2] += np.round(0.5 * (np.array(size) - whole) + margin)
     return rows, whole
 
 
@@ -163,7 +163,7 @@ class SheetPass:
     def __init__(self, ctx: Any):
         self.ctx, self.program = ctx, gl.program(ctx, "sheet.vert", "sheet.frag")
         self.stream, self.texture, self.letters = gl.Stream(ctx), None, 0
-        self.fitted: tuple[tuple[int, int], int] | None = None
+        self.fitted: tuple | None = None
         self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f 2f/i", "place", "cell", "tint", "edge")])
 
     def draw(self, sheet: Sheet, target: Any) -> None:
@@ -182,9 +182,9 @@ class SheetPass:
         ctx.disable(ctx.BLEND)
 
     def _letters(self, sheet: Sheet, size: tuple[int, int]) -> int:
-        shown = size, len(sheet.pads)  # what lights up changes no size
-        if self.fitted != (shown, sheet.note):
-            self.fitted, letters = (shown, sheet.note), letters_for(sheet, size)
+        words = [line.cells for table in sheet.tables for line in table], [pad.caption for pad in sheet.pads], sheet.note
+        if self.fitted != (size, words):  # what lights up changes no size
+            self.fitted, letters = (size, words), letters_for(sheet, size)
             if letters != self.letters:
                 if self.texture is not None:
                     self.texture.release()
