@@ -331,6 +331,8 @@ class Play:
             sheet = help_sheet(self.bindings, self.keyboard, self.pads, self.players)
             views = tuple(replace(view, text=()) for view in views)
             views = (replace(views[0], sheet=sheet), *views[1:])
+        elif self.wants_picture:  # nothing is written on a screenshot
+            views = tuple(replace(view, text=()) for view in views)
         if self.panels and not self.helping:
             views = (self._with_panels(views[0], size), *views[1:])
         return views[0] if len(views) == 1 else views

@@ -7,10 +7,10 @@ import pytest
 
 from controllers.locomotion import Locomotion
 from game.film import run
+from game.log import LogWriter, fingerprint, of_library, read, replay
 from game.play import Play
 from game.hosts.events import KeyEvent
 from game.scenario import load, shipped
-from game.world import replay
 
 
 @pytest.fixture(scope="module")
@@ -49,11 +49,20 @@ def test_the_two_in_the_corridor_meet_and_pass(locomotion):
     assert np.all(np.abs(a[:, 0]) < 1.1)
 
 
-def test_a_game_replays_to_the_bit(locomotion):
-    game = Play(locomotion)
-    for key, frames in (("W", 50), ("A", 40), ("LEFT_SHIFT", 60), ("TAB", 30)):
+def test_a_game_replays_to_the_bit_from_its_log(locomotion, tmp_path):
+    path = tmp_path / "a.gambol"
+    game = Play(locomotion, log=LogWriter(path, locomotion, 1))
+    for key, frames in (("W", 50), ("A", 40), ("BACKSPACE", 30), ("LEFT_SHIFT", 60), ("TAB", 30)):
         game.handle(KeyEvent(key, True))
+        game.do("locomotion.acceleration=3")
         for _ in range(frames):
             game.tick(1 / 60)
-    assert game.after.characters[0].state.ground[1] > 1.0
-    assert same(replay(game.opening, game.log), game.after)
+        if key == "BACKSPACE":
+            game.handle(KeyEvent(key, False))
+            game.do("resume")
+    game.close()
+    *_, last = replay(of_library(read(path), locomotion), locomotion)
+    assert game.now.after.characters[0].state.ground[1] > 1.0 and game.now.setting("locomotion.acceleration") == 3
+    assert same(last.after, game.now.after) and fingerprint(last) == fingerprint(game.now)
+    a, b = (moment.after.characters[0].state.memory for moment in (last, game.now))
+    assert all(np.array_equal(a[name], b[name]) for name in a.dtype.names)

@@ -1,0 +1,197 @@
+"""The input log: the same game to the bit, whatever cut it short; and one clear line for what is no log."""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from controllers.locomotion import Locomotion
+from game.input import Wish
+from game.log import LogError, LogWriter, fingerprint, of_library, read, replay, strayed
+from game.output import OutputError
+from game.session import Timeline, opening
+from game.settings import SETTINGS
+from stand_in import Glide
+
+ROOT = Path(__file__).parents[2]
+GLIDE = Glide()
+
+
+@pytest.fixture(scope="module")
+def locomotion():
+    return Locomotion.load()
+
+
+def play(path, ticks, controller=GLIDE, players=1, every=45):
+    """Play wishes into a log; the moments after each tick."""
+    timeline, writer, moments = Timeline(opening(controller, players)), LogWriter(path, controller, players), []
+    for number, wishes in enumerate(ticks, 1):
+        wishes = tuple(wish.rounded() for wish in wishes[:len(timeline.now.players)])
+        timeline.advance(wishes)
+        writer.add(wishes)
+        moments.append(timeline.now)
+        if number % every == 0:
+            writer.flush(timeline.now)
+    writer.flush(timeline.now)
+    writer.close()
+    return moments
+
+
+def walk(count, seed=0):
+    rng = np.random.default_rng(seed)
+    return [(Wish(move=tuple(rng.uniform(-1, 1, 2)), drag=tuple(rng.normal(size=2))),) for _ in range(count)]
+
+
+sticks = st.tuples(st.floats(-1, 1), st.floats(-1, 1))
+value = st.sampled_from(SETTINGS).flatmap(lambda s: st.floats(s.low, s.high).map(lambda v: f"{s.name}={v!r}"))
+action = st.sampled_from(["pause", "pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"]) \
+    | st.integers(1, 400).map(lambda n: f"back={n}") | value
+wish = st.builds(Wish, move=sticks, look=st.just((0.0, 0.0)) | sticks, turn=st.floats(-1, 1), run=st.floats(0, 1),
+                 slow=st.booleans(), strafe=st.booleans(), orbit=sticks, drag=sticks, zoom=st.floats(-3, 3), pan=sticks,
+                 pressed=st.lists(action, max_size=2).map(tuple))
+stretch = st.tuples(wish, wish, st.integers(1, 12))
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(stretch, min_size=1, max_size=10), st.sampled_from([1, 2]))
+def test_a_log_replays_to_the_bit_whatever_the_hands_did(locomotion, stretches, players):
+    """Rewinds, resets, joins, settings, slow motion and cameras among it; every number of every state."""
+    ticks = []
+    for first, second, count in stretches:
+        ticks.append((first, second))
+        ticks += [(Wish(move=first.move, look=first.look, run=first.run), Wish(move=second.move))] * count
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.gambol"
+        played = play(path, ticks, locomotion, players)
+        log = of_library(read(path), locomotion)
+    assert len(log.ticks) == len(ticks) and log.prints
+    again = list(replay(log, locomotion))[1:]
+    for a, b in zip(played, again, strict=True):
+        assert (a.number, a.paused, a.slow, a.phase, a.after.number) == (b.number, b.paused, b.slow, b.phase, b.after.number)
+        for x, y in zip(a.after.characters, b.after.characters, strict=True):
+            assert all(np.array_equal(x.state.memory[name], y.state.memory[name]) for name in x.state.memory.dtype.names)
+            assert x.controller.settings == y.controller.settings
+            assert np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
+        for p, q in zip(a.players, b.players, strict=True):
+            assert np.array_equal(p.camera.view().eye, q.camera.view().eye) and p.pilot == q.pilot
+            assert np.isfinite(p.camera.view().eye).all()
+        assert not strayed(log, b)
+
+
+def test_wherever_a_log_is_cut_what_is_left_plays(tmp_path):
+    path, ticks = tmp_path / "a.gambol", walk(150)
+    moments = play(path, ticks)
+    data = path.read_bytes()
+    whole = read(path)
+    first = data.index(b"\n", data.index(b"\n") + 1) + 1
+    for cut in [*range(first, len(data), 211), len(data) - 1]:
+        path.write_bytes(data[:cut])
+        log = read(path)
+        assert log.ticks == whole.ticks[:len(log.ticks)] and len(log.ticks) % 45 == 0
+        *_, last = replay(log, GLIDE)
+        assert fingerprint(last) == fingerprint(moments[len(log.ticks) - 1])
+    for tail in (b"\0" * 100, b"\0" * 100 + b"\n", b"12345678 rubbish\n"):
+        path.write_bytes(data + tail)
+        assert read(path).ticks == whole.ticks
+
+
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.8])
+def test_damage_in_the_middle_is_told_with_its_line(tmp_path, place):
+    path = tmp_path / "a.gambol"
+    play(path, walk(600))
+    data = bytearray(path.read_bytes())
+    at = int(place * len(data))
+    data[at] = data[at] ^ 0x40
+    path.write_bytes(data)
+    line = data[:at].count(b"\n") + 1
+    with pytest.raises(LogError, match=f"a.gambol: line {line} is damaged, .* s into the log"):
+        read(path)
+
+
+@pytest.mark.parametrize(("content", "says"), [
+    (b"", "line 1: not an input log"), (b"\x89PNG\r\n\x1a\n", "line 1: not an input log"), (b"[1, 2]\n", "not an input log"),
+    (b'{"gambol": "input log", "format": 9, "library": "", "players": 1}\n', "a log of format 9; this Gambol reads format 1"),
+    (b'{"gambol": "input log", "format": 1, "library": "", "players": 7}\n', "not an input log"),
+    (b'{"gambol": "input log", "format": 1, "library": "", "players": 1}\n', "nothing was played yet")])
+def test_what_is_no_log_is_refused_in_one_line(tmp_path, content, says):
+    path = tmp_path / "a.gambol"
+    path.write_bytes(content)
+    with pytest.raises(LogError, match=says) as error:
+        read(path)
+    assert str(path) in str(error.value) and "\n" not in str(error.value)
+    for wrong in (tmp_path / "none.gambol", tmp_path):
+        with pytest.raises(LogError, match=str(wrong)):
+            read(wrong)
+
+
+def test_another_library_is_told_before_anything_moves(tmp_path, locomotion):
+    path = tmp_path / "a.gambol"
+    play(path, walk(10))
+    with pytest.raises(LogError, match="another gait library; name that one with --library"):
+        of_library(read(path), locomotion)
+
+
+def test_a_replay_that_goes_another_way_is_noticed(tmp_path):
+    path = tmp_path / "a.gambol"
+    play(path, walk(100))
+    assert any(strayed(read(path), moment) for moment in replay(read(path), Glide(halflife=0.2)))
+
+
+def test_nothing_is_written_before_there_is_something_and_nothing_overwritten(tmp_path):
+    path = tmp_path / "new" / "a.gambol"
+    LogWriter(path, GLIDE, 1).flush()
+    assert not path.parent.exists()
+    play(path, walk(3))
+    before = path.read_bytes()
+    with pytest.raises(OutputError, match="a.gambol: can't be written"):
+        play(path, walk(3))
+    assert path.read_bytes() == before
+
+
+def test_a_long_log_is_small(tmp_path):
+    """A minute on noisy sticks, and a minute on keys."""
+    rng = np.random.default_rng(1)
+    goals = np.repeat(rng.uniform(-1, 1, (90, 4)), 40, axis=0)
+    drift = np.cumsum(0.15 * (goals - np.roll(goals, 1, axis=0)), axis=0).clip(-1, 1) + 0.01 * rng.normal(size=goals.shape)
+    play(tmp_path / "pad.gambol", [(Wish(move=(a, b), look=(c, d), run=abs(a)),) for a, b, c, d in drift])
+    play(tmp_path / "keys.gambol", [(Wish(move=(round(a), round(b))),) for a, b, _, _ in goals])
+    assert (tmp_path / "pad.gambol").stat().st_size < 20_000 and (tmp_path / "keys.gambol").stat().st_size < 4_000
+
+
+GAME = '''
+import sys, time
+sys.path.insert(0, "tests/game")
+from stand_in import Glide
+from game.hosts.events import KeyEvent
+from game.log import LogWriter
+from game.play import Play
+game = Play(Glide(), log=LogWriter(sys.argv[1], Glide(), 1))
+game.handle(KeyEvent("W", True))
+while True:
+    game.tick(1 / 60)
+    print(game.now.number, flush=True)
+    time.sleep(0.002)
+'''
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="only where a process can be killed outright")
+def test_a_kill_costs_less_than_a_second_of_the_log(tmp_path):
+    path = tmp_path / "a.gambol"
+    process = subprocess.Popen([sys.executable, "-c", GAME, str(path)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    number = 0
+    while number < 200:
+        number = int(process.stdout.readline())
+    os.kill(process.pid, signal.SIGKILL)
+    number = max([number, *(int(line) for line in process.stdout.read().split()[:-1])])
+    process.wait()
+    log = read(path)
+    assert number - 60 <= len(log.ticks)
+    *_, last = replay(log, GLIDE)
+    assert last.after.characters[0].state.ground[1] > 2.0
