@@ -18,6 +18,8 @@ from .trace import Trace
 PANELS = {"space": "control space", "plots": "velocities", "quality": "quality", "settings": "settings"}
 """The panels, and what their title bars say. "NAME_panel" is the action that opens and closes one."""
 MARGIN = 12.0
+LEAST = 60.0
+"""No panel is narrower or lower than this, however small the picture [px at 720 lines]."""
 
 
 class Hud:
@@ -106,7 +108,8 @@ def layout(size: tuple[int, int], scale: float) -> dict[str, tuple[float, float,
               "space": (width - right - gap, gap, right, 0.56 * (deep - gap)),
               "plots": (width - right - gap, gap + 0.56 * (deep - gap) + gap, right, 0.44 * (deep - gap)),
               "strip": (left + 2 * gap, gap, max(width - left - right - 4 * gap, 200.0), 70.0)}
-    return {name: tuple(scale * v for v in place) for name, place in places.items()}
+    return {name: tuple(scale * v for v in (*place[:2], *(max(side, LEAST) for side in place[2:])))
+            for name, place in places.items()}
 
 
 def _place(place: tuple[float, float, float, float], again: bool) -> None:
