@@ -8,7 +8,7 @@ layout(std140) uniform Occluders {
     vec4 solid[48 * 3];       // centre, w: 1 if round; half its size; cosine and sine of its heading
 };
 const float REACH = 0.5;      // where a limb's darkening ends [m]
-const float CREASE = 0.40;    // how far from a solid its darkening ends [m]
+const float CREASE = 0.35;    // how far from a solid its darkening ends [m]
 
 // A capsule hides about what a ball at its nearest point would, and more, as it is long
 // (after Quilez, "Capsule occlusion"). A limb never hides its own surface: its axis lies behind.
@@ -33,10 +33,7 @@ float past_limbs(vec3 at, vec3 n) {
 }
 
 // What stands within CREASE along the normal darkens: half the sky where a wall meets a floor.
-float creased(float distance) {
-    float t = clamp(1.0 - distance / CREASE, 0.0, 1.2);
-    return 1.0 - 0.5 * t * t;
-}
+float creased(float distance) { return 1.0 - 0.5 * (1.0 - smoothstep(0.0, CREASE, distance)); }
 
 float past_solids(vec3 at, vec3 n) {
     vec3 p = at + CREASE * n;

@@ -66,13 +66,19 @@ class Offscreen:
 
     def frame(self, scenes: Scene | Sequence[Scene], out: np.ndarray | None = None) -> np.ndarray:
         """The picture of a scene, or of several side by side, (H, W, 4) uint8, top row first; into `out` where given."""
+        self._make_current()
         self.renderer.draw(scenes)
         return self.renderer.read(out)
 
     def release(self) -> None:
         """Give the graphics card back."""
+        self._make_current()
         self.renderer.release()
         self.context.release()
+
+    def _make_current(self) -> None:
+        """Other contexts may have been made since; a `with` would leave none current."""
+        self.context.__enter__()
 
     def __enter__(self) -> Offscreen:
         return self

@@ -18,7 +18,7 @@ EXTENT = 390.0
 """How far the floor reaches [m]: beyond, it would be all fog."""
 SQUARE = 0.25
 """The side of the squares that the floor is cut into where something is near [m]."""
-CREASE = 0.45
+CREASE = 0.40
 """How far from a solid the floor is darker [m]; a little more than in occlusion.glsl."""
 
 # how far flesh reaches around each joint and bone end, for the outline of a shadow [m]

@@ -142,8 +142,8 @@ class Renderer:
         for k, box in enumerate(boxes):
             if box is not None:
                 data[16 + 16 * k:][:16] = box.matrix(origin).T.ravel()
-                # solids show their near side, and so need a margin as wide as the blur
-                margin = 1.6 * box.texel + 0.002 + (0.009 if k else 0.0)
+                # as wide as the blur of shadow.glsl, so that nothing lit shadows itself
+                margin = 1.6 * box.texel + 0.011
                 data[60 + 4 * k:][:4] = *(1.0 / box.size), margin, box.top - box.bottom
         self.frame.orphan()
         self.frame.write(data.tobytes())
@@ -153,18 +153,15 @@ class Renderer:
         """Draw the shadow maps: the figures' for every frame, the solids' only where something changed."""
         ctx = self.ctx
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
-        ctx.depth_func = "<="
+        # near sides: where limbs touch or a box meets the floor, no light leaks in between
+        ctx.cull_face, ctx.depth_func = "back", "<="
         if figures_light is not None:
-            # far sides only: what faces the sun then never shadows itself by a rounding error
-            ctx.cull_face = "front"
             self.figures_map.target.use()
             self.figures_map.target.clear(depth=1.0)
             self.figures.draw("shadow")
         if solids_light is not None:
             shows = solids, tuple(solids_light.corner), float(solids_light.size[0])
             if shows != self.kept:
-                # near sides: the floor under a box is dark up to the box's very edge
-                ctx.cull_face = "back"
                 self.solids_map.target.use()
                 self.solids_map.target.clear(depth=1.0)
                 self.solids.draw("shadow")

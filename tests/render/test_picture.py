@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from poses import CROUCH, STAND, STRIDE, camera, figure
+from poses import CROUCH, HUMAN, STAND, STRIDE, camera, figure
 
-from game.render import FULL, Renderer, preset
+from game.hosts import Offscreen
+from game.render import FULL, Renderer, preset, sun, view
 from game.scene import Box, Caption, Goal, Overlays, Pillar, Scene
 
 WALKER = figure(heading=0.6, options=dict(
@@ -185,3 +186,67 @@ def test_a_caption_stands_in_the_lower_third_and_fades(draw):
     assert rows.min() > 120 and rows.max() < 170 and columns.min() > 10
     assert 0 < faint.max() < 0.6 * shown.max() and gone.max() == 0
     assert np.nonzero(long > 40)[1].max() < 310
+
+
+def test_two_renderers_in_one_process_do_not_mix(ctx):
+    with Offscreen((64, 48), "full") as one, Offscreen((48, 32), "fast") as other:
+        first = one.frame(GOLDEN["stride"])
+        other.frame(GOLDEN["company"])
+        assert np.array_equal(first, one.frame(GOLDEN["stride"]))
+    ctx.__enter__()  # current again for the tests that follow
+
+
+def shade(draw, scene, bare, at):
+    """How much darker (levels) `scene` is than `bare` where the point `at` (3,) of the world is seen."""
+    matrix = view.perspective(scene.camera.fov, 16 / 9) @ view.look_at(scene.camera.eye, scene.camera.target, scene.camera.up)
+    x, y, _, w = matrix @ [*at, 1.0]
+    column, row = round(160 * (1 + x / w)), round(90 * (1 - y / w))
+    dark, light = (draw(s)[row - 1:row + 2, column - 1:column + 2, :3].mean() for s in (scene, bare))
+    return light - dark
+
+
+def test_the_floor_is_darker_close_to_feet_and_walls_also_where_the_sun_shines(draw):
+    shot = camera(eye=(0.6, 1.5, 1.5), target=(0.1, 0, 0))
+    bare, towards = Scene(shot), sun.SUN * [1, 0, 1]
+    toe = figure(**STAND).positions[HUMAN.index("LeftToe")] * [1, 0, 1]
+    near, far = (shade(draw, Scene(shot, (figure(**STAND),)), bare, toe + k * towards) for k in (0.08, 0.5))
+    assert near > 3.0 and abs(far) < 1.5
+    wall = Scene(shot, props=(Box((-0.3, 0.5, 0.0), (0.2, 1.0, 2.0)),))
+    assert shade(draw, wall, bare, (-0.15, 0, 0)) > 5.0 and abs(shade(draw, wall, bare, (0.4, 0, 0))) < 1.5
+
+
+def test_figures_and_solids_shadow_platforms_and_each_other(draw):
+    shot, top = camera(eye=(0, 3.5, 2.5), target=(0, 0.5, 0)), Box((0, 0.4, 0), (4.0, 0.8, 3.0))
+    bare, along = Scene(shot, props=(top,)), -sun.SUN / sun.SUN[1]
+    behind = np.array([0.4, 0.8, 0.0]) + 0.8 * (along * [1, 0, 1])  # where the shadow of what is 0.8 m high ends
+    post = Scene(shot, props=(top, Pillar((0.4, 0.8, 0.0), 0.1, 1.2)))
+    body = Scene(shot, (figure(at=(0.4, 0.0), lift=0.8, **STAND),), (top,))
+    assert shade(draw, post, bare, behind) > 30 and shade(draw, body, bare, behind) > 30
+    for scene in (post, body):
+        assert abs(shade(draw, scene, bare, behind * [-1, 1, 1] + [0.9, 0, 0.4])) < 2
+
+
+def test_solids_that_move_take_their_shadow_along(draw):
+    """Their map is kept from frame to frame."""
+    shot, behind = camera(eye=(0, 5, 4), target=(0, 0, 0)), np.array([-0.5, 0, 0.18])
+    for x in (-0.8, 0.8):
+        moved = Scene(shot, props=(Pillar((x, 0, 0), 0.2, 1.0),))
+        assert shade(draw, moved, Scene(shot), behind + [x, 0, 0]) > 30
+
+
+def test_goals_cast_no_shadow_and_hide_nothing(draw):
+    bare = Scene(camera(), (WALKER,))
+    lit = draw(replace(bare, props=(Goal((0.3, 0, 0.4)),))).astype(int) - draw(bare)
+    assert (np.abs(lit)[..., :3].max(-1) > 25).sum() > 150  # its ring
+    assert lit[..., 0].min() > -30  # nowhere a shadow, which would take some 60
+
+
+@pytest.mark.parametrize("name", ["full", "fast"])
+def test_a_slow_dolly_does_not_shimmer(draw, name):
+    """On the floor, picture minus supersampled picture hardly changes from frame to frame."""
+    errors = []
+    for k in range(4):
+        shot = camera(eye=(0.3, 1.6, 5 - 0.006 * k), target=(0.3, 1.2, 0))
+        fine = draw(Scene(shot), "fast", (1280, 720))[..., 1].reshape(180, 4, 320, 4).mean((1, 3))
+        errors.append(draw(Scene(shot), name)[..., 1] - fine)
+    assert np.abs(np.diff(errors, axis=0)).mean((0, 2)).max() < 3.0
