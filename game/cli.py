@@ -34,6 +34,7 @@ class Preset(str, Enum):
 
 
 Library = Annotated[Path | None, typer.Option(help="A gait library; the shipped one by default.")]
+Wearing = Annotated[Path | None, typer.Option("--character", help="Who to be: a human in a .glb, .gltf or .vrm file; the mannequin by default.")]
 Quality = Annotated[Preset, typer.Option(help="Picture quality.")]
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 
@@ -71,7 +72,7 @@ def _say(text: str) -> None:
 
 @app.command()
 @plainly
-def play(library: Library = None, preset: Quality = Preset.full,
+def play(library: Library = None, character: Wearing = None, preset: Quality = Preset.full,
          size: Annotated[str, typer.Option(help="Size of the window.")] = "1280x720",
          bindings: Hands = None,
          players: Annotated[int, typer.Option(min=1, max=2, help="How many play; a second one may also join later.")] = 1,
@@ -81,7 +82,7 @@ def play(library: Library = None, preset: Quality = Preset.full,
     from .input.remap import load as load_bindings
 
     pixels, hands = _size(size), load_bindings(bindings)
-    controller = _controller(library)
+    controller = _controller(library, character)
 
     from .hosts import DisplayError, run_window
     from .log import LogWriter, of_library, read
@@ -91,7 +92,8 @@ def play(library: Library = None, preset: Quality = Preset.full,
     tape = None if replay is None else of_library(read(replay), controller)
     players = players if tape is None else tape.players
     log = LogWriter(log_file(record), controller, players)
-    studio = Studio(OUT, () if library is None else ("--library", str(library)))
+    studio = Studio(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
+                          for text in (option, str(value))])
     game = Play(controller, players, bindings=hands, log=log, studio=studio, tape=tape)
     try:
         run_window(game, pixels, preset.value)
@@ -135,7 +137,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
            overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path.")] = None,
-           library: Library = None,
+           library: Library = None, character: Wearing = None,
            background: Annotated[bool, typer.Option("--background", hidden=True, help="Yield to other programs; print progress as lines.")] = False) -> None:
     """Film a scenario or an input log without a display, or write a scenario's motion as BVH."""
     if (scenario is None) == (replay is None):
@@ -145,7 +147,8 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     if replay is not None:
         if out.lower().endswith(".bvh"):
             raise Mistake(f"{out}: a log is filmed; name a .mp4 file or a folder for PNG frames")
-        _film_log(replay, start, end, out, _size(size or "1920x1080"), fps or 60, preset, overlay, library, background)
+        _film_log(replay, start, end, out, _size(size or "1920x1080"), fps or 60, preset, overlay, _controller(library, character),
+                  background)
         return
     for option, given in (("--from", start), ("--to", end)):
         if given is not None:
@@ -159,20 +162,20 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
         for option, given in (("--size", size), ("--preset", preset), ("--overlay", overlay)):
             if given is not None:
                 raise Mistake(f"{option} means nothing for {out}: BVH holds the motion, not pictures of it")
-        _write_motion(film, out, library)
+        _write_motion(film, out, _controller(library, character))
         return
     from .film import scenes
     from .shots import overlays
 
     film = film if size is None else film.at_size(_size(size))
     shown = None if overlay is None else overlays(_overlays(overlay))
-    controller = _controller(library)
+    controller = _controller(library, character)
     _draw((scene for _, scene in scenes(film, controller, shown)), film.frames, film.title, out, film.size, film.fps,
           preset, background)
 
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
-              preset: Preset | None, overlay: str | None, library: Path | None, background: bool) -> None:
+              preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
     from .log import of_library, read
     from .shots import overlays
     from .views import filmed, frames
@@ -182,7 +185,6 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
     if not start < end:
         raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
     shown = overlays(_overlays(overlay or "mesh"))
-    controller = _controller(library)
     of_library(log, controller)
 
     def stray() -> None:
@@ -221,23 +223,66 @@ def _told(scenes, frames: int):
         yield scene
 
 
-def _write_motion(film, out: str, library: Path | None) -> None:
+def _write_motion(film, out: str | Path, controller) -> None:
+    from .export import checked, takes, write
     from .film import run
-    from .output import output_file
-    from .recorder import motion_clip, write_motion
-    from .world import pose_between
 
-    controller, whole = _controller(library), Path(out)
-    names = [whole.name] if len(film.actors) == 1 else [f"{whole.stem}-{a.name}{whole.suffix}" for a in film.actors]
-    paths = [output_file(whole.with_name(name), ".bvh") for name in names]
-    poses = [[] for _ in film.actors]
+    checked(out)
     with _progress() as bar:
-        for frame in bar.track(run(film, controller), film.frames, description=film.title):
-            for kept, before, after in zip(poses, frame.before.characters, frame.after.characters):
-                kept.append(pose_between(before.state.pose, after.state.pose, frame.alpha))
-    for actor, kept, path in zip(film.actors, poses, paths):
-        write_motion(motion_clip(actor.name, controller.skeleton, kept, film.fps), path)
-        _say(f"{path}: {len(kept)} frames, {film.duration:g} s")
+        done = takes((frame.before, frame.after, frame.alpha)
+                     for frame in bar.track(run(film, controller), film.frames, description=film.title))
+    for path in write(out, done, film.fps):
+        _say(f"{path}: {film.frames} frames, {film.duration:g} s")
+
+
+@app.command()
+@plainly
+def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml file of one, or an input log (.gambol).")],
+           out: Annotated[Path, typer.Option("-o", "--out", help="A .glb file (bodies, motion, contacts) or a .bvh file (motion).")],
+           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
+           library: Library = None, character: Wearing = None) -> None:
+    """Write the motion of a scenario or an input log for other programs."""
+    from .export import checked, sampled, takes, write
+    from .log import SUFFIX, of_library, read, replay
+
+    checked(out)
+    if not what.lower().endswith(SUFFIX):
+        from . import scenario as scenarios
+
+        film = scenarios.load(what)
+        _write_motion(film if fps is None else film.at_fps(fps), out, _controller(library, character))
+        return
+    log, controller = read(what), _controller(library, character)
+    of_library(log, controller)
+    with _progress() as bar:
+        moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)
+        done = takes(sampled(moments, fps or 60))
+    for path in write(out, done, fps or 60):
+        _say(f"{path}: {len(done[0].poses)} frames, {log.duration:.1f} s")
+
+
+@app.command()
+@plainly
+def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb file to write.")],
+              height: Annotated[float, typer.Option(help="Height in metres.")] = 1.741,
+              build: Annotated[float, typer.Option(help="From -1, slim, over 0 to 1, heavy.")] = 0.0,
+              child: Annotated[float, typer.Option(help="From 0, grown up, to 1, the proportions of a child of six.")] = 0.0,
+              shoulders: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
+              hips: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
+              skeleton: Annotated[Path | None, typer.Option(help="Take the lengths of bones from this BVH or ASF/AMC file.")] = None) -> None:
+    """Make a mannequin of any size and build, as a GLB with skin and joints."""
+    from .character import Actor, Build, joints_of, tailored, write
+    from .output import output_file
+
+    output_file(out, ".glb")
+    bones = None
+    if skeleton is not None:
+        from controllers.mocap import load
+
+        bones = load(skeleton).skeleton
+    body = tailored(Build(height, build, child, shoulders, hips), bones, out.stem)
+    write(out, [Actor(out.stem, body, joints_of(body))])
+    _say(f"{out}: {height:g} m, {len(body.levels[0].triangles)} triangles; `gambol play --character {out}` wears it")
 
 
 @app.command()
@@ -250,6 +295,41 @@ def scenarios() -> None:
         film = load(name)
         people = "1 actor" if len(film.actors) == 1 else f"{len(film.actors)} actors"
         typer.echo(f"{name:14} {film.duration:4g} s  {people:8}  {film.title}")
+
+
+@app.command()
+@plainly
+def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scenarios or .toml files; all shipped ones by default.")] = None,
+            out: Annotated[Path, typer.Option("-o", "--out", help="The folder for the page and its films.")] = Path("gallery"),
+            size: Annotated[str | None, typer.Option(help="Width x height in pixels; each scenario's by default.")] = None,
+            preset: Quality = Preset.full,
+            library: Library = None,
+            force: Annotated[bool, typer.Option("--force", help="Make films anew that are up to date.")] = False) -> None:
+    """Film all scenarios into a folder, with a page of posters, films and figures."""
+    from .gallery import PAGE, make, plan, write_page
+    from .scenario import shipped
+
+    controller = _controller(library)
+    plans = plan(names or shipped(), out, controller, preset.value, None if size is None else _size(size), force)
+    todo = [one for one in plans if not one.fresh]
+    write_page(out)
+
+    from .hosts import GraphicsError, Offscreen
+
+    done = 0
+    try:
+        with _progress() as bar:
+            task = bar.add_task("", total=sum(one.film.frames for one in todo), visible=bool(todo))
+            for one in todo:
+                bar.update(task, description=one.film.title)
+                with Offscreen(one.film.size, preset.value) as stage:
+                    make(one, out, controller, stage, lambda: bar.advance(task))
+                done += 1
+    except GraphicsError as error:
+        raise Mistake(str(error)) from None
+    finally:
+        kept = len(plans) - len(todo)
+        _say(f"{out / PAGE}: {done} of {len(todo)} films made" + (f", {kept} up to date" if kept else ""))
 
 
 @library_app.command()
@@ -316,10 +396,15 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
         _say(str(picture))
 
 
-def _controller(library: Path | None):
+def _controller(library: Path | None, character: Path | None = None):
     from controllers.locomotion import Locomotion
 
-    return Locomotion.load(library)
+    if character is None:
+        return Locomotion.load(library)
+    from .character import load
+    from .embodied import Embodied
+
+    return Embodied.of(Locomotion.load(library), load(character))
 
 
 def _size(text: str) -> tuple[int, int]:
