@@ -6,6 +6,7 @@ replaying, testing and crowds need nothing more than keeping states.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol
 
@@ -15,14 +16,29 @@ from .body import Pose
 
 
 @dataclass(frozen=True, eq=False)
+class Leap:
+    """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land.
+
+    airtime: [s], or None for the least effort.
+    """
+
+    place: np.ndarray
+    airtime: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Intent:
     """What somebody wants of a character, in the character's own ground frame.
 
     velocity: (..., 3) forward speed v_f [m/s], angular speed ω [rad/s, counter-clockwise from
-    above] and lateral speed v_l [m/s, positive to the left].
+    above] and lateral speed v_l [m/s, positive to the left]. leap: a jump, as long as it is wanted.
+    around: what stands about, anything with a box's centre, size and heading or a pillar's foot,
+    radius and height (`game.scene` has both).
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    leap: Leap | None = None
+    around: Sequence[Any] = ()
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:
@@ -47,6 +63,9 @@ class CharacterState:
     pose: the pose of the last step. contacts: (..., 4) bool, which of left heel, left ball,
     right heel, right ball stand on the floor.
     memory: what the active controller keeps for itself, a frozen dataclass of its own.
+    floor: (...) how high the floor lies that the character stands on [m].
+    previous, elapsed: the pose a step before and that step's length [s]: how the body moves, for
+    whoever takes over. None where nobody knows.
     """
 
     ground: np.ndarray
@@ -54,6 +73,9 @@ class CharacterState:
     pose: Pose
     contacts: np.ndarray
     memory: Any = None
+    floor: np.ndarray | float = 0.0
+    previous: Pose | None = None
+    elapsed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -64,14 +86,20 @@ class Status:
     reason: str = ""
 
 
+class Unable(ValueError):
+    """A controller can't do what is asked from here; the message says why."""
+
+
 class Controller(Protocol):
     """What the world asks of a controller."""
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
-        """How well it could start from here for this intent: 0 not at all … 1 perfectly."""
+        """How well it could start from here for this intent: 0 not at all … 1 perfectly. Of one that
+        is active already: how firmly it holds on."""
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state with this controller's own memory, ready to step."""
+        """The state with this controller's own memory, ready to step: it takes over pose and motion as
+        they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds."""

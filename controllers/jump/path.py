@@ -27,16 +27,10 @@ HALF_STANCE, SHOE = 0.10, 0.045
 """From the middle to a landing foot, and from a foot's line to the edge of its sole [m], at standard height."""
 MOST_LEAD = 0.62
 """How far ahead of its foot a body may leave the floor, as a share of the leg."""
+MEAN_PUSH = 1.85
+"""The mean force of a push in an adult's weights on Earth, at strength 1."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
-
-
-class Refused(ValueError):
-    """A jump that this body can't make; the message says why. nearest: a place (3,) [m] that it can reach."""
-
-    def __init__(self, reason: str, nearest: np.ndarray | None = None):
-        super().__init__(reason)
-        self.nearest = nearest
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +191,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
 
 def depth(physique: Physique, velocity: float, rise: float, gravity: float) -> float:
     """How deep [m] a body crouches so that its push brings it to `velocity` [m/s] upward."""
-    return max(velocity**2 / (2.0 * 0.85 * max(gravity, 3.0)) - rise, 0.07)
+    spare = MEAN_PUSH * 9.81 * physique.strength - gravity
+    return max(velocity**2 / (2.0 * max(spare, 0.1)) - rise, 0.07 * physique.height / 1.741)
 
 
 def _over(height: float, aside: float) -> float:

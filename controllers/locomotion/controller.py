@@ -13,6 +13,7 @@ import assets
 
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Intent, Status
+from .entry import entered
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
 from .memory import Settings, legs_of, memory_dtype, put
@@ -60,8 +61,9 @@ class Locomotion:
         """The standard human that the poses are of."""
         return self.library.skeleton
 
-    def start(self, ground=(0.0, 0.0, 0.0)) -> CharacterState:
-        """A character at rest at ground (..., 3) x, z [m], heading [rad]. ValueError unless finite."""
+    def start(self, ground=(0.0, 0.0, 0.0), floor=0.0) -> CharacterState:
+        """A character at rest at ground (..., 3) x, z [m], heading [rad], on a floor (...) [m] high.
+        ValueError unless finite."""
         ground = np.asarray(ground, float)
         if ground.shape[-1:] != (3,) or not np.isfinite(ground).all():
             raise ValueError(f"ground must be finite (..., 3) x, z, heading; got {ground!r}")
@@ -73,7 +75,7 @@ class Locomotion:
         memory["row"][..., DURATION_AT] = 1.0
         memory["library"] = self._library
         state = CharacterState(ground, np.zeros(ground.shape), Pose(np.zeros(ground.shape), np.zeros(3)),
-                               np.zeros(ground.shape[:-1] + (4,), bool), memory)
+                               np.zeros(ground.shape[:-1] + (4,), bool), memory, floor)
         for _ in range(2):  # the first step finds the pose, the second knows where its feet were
             state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)
         memory = state.memory.copy()
@@ -105,9 +107,11 @@ class Locomotion:
         local = np.empty((len(memory), joints, 3, 3), np.float32)
         body, legs, walk, run, table, velocities = self.tables
         step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, velocities, root, local)
+        root[:, 1] += np.broadcast_to(state.floor, shape).reshape(-1)
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)
-        return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory), pose
+        return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory,
+                              state.floor), pose
 
     def _knows(self, memory) -> bool:
         return (isinstance(memory, np.ndarray) and memory.dtype == self._dtype
@@ -129,9 +133,9 @@ class Locomotion:
         return 0.5
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state as seen by this controller: at rest where the character is, unless it walked before,
-        over this very library."""
-        return state if self._knows(state.memory) else self.start(state.ground)
+        """The state as seen by this controller: as it is if it walked before, over this very library; else
+        standing or walking on from its pose, its motion and its feet."""
+        return state if self._knows(state.memory) else entered(self, state)
 
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""

@@ -1,0 +1,201 @@
+"""The jump controller: ``state', pose = jump.step(state, intent, dt)``, one planned jump at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..body import Pose, Skeleton, forward_kinematics
+from ..body.anatomy import centre_of_mass
+from ..body.rotations import log
+from ..contract import CharacterState, Intent, Status
+from .dynamics import GRAVITY, Physique
+from .path import Path, Start, landing_feet, path
+from .plan import Plan
+from .planner import plan
+from .reach import Refused, fault, floor_at, gap
+
+READY, HOLDS, OVER = 1.0, 1.5, 0.3
+"""How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
+and somebody wants to walk."""
+RUNNING = 1.2
+"""Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
+FRESH = 0.06
+"""A foot has just struck while the body is no further than this past it [m]."""
+UP = 0.06
+"""A foot higher than this over the floor is in the air [m]."""
+RISEN = 0.45
+"""So long after touch-down [s] a jumper can walk on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Jumping:
+    """What a jumper remembers. time: [s] since the wind-up began. fault: what ended it in mid-air."""
+
+    plan: Plan
+    time: float = 0.0
+    fault: str = ""
+
+
+class Jump:
+    """Jumps to where `intent.leap` says, from rest, a walk or a run.
+
+    physique: whose body. gravity: (3,) [m/s²].
+    Pre-condition: both feet stand, or one of a runner has just struck; the target is within reach
+    (path, strength, room). Post-condition: it stands on both feet over the target, or still moves
+    forward over them with the velocity that the state says. Expected performance: nothing comes in
+    its way in the air.
+    """
+
+    def __init__(self, physique: Physique = Physique(), gravity=GRAVITY):
+        self.physique = physique
+        self.gravity = np.asarray(gravity, float)
+        if self.gravity.shape != (3,) or not np.isfinite(self.gravity).all() or not self.gravity[1] < -0.1 \
+                or np.hypot(self.gravity[0], self.gravity[2]) > 1e-9:
+            raise ValueError(f"gravity must pull straight down by 0.1 m/s² or more, got {gravity!r}")
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The skeleton that the poses are of."""
+        return self.physique.skeleton
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """READY if the jump that is asked can start now; while one goes on, how firmly it holds on."""
+        if isinstance(state.memory, Jumping):
+            walks = bool(np.abs(intent.velocity).max() > 0.05) or intent.leap is not None
+            landed = state.memory.time > state.memory.plan.touch_down + RISEN
+            return OVER if walks and landed else HOLDS
+        if intent.leap is None:
+            return 0.0
+        return READY if self._moment(state) else 0.0
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state at the beginning of a planned jump. Refused, with the reason, if it can't be made."""
+        if intent.leap is None:
+            raise Refused("nobody asked for a jump")
+        return replace(state, memory=Jumping(self.plan(state, intent)))
+
+    def plan(self, state: CharacterState, intent: Intent) -> Plan:
+        """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
+        leap = intent.leap
+        place = np.asarray(leap.place, float)
+        if place.shape != (3,) or not np.isfinite(place).all():
+            raise Refused(f"the target must be three finite numbers, got {leap.place!r}")
+        if leap.airtime is not None and not 0.05 <= leap.airtime <= 10.0:
+            raise Refused(f"the airtime must be within 0.05 … 10 s, got {leap.airtime!r}")
+        start = self.start_of(state)
+        around = [thing for thing in intent.around if not hasattr(thing, "place")]
+        for thing in around:
+            if gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0:
+                raise Refused("the target is inside something solid", self._nearest(state, start, place, leap.airtime, around))
+        reason = self._fault(state, start, place, leap.airtime, around)
+        if reason:
+            raise Refused(reason, self._nearest(state, start, place, leap.airtime, around))
+        return plan(self.physique, start, place, float(state.floor), self.gravity, leap.airtime)
+
+    def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None) -> Path:
+        """The path estimate alone: the arc to draw while aiming."""
+        body = self.physique.tables
+        feet = start.feet.copy()
+        feet[:, 1], feet[:, 4] = floor + body.sole, 0.0
+        pushing = feet if start.single is None else feet[start.single:start.single + 1]
+        return path(self.physique, start, pushing, landing_feet(place, start.heading, body), floor,
+                    self.gravity, airtime)
+
+    def start_of(self, state: CharacterState) -> Start:
+        """What a jump needs to know of a state."""
+        skeleton, masses = self.skeleton, self.physique.anatomy
+        pose = Pose(np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))
+        positions, turned = forward_kinematics(skeleton, pose.root, pose.rotations)
+        centre = centre_of_mass(masses, positions, turned)
+        velocity, rates = np.zeros(3), np.zeros((len(skeleton), 3))
+        if state.previous is not None and state.elapsed > 0.0:
+            before = forward_kinematics(skeleton, np.asarray(state.previous.root, float),
+                                        np.asarray(state.previous.rotations, float))
+            velocity = (centre - centre_of_mass(masses, *before)) / state.elapsed
+            rates = log(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
+        feet = np.zeros((2, 5))
+        for side, name in enumerate(("Left", "Right")):
+            foot = turned[skeleton.index(name + "Foot")]
+            feet[side, :3] = positions[skeleton.index(name + "Toe")]
+            feet[side, 3] = np.arctan2(foot[0, 2], foot[2, 2])
+            feet[side, 4] = np.arcsin(np.clip(-foot[1, 2], -1.0, 1.0))
+        return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),
+                     self._single(state, feet))
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
+        if not 0.0 < dt <= 0.1:
+            raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
+        jumping: Jumping = state.memory
+        made, time = jumping.plan, min(jumping.time + dt, jumping.plan.duration)
+        pose = made.at(time)
+        n = int(np.clip(np.searchsorted(made.times, time) , 0, len(made.times) - 1))
+        landed = time >= made.touch_down
+        floor = float(made.feet[0, 1] - self.physique.tables.sole) if landed else float(state.floor)
+        heading = float(state.ground[2])
+        ground = np.array([made.centres[n, 0], made.centres[n, 2], heading])
+        c, s = np.cos(heading), np.sin(heading)
+        vx, _, vz = made.velocities[n]
+        velocity = np.array([s * vx + c * vz, 0.0, c * vx - s * vz])
+        fault = jumping.fault
+        if made.take_off < time < made.touch_down and intent.around and not fault:
+            fault = self._struck(pose, intent.around, time, made)
+        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n].copy(),
+                        memory=Jumping(made, time, fault), floor=floor)
+        return after, pose
+
+    def status(self, state: CharacterState) -> Status:
+        """Running until it stands, or until something is struck in the air."""
+        jumping: Jumping = state.memory
+        if jumping.fault:
+            return Status("failed", jumping.fault)
+        return Status("done" if jumping.time >= jumping.plan.duration else "running")
+
+    def _moment(self, state: CharacterState) -> bool:
+        """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
+        start = self.start_of(state)
+        low = start.feet[:, 1] - float(state.floor) < self.physique.tables.sole + UP * self.physique.height / 1.741
+        if np.hypot(start.velocity[0], start.velocity[2]) < RUNNING:
+            return bool(low.any())
+        if start.single is None:
+            return False
+        towards = start.velocity * [1.0, 0.0, 1.0] / np.hypot(start.velocity[0], start.velocity[2])
+        return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
+
+    def _single(self, state: CharacterState, feet: np.ndarray) -> int | None:
+        """The foot that pushes a runner off: the one that stands, if the other is in the air."""
+        if np.hypot(state.velocity[0], state.velocity[2]) < RUNNING:
+            return None
+        standing = np.asarray(state.contacts).reshape(2, 2).any(1)
+        return int(np.argmax(standing)) if standing.sum() == 1 else None
+
+    def _fault(self, state, start, place, airtime, around) -> str:
+        return fault(self.physique, self.path(start, place, float(state.floor), airtime), around, float(state.floor))
+
+    def _nearest(self, state, start, place, airtime, around) -> np.ndarray | None:
+        """The farthest place on the way to the target that can be reached, by bisection; None if none can."""
+        here = np.append(start.feet[:, :3].mean(0)[[0, 2]], 0.0)[[0, 2, 1]]
+        here[1] = float(state.floor)
+        low, high, found = 0.0, 1.0, None
+        for _ in range(7):
+            middle = 0.5 * (low + high)
+            there = here + middle * (place - here)
+            there[1] = floor_at(there[0], there[2], around, max(place[1], here[1]) + 1e-6) if around else there[1]
+            if self._fault(state, start, there, airtime, around):
+                high = middle
+            else:
+                low, found = middle, there
+        return found
+
+    def _struck(self, pose: Pose, around, time: float, made: Plan) -> str:
+        """What the flying body strikes now, in words."""
+        positions, _ = forward_kinematics(self.skeleton, pose.root, pose.rotations)
+        feet = [self.skeleton.index(side + part) for side in ("Left", "Right") for part in ("Foot", "Toe")]
+        body = np.delete(positions, feet, 0)
+        for thing in around:
+            if gap(body, thing).min() < 0.0:
+                x, y, z = body[int(gap(body, thing).argmin())]
+                return f"it struck something in the air at ({x:.1f}, {y:.1f}, {z:.1f}) m"
+        return ""

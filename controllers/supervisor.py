@@ -1,0 +1,101 @@
+"""Which controller acts now (Faloutsos 2001): each says how well it could, and the best one does.
+
+The supervisor is a controller itself. It asks, picks, and passes pose and motion on; taking them
+over without a jump is each controller's own `enter`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from .body import Pose, Skeleton
+from .contract import CharacterState, Controller, Intent, Status, Unable
+
+
+@dataclass(frozen=True, eq=False)
+class Duty:
+    """Who is on duty. active: a controller's name. memory: its own. why: why it was chosen, in words.
+
+    refused: why what was asked last can't be done; empty if it can.
+    """
+
+    active: str
+    memory: Any
+    why: str
+    refused: str = ""
+
+
+class Supervisor:
+    """Several controllers as one. The first is where every character starts and what always can go on.
+
+    controllers: by name, all for the same skeleton. Characters come singly: for a crowd that only
+    walks, step the locomotion itself.
+    """
+
+    def __init__(self, controllers: Mapping[str, Controller]):
+        self.controllers = dict(controllers)
+        self.first = next(iter(self.controllers))
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The skeleton that the poses are of."""
+        return self.controllers[self.first].skeleton
+
+    def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
+        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
+        state = self.controllers[self.first].start(ground, floor)
+        return replace(state, memory=Duty(self.first, state.memory, "it starts here"))
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of dt seconds by whoever is best for it now."""
+        duty = state.memory
+        own = replace(state, memory=duty.memory)
+        duty, own = self._choose(duty, own, intent)
+        before = state.pose
+        after, pose = self.controllers[duty.active].step(own, intent, dt)
+        duty = replace(duty, memory=after.memory)
+        return replace(after, memory=duty, previous=before, elapsed=dt), pose
+
+    def _choose(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState]:
+        """Who acts in this step, and the state it starts from."""
+        active = self.controllers[duty.active]
+        status = active.status(own)
+        # one that ended holds on to nothing
+        hold = active.precondition(own, intent) if status.kind == "running" else 0.0
+        bids = {name: other.precondition(own, intent)
+                for name, other in self.controllers.items() if name != duty.active}
+        refused = "" if intent.leap is None else duty.refused
+        for name in sorted(bids, key=bids.get, reverse=True):
+            if bids[name] <= hold:
+                break
+            try:
+                entered = self.controllers[name].enter(own, intent)
+            except Unable as reason:
+                refused = str(reason)
+                continue
+            because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
+            why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"
+            return Duty(name, entered.memory, why, status.reason if status.kind == "failed" else ""), entered
+        return replace(duty, refused=refused), own
+
+    def active(self, state: CharacterState) -> tuple[str, CharacterState]:
+        """Who is on duty, and the state as that controller sees it."""
+        return state.memory.active, replace(state, memory=state.memory.memory)
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """As good as its best."""
+        own = self.active(state)[1]
+        return max(controller.precondition(own, intent) for controller in self.controllers.values())
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state under this supervisor, its first controller on duty unless one is already."""
+        if isinstance(state.memory, Duty) and state.memory.active in self.controllers:
+            return state
+        entered = self.controllers[self.first].enter(state, intent)
+        return replace(entered, memory=Duty(self.first, entered.memory, "it takes over"))
+
+    def status(self, state: CharacterState) -> Status:
+        """It never ends by itself."""
+        return Status("running")
