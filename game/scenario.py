@@ -204,13 +204,19 @@ def shipped() -> tuple[str, ...]:
     return tuple(sorted(file.stem for file in asset("scenarios").glob("*.toml")))
 
 
+def locate(name: str | File) -> File:
+    """The file of a scenario: that of a shipped one, or `name` itself. ScenarioError if there is neither."""
+    file = File(name)
+    if file.suffix == ".toml" or file.is_file():  # a folder of that name shadows nothing
+        return file
+    if str(name) not in shipped():
+        raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}")
+    return asset("scenarios", f"{name}.toml")
+
+
 def load(name: str | File) -> Scenario:
     """A scenario by the name of a shipped one, or from a file. ScenarioError says what is wrong."""
-    file = File(name)
-    if file.suffix != ".toml" and not file.is_file():  # a folder of that name shadows nothing
-        if str(name) not in shipped():
-            raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}")
-        file = asset("scenarios", f"{name}.toml")
+    file = locate(name)
     try:
         text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:

@@ -60,6 +60,20 @@ FAULTS = [
     ("duration = 2", 'duration = 2\n[[shots]]\nactor = "C"', "shots[0]: no actor is called 'C'; there are A, B"),
     ("duration = 2", "duration = 2\n[[shots]]\n[[shots]]\nat = 0", "shots must begin at = 0 and then rise"),
     ("duration = 2", "duration = ", "not TOML"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nkind = "dolly"\npath = [[0, 1, 0]]\ntarget = [0, 1, 9]', "shots[0].path: tuple should have at least 2 items"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nkind = "dolly"\ntarget = [0, 1, 9]', "shots[0]: a dolly shot needs path = [[x, y, z], …]"),
+    ("duration = 2", 'duration = 2\n[[shots]]\neye = [0, 1, 0]', "shots[0]: a follow shot has no eye; that goes with kind = fixed"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nkind = "orbit"\nactor = "A"\ntarget = [0, 1, 0]', "shots[0]: an orbit shot goes round an actor or a target, not both"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nunder = "what"', "shots[0]: `under` stands under a caption"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nkind = "orbit"\nviews = [{}, {}]', "shots[0]: a shot with views has no kind of its own"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nviews = [{}]', "shots[0].views: tuple should have at least 2 items"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nviews = [{}, { actor = "C" }]', "shots[0].views[1]: no actor is called 'C'"),
+    ("duration = 2", 'duration = 2\nposter = 2', "poster is a moment of the film, before its end at 2 s; got 2"),
+    ("duration = 2", 'duration = 2\nprops = [{ kind = "tree" }]', "props[0]: kind should be one of box, pillar, goal, got 'tree'"),
+    ("duration = 2", 'duration = 2\nprops = [{ kind = "pillar", foot = [0, 0, 0], radius = 0 }]', "props[0].radius: input should be greater than 0, got 0"),
+    ("duration = 2", 'duration = 2\nprops = [{ centre = [0, 1, 0] }]', "props[0].size: is missing, and needed"),
+    ("duration = 2", 'duration = 2\nprops = [{ centre = [0, 1, 5], size = [1, 2, 1] }]\n[[shots]]\nkind = "dolly"\npath = [[-3, 1, 5], [3, 1, 5]]\ntarget = [0, 1, 0]',
+     "shots[0].path: the camera would be inside of props[0]"),
 ]
 
 
