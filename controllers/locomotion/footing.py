@@ -48,6 +48,8 @@ RISE_HALFLIFE = 0.04
 """… and sinks back with this half-life once its ball is free [s]."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
+YIELDING = 0.25
+"""A foot gives way to the other fully once this share of its swing is over."""
 CLOSE = 0.03
 """A body comes to rest once its feet are this near to where they belong [m]."""
 
@@ -229,9 +231,10 @@ def _hold_free(m, body, before, height, dt):
     aside, wanted = m.aside.copy(), np.empty(3)
     for foot in range(2):
         aside_kernel(m, body, foot, height, wanted)
+        share = min(_swing_progress(m, foot) / YIELDING, 1.0)
         for i in range(3):
-            m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i], wanted[i],
-                                                                    HALFLIFE, dt)
+            m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
+                                                                    share * wanted[i], HALFLIFE, dt)
     for k in range(4):
         if m.standing[k] == 1:
             continue
