@@ -192,10 +192,8 @@ class SpacePanel:
         near = np.clip(0.62 - 0.42 * 0.5 * (a[:, 2] + b[:, 2]), 0.12, 1.0)
         shade = near * np.where(mesh.outer, 0.5, 0.17) * opacity
         colour = style.family_colour(mesh.family)
-        steps = [style.packed(colour, k / 32) for k in range(33)]
-        for (x0, y0, _), (x1, y1, _), k in zip(a.tolist(), b.tolist(), np.rint(32 * shade).astype(int).tolist()):
-            if k:
-                pen.add_line((x0, y0), (x1, y1), steps[k], scale)
+        for (x0, y0, _), (x1, y1, _), opacity in zip(a.tolist(), b.tolist(), shade.tolist()):
+            pen.add_line((x0, y0), (x1, y1), style.packed(colour, opacity), scale)
 
     def _simplex(self, pen, character: Character, mesh: Mesh, view, scale: float) -> None:
         memory = character.state.memory

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from .toolkit import imgui, implot
 
 Colour = tuple[float, float, float, float]
@@ -19,12 +21,19 @@ ASKED, BLENDED, ACHIEVED = (0.95, 0.95, 0.93, 1.0), (0.38, 0.70, 0.86, 1.0), ACC
 GOOD, FAIR, BAD = (0.56, 0.78, 0.50, 1.0), (0.92, 0.76, 0.38, 1.0), (0.93, 0.44, 0.36, 1.0)
 LETTERS = 15.0
 """Height of letters [px] where the picture is 720 pixels high."""
+SHADES = 64
+
+
+@lru_cache(maxsize=64)
+def _shades(colour: Colour) -> list[int]:
+    """A colour as draw lists take it, from no opacity to all of its own in SHADES steps."""
+    r, g, b = (round(255.0 * v) for v in colour[:3])
+    return [round(255.0 * colour[3] * k / SHADES) << 24 | b << 16 | g << 8 | r for k in range(SHADES + 1)]
 
 
 def packed(colour: Colour, opacity: float = 1.0) -> int:
-    """A colour as draw lists take it."""
-    r, g, b, a = (int(255.0 * min(max(v, 0.0), 1.0) + 0.5) for v in (*colour[:3], colour[3] * opacity))
-    return a << 24 | b << 16 | g << 8 | r
+    """A colour as draw lists take it, its opacity times a factor 0 … 1."""
+    return _shades(colour)[int(SHADES * min(max(opacity, 0.0), 1.0) + 0.5)]
 
 
 def fade(colour: Colour, opacity: float) -> Colour:
