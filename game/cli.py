@@ -227,7 +227,7 @@ def _write_motion(film, out: str | Path, controller) -> None:
     from .export import checked, takes, write
     from .film import run
 
-    checked(out)
+    checked(out, [actor.name for actor in film.actors])
     with _progress() as bar:
         done = takes((frame.before, frame.after, frame.alpha)
                      for frame in bar.track(run(film, controller), film.frames, description=film.title))

@@ -77,12 +77,18 @@ def sampled(moments: Iterable[Any], fps: float) -> Iterable[tuple[World, World, 
             number += 1
 
 
-def checked(path: str | Path) -> Path:
-    """A path that motion can be written to. OutputError, saying what would be right, else."""
+def checked(path: str | Path, names: Sequence[str] = ()) -> list[Path]:
+    """The files that the motion of characters of these names goes into: all in one .glb, a .bvh each.
+
+    OutputError, saying what would be right, where one can't be written.
+    """
     path = Path(path)
-    if path.suffix.lower() not in SUFFIXES:
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
         raise OutputError(f"{path}: motion goes into a file that ends in {' or '.join(SUFFIXES)}")
-    return output_file(path, path.suffix.lower())
+    if suffix == ".glb" or len(names) < 2:
+        return [output_file(path, suffix)]
+    return [output_file(path.with_name(f"{path.stem}-{name}{path.suffix}"), suffix) for name in names]
 
 
 def write(path: str | Path, takes: Sequence[Take], fps: float = RATE) -> list[Path]:
@@ -91,12 +97,11 @@ def write(path: str | Path, takes: Sequence[Take], fps: float = RATE) -> list[Pa
     .glb: all in one file. .bvh: one file each, NAME-CHARACTER.bvh where there are several.
     OutputError where nothing can be written, or where nothing was played.
     """
-    path = checked(path)
+    paths = checked(path, [take.name for take in takes])
     if not takes or not len(takes[0].poses):
         raise OutputError(f"{path}: nothing was played yet that could be written")
-    if path.suffix.lower() == ".glb":
-        return [glb.write(path, [_actor(take) for take in takes], fps)]
-    paths = [path] if len(takes) == 1 else [path.with_name(f"{path.stem}-{take.name}{path.suffix}") for take in takes]
+    if paths[0].suffix.lower() == ".glb":
+        return [glb.write(paths[0], [_actor(take) for take in takes], fps)]
     for take, own in zip(takes, paths):
         write_motion(motion_clip(take.name, take.skeleton, take.poses, fps), own)
     return paths

@@ -142,6 +142,8 @@ class Play:
             self.wants_picture = True
         elif action == "film":
             self._film()
+        elif action == "export":
+            self._export()
         elif action in session.ACTIONS or "=" in action or action == "resume":
             self._ask(action, player)
 
@@ -285,6 +287,14 @@ class Play:
         if self.studio is not None:
             try:
                 self.say(str(self.studio.screenshot(pixels)))
+            except OutputError as error:
+                self.say(str(error))
+
+    def _export(self) -> None:
+        """Keep the motion of the last half minute, or since the last reset."""
+        if self.studio is not None:
+            try:
+                self.say(str(self.studio.motion(self.history)))
             except OutputError as error:
                 self.say(str(error))
 

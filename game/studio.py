@@ -19,6 +19,7 @@ import numpy as np
 
 from .log import SUFFIX
 from .output import OutputError, output_file, output_folder
+from .session import Moment
 
 OUT = Path("out")
 """Where what is kept while playing goes, unless it is named."""
@@ -114,6 +115,17 @@ class Studio:
         self._threads[-1].start()
         return path
 
+    def motion(self, history: Sequence[Moment]) -> Path:
+        """Keep what was played since the last reset as an animated GLB. Its path; it is there a moment later.
+
+        history: one moment for each step of the world. OutputError.
+        """
+        path = stamped(output_folder(self.folder), ".glb")
+        path.touch(exist_ok=False)
+        self._threads.append(threading.Thread(target=_write_motion, args=(path, history)))
+        self._threads[-1].start()
+        return path
+
     def film(self, log: Path, start: float, end: float, overlays: Sequence[str]) -> Path:
         """Have a part of a log [s] filmed, after the films before it. Its path. OutputError."""
         taken = {film.path for film in self.films} | {path for path, _ in self._waiting}
@@ -152,3 +164,11 @@ class Studio:
             for film in self.films:
                 film.stop()
             raise
+
+
+def _write_motion(path: Path, history: Sequence[Moment]) -> None:
+    from .export import takes, write
+
+    numbers = [moment.after.number for moment in history]
+    start = max((i for i in range(1, len(numbers)) if numbers[i] <= numbers[i - 1]), default=0)
+    write(path, takes((moment.before, moment.after, 1.0) for moment in history[start:]))

@@ -44,7 +44,7 @@ class Stage:
 
 @pytest.fixture
 def short(tmp_path, monkeypatch):
-    monkeypatch.setattr(cli, "_controller", lambda library: Glide())
+    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
     monkeypatch.setattr(game.hosts, "Offscreen", Stage, raising=False)
     file = tmp_path / "short.toml"
     file.write_text(SHORT)

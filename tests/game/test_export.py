@@ -142,3 +142,44 @@ def test_what_cannot_be_written_is_said(tmp_path):
     with pytest.raises(ValueError, match="finite"):
         export.write(tmp_path / "x.glb", [broken])
     assert not list(tmp_path.glob("*"))
+
+
+def test_the_key_keeps_what_was_played_since_the_last_reset(tmp_path):
+    from stand_in import Glide
+
+    from game.play import Play
+    from game.studio import Studio
+
+    game = Play(Glide(), studio=Studio(tmp_path))
+    for tick in range(50):
+        if tick == 30:
+            game.do("reset")
+        game.tick(1 / RATE)
+    game.do("export")
+    game.studio.finish(lambda line: None)
+    file, = tmp_path.glob("*.glb")
+    assert any(file.name in text for _, text in game.notices)
+    frames = len(described(file)["animations"][0]["extras"]["contacts"]["Player 1"])
+    assert 15 <= frames <= 21
+
+
+def test_the_commands_write_what_they_are_asked_for(tmp_path, monkeypatch):
+    from stand_in import Glide
+    from typer.testing import CliRunner
+
+    from game import cli
+
+    def said(*words):
+        done = CliRunner().invoke(cli.app, list(map(str, words)))
+        return done.exit_code, done.output
+    assert said("character", "-o", tmp_path / "kid.glb", "--height", 1.2, "--child", 1)[0] == 0
+    assert abs(load(tmp_path / "kid.glb").levels[0].positions[:, 1].max() - 1.2) < 0.01
+    code, text = said("character", "-o", tmp_path / "x.glb", "--height", 12)
+    assert code == 2 and "height 12" in text
+    code, text = said("export", "demo", "-o", tmp_path / "x.glb", "--character", tmp_path / "none.glb")
+    assert code == 2 and "none.glb: can't be read" in text
+    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
+    assert said("export", "start_stop", "-o", tmp_path / "x.glb", "--fps", 10)[0] == 0
+    assert described(tmp_path / "x.glb")["animations"][0]["extras"]["fps"] == 10
+    code, text = said("export", "start_stop", "-o", tmp_path / "x.fbx")
+    assert code == 2 and ".bvh or .glb" in text
