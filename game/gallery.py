@@ -31,7 +31,7 @@ from .log import digest
 from .output import named, output_folder
 from .quality import Quality, measure
 from .recorder import recorder
-from .scenario import Scenario, load, locate
+from .scenario import Scenario, ScenarioError, load, locate
 from .world import DT, RATE
 
 PAGE = "index.html"
@@ -87,12 +87,15 @@ def plan(names: Sequence[str], folder: str | Path, controller: Any, preset: str,
          size: tuple[int, int] | None = None, force: bool = False) -> tuple[Plan, ...]:
     """What making the films of some scenarios takes; names: of shipped ones, or .toml files.
 
-    ScenarioError for a scenario that cannot be used, OutputError for a folder that can't be written.
+    ScenarioError for a scenario that cannot be used or two of one name, OutputError for a folder that
+    can't be written.
     """
     folder = output_folder(folder)
-    made = []
-    for given in names:
+    made, files = [], {}
+    for given in dict.fromkeys(names):
         film, file = load(given), locate(given)
+        if files.setdefault(file.stem, file) != file:
+            raise ScenarioError(f"{file}: its film would have the same name as that of {files[file.stem]}; rename one of them")
         film = film if size is None else film.at_size(size)
         words = (file.read_text("utf-8"), digest(controller), f"{film.size}", preset, version("gambol"), f"{FORMAT}")
         key = hashlib.sha256("\0".join(words).encode()).hexdigest()[:16]

@@ -68,7 +68,7 @@ def test_pictures_in_another_size_rate_and_dress(short, tmp_path):
     done = gambol("render", short, "-o", tmp_path / "frames", "--size", "32x20", "--fps", 10, "--overlay", "trail, contacts")
     assert done.exit_code == 0
     assert len(list((tmp_path / "frames").glob("frame_*.png"))) == 5 == len(Stage.scenes)
-    shown = Stage.scenes[0].overlays
+    shown = Stage.scenes[0][0].overlays
     assert shown.mesh and shown.trail and shown.contacts and not shown.path
 
 

@@ -4,8 +4,10 @@ import json
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
-from game import gallery
+import game.hosts
+from game import cli, gallery
 from game.scenario import ScenarioError, load, locate
 from stand_in import Glide
 
@@ -108,3 +110,30 @@ def test_names_that_are_none(tmp_path):
     with pytest.raises(ScenarioError, match="no scenario is called 'nowhere'"):
         gallery.plan(["nowhere"], tmp_path, Glide(), "fast")
     assert locate("demo").is_file()
+
+
+def test_two_films_of_one_name_are_refused(names, tmp_path):
+    (tmp_path / "other").mkdir()
+    twin = tmp_path / "other" / "one.toml"
+    twin.write_text(TEXT, encoding="utf-8")
+    with pytest.raises(ScenarioError, match="same name as that of .*one.toml"):
+        gallery.plan([*names, str(twin)], tmp_path / "out", Glide(), "fast")
+    assert len(gallery.plan([*names, *names], tmp_path / "out", Glide(), "fast")) == 2
+
+
+def test_the_command_makes_what_is_missing(names, tmp_path, monkeypatch):
+    class Hidden(Stage):
+        def __init__(self, size, preset):
+            super().__init__()
+
+        __enter__ = lambda self: self
+        __exit__ = lambda self, *error: None
+
+    monkeypatch.setattr(game.hosts, "Offscreen", Hidden)
+    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
+    def gallery_of(*more):
+        return CliRunner().invoke(cli.app, ["gallery", *more, "-o", str(tmp_path / "out"), "--preset", "fast"])
+    assert "1 of 1 films made" in gallery_of(names[0]).stderr
+    done = gallery_of(*names)
+    assert done.exit_code == 0 and "index.html: 1 of 1 films made, 1 up to date" in done.stderr
+    assert gallery_of("nowhere").exit_code == 2
