@@ -12,6 +12,7 @@ import json
 import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -36,11 +37,13 @@ class LogError(ValueError):
 class Log:
     """What was played. players: at the beginning. ticks: for each, one wish for each player.
 
-    library: the digest of the gait library it was played with. prints: tick number → `fingerprint`.
+    library: the `digest` of what it was played with. character: the name of the body that was worn,
+    if any. prints: tick number → `fingerprint`.
     """
 
     players: int
     library: str
+    character: str
     ticks: tuple[tuple[Wish, ...], ...]
     prints: dict[int, int] = field(default_factory=dict)
     path: Path = Path("log")
@@ -78,7 +81,8 @@ class LogWriter:
 
     def __init__(self, path: Path, controller: Any, players: int):
         self.path, self._file = Path(path), None
-        self._head = {"gambol": "input log", "format": FORMAT, "library": digest(controller), "players": players}
+        self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
+                      "library": digest(controller), "character": getattr(getattr(controller, "body", None), "name", "")}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
 
     @property
@@ -138,7 +142,7 @@ def read(path: str | Path) -> Log:
             prints[len(ticks)] = print_
     if not ticks:
         raise LogError(f"{path}: nothing was played yet")
-    return Log(head["players"], head["library"], tuple(ticks), prints, path)
+    return Log(head["players"], head["library"], head["character"], tuple(ticks), prints, path)
 
 
 def _head(path: Path, line: bytes) -> dict:
@@ -148,7 +152,7 @@ def _head(path: Path, line: bytes) -> dict:
             raise ValueError
         if head["format"] != FORMAT:
             raise LogError(f"{path}: line 1: a log of format {head['format']}; this Gambol reads format {FORMAT}")
-        if head["players"] not in (1, 2) or not isinstance(head["library"], str):
+        if head["players"] not in (1, 2) or not all(isinstance(head[key], str) for key in ("library", "character")):
             raise ValueError
     except LogError:
         raise
@@ -193,9 +197,11 @@ def _unpacked(block: bytes) -> tuple[list[tuple[Wish, ...]], int | None]:
 
 
 def of_library(log: Log, controller: Any) -> Log:
-    """The log, if it was played with this controller's library; else LogError."""
+    """The log, if it was played with a library and a body that move like this controller's; else LogError."""
     if log.library != digest(controller):
-        raise LogError(f"{log.path}: was played with another gait library; name that one with --library")
+        wearing = f"the character {log.character!r}" if log.character else "the mannequin"
+        raise LogError(f"{log.path}: was played as {wearing}, and with another gait library or in another size: "
+                       "name them with --library and --character")
     return log
 
 

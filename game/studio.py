@@ -14,11 +14,12 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .log import SUFFIX
-from .output import OutputError, output_file, output_folder
+from .output import OutputError, named, output_file, output_folder
 from .session import Moment
 
 OUT = Path("out")
@@ -40,17 +41,17 @@ def stamped(folder: Path, suffix: str) -> Path:
     return unused(folder, time.strftime("gambol-%Y%m%d-%H%M%S"), suffix)
 
 
-def log_file(named: Path | None) -> Path:
+def log_file(given: Path | None) -> Path:
     """Where to keep the log of a game: in the file that is named, else in one of its own.
 
     OutputError for a name that is there already, or where this user may not write; where that is
     not asked for, one plays without rather than not at all.
     """
-    if named is None:
+    if given is None:
         return stamped(OUT, SUFFIX)
-    if named.exists() and not named.is_dir():
-        raise OutputError(f"{named}: is there already, and a log is never overwritten; name another file")
-    return output_file(named, SUFFIX)
+    if given.exists() and not given.is_dir():
+        raise OutputError(f"{given}: is there already, and a log is never overwritten; name another file")
+    return output_file(given, SUFFIX)
 
 
 class Film:
@@ -62,6 +63,7 @@ class Film:
         # one thread of software drawing leaves the game a core of its own
         self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                          stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                         creationflags=getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0),
                                          env=os.environ | {"LP_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"})
         self._reader = threading.Thread(target=self._listen, daemon=True)
         self._reader.start()
@@ -103,15 +105,30 @@ class Studio:
         self.films: list[Film] = []
         self._waiting: list[tuple[Path, tuple[str, ...]]] = []
         self._threads: list[threading.Thread] = []
+        self._said: list[str] = []
 
     def screenshot(self, pixels: np.ndarray) -> Path:
         """Keep a picture (H, W, 3 or 4) uint8. Its path; it is there a moment later. OutputError."""
         from PIL import Image
 
-        path = stamped(output_folder(self.folder), ".png")
-        path.touch(exist_ok=False)  # the name is taken from now on
         image = Image.fromarray(np.ascontiguousarray(pixels[..., :3]))
-        self._threads.append(threading.Thread(target=image.save, args=(path,), kwargs={"compress_level": 4}))
+        return self._made(".png", lambda path: image.save(path, compress_level=4))
+
+    def _made(self, suffix: str, write: Callable[[Path], Any]) -> Path:
+        """The path of a file that a thread writes. What goes wrong there `tend` tells."""
+        path = stamped(output_folder(self.folder), suffix)
+        with named(path):
+            path.touch(exist_ok=False)  # the name is taken from now on
+
+        def run() -> None:
+            try:
+                with named(path):
+                    write(path)
+            except OutputError as error:
+                path.unlink(missing_ok=True)
+                self._said.append(str(error))
+        self._threads = [thread for thread in self._threads if thread.is_alive()]
+        self._threads.append(threading.Thread(target=run))
         self._threads[-1].start()
         return path
 
@@ -120,11 +137,7 @@ class Studio:
 
         history: one moment for each step of the world. OutputError.
         """
-        path = stamped(output_folder(self.folder), ".glb")
-        path.touch(exist_ok=False)
-        self._threads.append(threading.Thread(target=_write_motion, args=(path, history)))
-        self._threads[-1].start()
-        return path
+        return self._made(".glb", lambda path: _write_motion(path, history))
 
     def film(self, log: Path, start: float, end: float, overlays: Sequence[str]) -> Path:
         """Have a part of a log [s] filmed, after the films before it. Its path. OutputError."""
@@ -138,12 +151,13 @@ class Studio:
         return path
 
     def tend(self) -> tuple[str, ...]:
-        """Begin the next film if its turn has come. A line about each film that has ended since."""
+        """Begin the next film if its turn has come. A line about each that has ended, and what went wrong."""
         over = [film for film in self.films if not film.running]
         self.films = [film for film in self.films if film not in over]
         if self._waiting and not self.films:
             self.films.append(Film(*self._waiting.pop(0)))
-        return tuple(film.status() for film in over)
+        said = [self._said.pop(0) for _ in range(len(self._said))]
+        return (*said, *(film.status() for film in over))
 
     def status(self) -> tuple[str, ...]:
         """A line about each film that is being made."""
@@ -154,12 +168,14 @@ class Studio:
         for thread in self._threads:
             thread.join()
         try:
-            while self.films or self._waiting:
+            while True:
+                for line in self.tend():
+                    say(line)
+                if not self.films:
+                    return
                 for film in self.films:
                     say(f"{film.path} is still being made; Ctrl-C gives it up")
                     film.wait()
-                for line in self.tend():
-                    say(line)
         except KeyboardInterrupt:
             for film in self.films:
                 film.stop()

@@ -117,9 +117,9 @@ def test_damage_in_the_middle_is_told_with_its_line(tmp_path, place):
 
 @pytest.mark.parametrize(("content", "says"), [
     (b"", "line 1: not an input log"), (b"\x89PNG\r\n\x1a\n", "line 1: not an input log"), (b"[1, 2]\n", "not an input log"),
-    (b'{"gambol": "input log", "format": 9, "library": "", "players": 1}\n', "a log of format 9; this Gambol reads format 1"),
-    (b'{"gambol": "input log", "format": 1, "library": "", "players": 7}\n', "not an input log"),
-    (b'{"gambol": "input log", "format": 1, "library": "", "players": 1}\n', "nothing was played yet")])
+    (b'{"gambol": "input log", "format": 9, "library": "", "character": "", "players": 1}\n', "a log of format 9; this Gambol reads format 1"),
+    (b'{"gambol": "input log", "format": 1, "library": "", "character": "", "players": 7}\n', "not an input log"),
+    (b'{"gambol": "input log", "format": 1, "library": "", "character": "", "players": 1}\n', "nothing was played yet")])
 def test_what_is_no_log_is_refused_in_one_line(tmp_path, content, says):
     path = tmp_path / "a.gambol"
     path.write_bytes(content)
@@ -134,7 +134,7 @@ def test_what_is_no_log_is_refused_in_one_line(tmp_path, content, says):
 def test_another_library_is_told_before_anything_moves(tmp_path, locomotion):
     path = tmp_path / "a.gambol"
     play(path, walk(10))
-    with pytest.raises(LogError, match="another gait library; name that one with --library"):
+    with pytest.raises(LogError, match="as the mannequin, and with another gait library.*--library and --character"):
         of_library(read(path), locomotion)
 
 
@@ -160,8 +160,15 @@ def test_a_long_log_is_small(tmp_path):
     rng = np.random.default_rng(1)
     goals = np.repeat(rng.uniform(-1, 1, (90, 4)), 40, axis=0)
     drift = np.cumsum(0.15 * (goals - np.roll(goals, 1, axis=0)), axis=0).clip(-1, 1) + 0.01 * rng.normal(size=goals.shape)
-    play(tmp_path / "pad.gambol", [(Wish(move=(a, b), look=(c, d), run=abs(a)),) for a, b, c, d in drift])
-    play(tmp_path / "keys.gambol", [(Wish(move=(round(a), round(b))),) for a, b, _, _ in goals])
+    pad = [Wish(move=(a, b), look=(c, d), run=abs(a)) for a, b, c, d in drift]
+    keys = [Wish(move=(round(a), round(b))) for a, b, _, _ in goals]
+    for name, wishes in (("pad", pad), ("keys", keys)):
+        writer = LogWriter(tmp_path / f"{name}.gambol", GLIDE, 1)
+        for number, wish in enumerate(wishes, 1):
+            writer.add((wish.rounded(),))
+            if number % 45 == 0:
+                writer.flush()
+        writer.close()
     assert (tmp_path / "pad.gambol").stat().st_size < 20_000 and (tmp_path / "keys.gambol").stat().st_size < 4_000
 
 
