@@ -18,6 +18,7 @@ from .trace import Trace
 PANELS = {"space": "control space", "plots": "velocities", "quality": "quality", "settings": "settings"}
 """The panels, and what their title bars say. "NAME_panel" is the action that opens and closes one."""
 MARGIN = 12.0
+STRIP = 70.0
 LEAST = 60.0
 """No panel is narrower or lower than this, however small the picture [px at 720 lines]."""
 
@@ -97,17 +98,20 @@ class Hud:
 
 def layout(size: tuple[int, int], scale: float) -> dict[str, tuple[float, float, float, float]]:
     """Where panels are at first: left, top, width, height [px]. The middle, where the character is,
-    stays free as long as the picture is wide enough."""
+    stays free as long as the picture is wide enough; the strip is in the middle above, or above all."""
     width, height, gap = size[0] / scale, size[1] / scale, MARGIN
     left, right = min(310.0, 0.3 * width), min(390.0, 0.36 * width)
-    deep = height - 2 * gap
-    top = 80.0  # below the game's own lines of text
+    between = width - left - right - 4 * gap
+    text = 80.0  # where the game's own lines are
+    strip = (left + 2 * gap, gap, between, STRIP) if between >= 400.0 else (gap, text, width - 2 * gap, STRIP)
+    tops = (text, gap) if between >= 400.0 else (text + STRIP + gap,) * 2
     quality = 212.0
-    places = {"settings": (gap, top, left, height - top - quality - 2 * gap),
+    upper = 0.56 * (height - tops[1] - 2 * gap)
+    places = {"settings": (gap, tops[0], left, height - tops[0] - quality - 2 * gap),
               "quality": (gap, height - gap - quality, left, quality),
-              "space": (width - right - gap, gap, right, 0.56 * (deep - gap)),
-              "plots": (width - right - gap, gap + 0.56 * (deep - gap) + gap, right, 0.44 * (deep - gap)),
-              "strip": (left + 2 * gap, gap, max(width - left - right - 4 * gap, 200.0), 70.0)}
+              "space": (width - right - gap, tops[1], right, upper),
+              "plots": (width - right - gap, tops[1] + upper + gap, right, height - tops[1] - upper - 2 * gap),
+              "strip": strip}
     return {name: tuple(scale * v for v in (*place[:2], *(max(side, LEAST) for side in place[2:])))
             for name, place in places.items()}
 

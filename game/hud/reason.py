@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ..world import Character
+from controllers.locomotion.memory import RUN
 
-RUN = 1
-"""How the walking controller's memory numbers the running family."""
+from ..world import Character
 
 
 def family(character: Character) -> str:

@@ -23,7 +23,8 @@ def draw(now: Moment, shown: Moment, behind: int, kept: int, who: int, scale: fl
     kind, controller = type(character.controller).__name__.lower(), character.controller
     fit = controller.precondition(character.state, character.intent)
     imgui.same_line()
-    told = f"{kind}, {controller.status(character.state).kind}"
+    status = controller.status(character.state)
+    told = kind if status.kind == "running" else f"{kind} {status.kind}"
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(
         imgui.get_content_region_avail().x - imgui.calc_text_size(told).x, 0.0))
     imgui.text_disabled(told)

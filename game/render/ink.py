@@ -30,6 +30,7 @@ class InkPass:
         self.vertices.write(ink.vertices.tobytes())
         self.indices.write(ink.indices.astype(np.uint32, copy=False).tobytes())
         self.program["size"] = ink.size
+        target.viewport = 0, 0, width, height
         target.use()
         ctx.enable_only(ctx.BLEND)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
