@@ -33,6 +33,9 @@ STIFFNESS = 30.6e3
 
 So that the crouch of a jump 0.35 m high lowers the centre of mass by 0.33 m.
 """
+POINTED, CALF = 0.70, 0.5
+"""The calf pulls until the foot points down this far [rad], so an ankle's bend counts from there, and it is
+softer than the others by this factor: a level sole then carries what hip and knee push."""
 BURST = 1.4
 """How much more than these springs a muscle gives for a moment: the peak of a push over its mean."""
 MUSCLES = ("left hip", "left knee", "left ankle", "right hip", "right knee", "right ankle")
@@ -112,12 +115,12 @@ def torque_kernel(bend, stiffness, width, printed):
 
 
 @kernel
-def bend_kernel(parent, child, axis):
-    """How far [rad] a bone is turned forward from its parent's, about the parent's x `axis` (3,), both (3, 3)."""
+def bend_kernel(parent, child):
+    """How far [rad] a joint is turned about its parent's x axis, from the orientations (3, 3) of both."""
     sine, cosine = 0.0, 0.0
     for i in range(3):
-        sine += child[i, 1] * axis[i, 2]
-        cosine += child[i, 1] * axis[i, 1]
+        sine += child[i, 1] * parent[i, 2]
+        cosine += child[i, 1] * parent[i, 1]
     return math.atan2(sine, cosine)
 
 
@@ -132,9 +135,9 @@ def leg_force_kernel(body: BodyTables, side, foot, centre, stiffness, width, pri
     one axis hold nothing across it.
     """
     hip = body.hip[side]
-    bends[0] = -bend_kernel(orientations[0], orientations[hip], orientations[0])
-    bends[1] = bend_kernel(orientations[hip], orientations[hip + 1], orientations[hip])
-    bends[2] = -bend_kernel(orientations[hip + 1], orientations[hip + 2], orientations[hip + 1])
+    bends[0] = -bend_kernel(orientations[0], orientations[hip])
+    bends[1] = bend_kernel(orientations[hip], orientations[hip + 1])
+    bends[2] = POINTED - bend_kernel(orientations[hip + 1], orientations[hip + 2])
     sine, cosine = math.sin(foot[3]), math.cos(foot[3])
     rear = body.heel[2] - body.toe[2] if foot[4] < 0.02 else 0.0
     along = (centre[0] - foot[0]) * sine + (centre[2] - foot[2]) * cosine
@@ -143,7 +146,7 @@ def leg_force_kernel(body: BodyTables, side, foot, centre, stiffness, width, pri
     low = foot[1] - body.sole
     a, b, c, p, q = 1e-9, 0.0, 1e-9, 0.0, 0.0
     for k in range(3):
-        torques[k] = torque_kernel(bends[k], stiffness, width, printed)
+        torques[k] = (CALF if k == 2 else 1.0) * torque_kernel(bends[k], stiffness, width, printed)
         j = hip + k
         ahead = along - (positions[j, 0] - foot[0]) * sine - (positions[j, 2] - foot[2]) * cosine
         below = positions[j, 1] - low

@@ -1,0 +1,424 @@
+"""The wind-up: how a body crouches until its muscles can give the force that a jump asks for.
+
+Ooi 2015, 3.1.2, read as in READINGS A2: proportional-derivative control moves the hip by
+u(i) = k_p E(i−1) + k_d (E(i−1) − E(i−2)), where E is the force error, as metres down, and the
+balance error, from the centre of mass to the middle of the support polygon. The legs follow by
+cyclic coordinate descent, over planted feet; a heel rises only past the ankle's limit. Then centre
+of mass, force and balance are found anew, until both errors are small.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ..body.anatomy import joint_limits
+from ..body.ccd import ccd_kernel, foot_turn_kernel, turn_kernel
+from ..body.human import STATURE
+from ..body.support import HALF_SOLE, centroid_kernel, hull_kernel, margin_kernel
+from ..compiled import kernel
+from . import style
+from .dynamics import GRAVITY, BodyTables, Physique, centre_kernel, place_kernel
+from .muscles import Reading, bend_kernel, leg_force_kernel, muscle
+from .posture import ankle_kernel, foot_kernel
+
+FLEX = math.radians(40.0)
+"""How far a loaded ankle bends before the heel rises [rad]; times flexibility."""
+STAND_REACH = 0.98
+"""How straight standing legs are, as a share of their length."""
+DEEP = 0.39
+"""How far down [m] the pelvis is, at standard height, when trunk and arms are as in `style.CROUCH`."""
+LEAST = 0.06
+"""The least a pelvis goes down for a jump [m], at standard height."""
+HALF_STANCE = 0.10
+"""From the middle to a foot [m], at standard height."""
+
+
+class Gains(NamedTuple):
+    """The constants of the control (thesis, table 3.1).
+
+    proportional, derivative: k_p, k_d; one step is a gain near 1 of the error, so
+    0 < k_p and k_p + 2 k_d < 2 keep it stable. drop: by how many metres, at standard height, a
+    force error of 1 (all of it lacking) asks the hip to go down. balance: w_b. force_error: ε as
+    a share of the force; balance_error: ε [m]. longest: of a step [m]. most: iterations.
+    """
+
+    proportional: float = 0.3
+    derivative: float = 0.1
+    drop: float = 0.6
+    balance: float = 2.5
+    force_error: float = 0.01
+    balance_error: float = 0.01
+    longest: float = 0.02
+    most: int = 200
+
+
+GAINS = Gains()
+
+
+class Frame(NamedTuple):
+    """What does not change while a body winds up. The rest is as in `BodyTables`.
+
+    lower, upper: (2, 3, 3) [rad] limits of hip, knee and ankle of both legs; the knees are hinges.
+    flex: of the ankles [rad]. deep: [m] see DEEP. joints: that `style.carry_kernel` turns.
+    bones: (2, 3) thigh and shank. stiffness, width: of each muscle. printed: the spring's reading.
+    """
+
+    body: BodyTables
+    lower: np.ndarray
+    upper: np.ndarray
+    flex: float
+    deep: float
+    joints: np.ndarray
+    bones: np.ndarray
+    stiffness: float
+    width: float
+    printed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """A wind-up, iteration by iteration, N of them. pelvis, centre: (N, 3) [m]. force, required: (N,)
+    magnitudes [N]. balance: (N,) [m] from the polygon's middle. margin: (N,) [m] inside the polygon."""
+
+    pelvis: np.ndarray
+    centre: np.ndarray
+    force: np.ndarray
+    required: np.ndarray
+    balance: np.ndarray
+    margin: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.force)
+
+
+@dataclass(frozen=True, eq=False)
+class Crouch:
+    """Where a wind-up ends.
+
+    pelvis, centre: (3,) [m] hips and centre of mass. depth: [m] of the centre of mass below
+    standing. rotations: (J, 3, 3) the pose. feet: (2, 6) as in `posture`, heels risen if they had
+    to. bends, torques: (6,) [rad, N m] see `muscles.MUSCLES`. force, required: (3,) [N] of the
+    ground, by the muscles and for the jump. margin: [m] inside the support polygon. converged:
+    whether the muscles can give what is required: if not, this body can't make the jump.
+    """
+
+    pelvis: np.ndarray
+    centre: np.ndarray
+    depth: float
+    rotations: np.ndarray
+    feet: np.ndarray
+    bends: np.ndarray
+    torques: np.ndarray
+    force: np.ndarray
+    required: np.ndarray
+    margin: float
+    history: History
+    converged: bool
+
+    @property
+    def iterations(self) -> int:
+        """How many times the hip was moved."""
+        return len(self.history) - 1
+
+
+@lru_cache(maxsize=64)
+def frame(physique: Physique, reading: Reading = "wedge") -> Frame:
+    """The frame of a body. Flexibility widens hips, knees (to 160° at most) and ankles."""
+    body, skeleton = physique.tables, physique.skeleton
+    limits = joint_limits(skeleton)
+    numbers = body.hip[:, None] + np.arange(3)
+    lower, upper = limits.lower[numbers] * physique.flexibility, limits.upper[numbers] * physique.flexibility
+    lower[:, 1], upper[:, 1] = 0.0, 0.0
+    upper[:, 1, 0] = min(limits.upper[numbers[0, 1], 0] * physique.flexibility, math.radians(160.0))
+    flex = FLEX * physique.flexibility
+    lower[:, 2, 0] = -flex - 0.01  # a little play: the heel's rise is found to 1e-4
+    spring = muscle(physique)
+    return Frame(body, lower, upper, flex, DEEP * physique.height / STATURE, style.joints_of(skeleton),
+                 np.array([[0.0, -body.thigh, 0.0], [0.0, -body.shank, 0.0]]), spring.stiffness, spring.width,
+                 reading == "printed")
+
+
+def flat_feet(physique: Physique) -> np.ndarray:
+    """Two feet (2, 6) side by side around the origin, pointing along +Z, with heels free to rise."""
+    body, size = physique.tables, physique.height / STATURE
+    middle = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])
+    return np.array([[sign * HALF_STANCE * size, body.sole, -middle, 0.0, 0.0, 1.0] for sign in (1.0, -1.0)])
+
+
+def crouch(physique: Physique, velocity, rise: float, gravity=GRAVITY, *, feet: np.ndarray | None = None,
+           gains: Gains = GAINS, reading: Reading = "wedge") -> Crouch:
+    """Wind up for a take-off with `velocity` [m/s], (3,) or upward.
+
+    rise: [m] how far above standing the centre of mass leaves the floor: the push covers that and
+    the crouch's depth d, at a mean acceleration of v v_y / 2d; F_req = m (a − g). gravity: (3,) or
+    downward [m/s²]. feet: (2, 6) where they stand, flat_feet by default.
+    ValueError for numbers that are not finite or feet that are no (2, 6).
+    """
+    velocity, gravity = _upward(velocity, 1.0), _upward(gravity, -1.0)
+    feet = np.array(flat_feet(physique) if feet is None else feet, float)
+    if not (np.isfinite(velocity).all() and np.isfinite(gravity).all() and math.isfinite(rise)):
+        raise ValueError(f"velocity, rise and gravity must be finite, got {velocity}, {rise}, {gravity}")
+    if feet.shape != (2, 6) or not np.isfinite(feet).all():
+        raise ValueError(f"feet must be (2, 6) and finite, got {feet.shape}")
+    fixed, count = frame(physique, reading), len(physique.skeleton)
+    pelvis, turns = np.empty(3), np.zeros((2, 3, 3))
+    local = np.tile(np.eye(3), (count, 1, 1))
+    positions, orientations = np.empty((count, 3)), np.empty((count, 3, 3))
+    bends, torques, forces = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
+    required, history = np.empty(3), np.empty((gains.most + 1, 10))
+    standing = stand_pelvis_kernel(fixed, feet, pelvis, turns, local, positions, orientations)
+    used, converged = windup_kernel(fixed, gains, velocity, float(rise), gravity, standing, feet, pelvis, turns, local,
+                                    positions, orientations, bends, torques, forces, required, history)
+    record = history[:used]
+    return Crouch(pelvis, record[-1, 3:6].copy(), float(standing - record[-1, 4]), local, feet, bends.ravel(),
+                  torques.ravel(), forces.sum(0), required, float(record[-1, 9]),
+                  History(record[:, :3], record[:, 3:6], record[:, 6], record[:, 7], record[:, 8], record[:, 9]),
+                  bool(converged))
+
+
+class Strength(NamedTuple):
+    """What a body's muscles can do. depth: (N,) [m] of the centre of mass below standing, from hardly
+    bent to as deep as its joints go. force: (N,) [N] the ground force there."""
+
+    depth: np.ndarray
+    force: np.ndarray
+
+
+@lru_cache(maxsize=64)
+def strength(physique: Physique, reading: Reading = "wedge") -> Strength:
+    """The ground force that a body gives, by how deep it crouches, balanced over flat feet."""
+    fixed, count, feet = frame(physique, reading), len(physique.skeleton), flat_feet(physique)
+    depth, force = np.empty(120), np.empty(120)
+    found = strength_kernel(fixed, feet, np.tile(np.eye(3), (count, 1, 1)), np.empty((count, 3)),
+                            np.empty((count, 3, 3)), 0.01 * physique.height / STATURE, depth, force)
+    return Strength(depth[:found], force[:found])
+
+
+def strongest(physique: Physique, rise: float, gravity=GRAVITY) -> float:
+    """The greatest upward take-off speed [m/s] of a body: v² = 2 d (F / m − g), at its best depth.
+
+    rise, gravity: as in `crouch`. 0 for a body that can't rise against its own weight.
+    """
+    able, g = strength(physique), -float(_upward(gravity, -1.0)[1])
+    square = 2.0 * (able.depth + rise) * (able.force / physique.mass - g)
+    return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+
+
+def _upward(value, sign: float) -> np.ndarray:
+    """A vector (3,) as it is; a number as that much upward (1) or downward (−1)."""
+    value = np.asarray(value, float)
+    return np.array([0.0, sign * float(value), 0.0]) if value.ndim == 0 else value
+
+
+@kernel
+def pose_kernel(fixed, pelvis, standing, feet, turns, local, positions, orientations):
+    """Pose a body whose pelvis is at `pelvis` (3,) over planted feet (2, 6), their pitch written.
+
+    standing: the pelvis' height [m] at rest; trunk and arms follow how far below it is. turns:
+    (2, 3, 3) [rad] hips, knees and ankles, from the last pose. Returns how far the worst foot is
+    from where it stands [m], a metre to the radian.
+    """
+    body = fixed.body
+    share = min(max((standing - pelvis[1]) / fixed.deep, 0.0), 1.0)
+    style.carry_kernel(style.STAND + share * (style.CROUCH - style.STAND), fixed.joints, local)
+    lean = style.STAND[0] + share * (style.CROUCH[0] - style.STAND[0])
+    heading = math.atan2(math.sin(feet[0, 3]) + math.sin(feet[1, 3]), math.cos(feet[0, 3]) + math.cos(feet[1, 3]))
+    foot_kernel(heading, lean, local[0])
+    place_kernel(body, pelvis, local, positions, orientations)
+    chain, bones, goal, turned = np.empty((3, 3)), np.empty((2, 3, 3)), np.empty(3), np.empty((3, 3))
+    worst = 0.0
+    for side in range(2):
+        hip, foot = body.hip[side], feet[side]
+        foot[4] = 0.0
+        gap = 0.0
+        for _ in range(6):
+            foot_kernel(foot[3], foot[4], turned)
+            ankle_kernel(body, foot, turned, goal)
+            gap = ccd_kernel(positions[hip], orientations[0], fixed.bones, fixed.lower[side, :2], fixed.upper[side, :2],
+                             goal, 30, 1e-4, turns[side, :2], chain, bones)
+            excess = -bend_kernel(bones[1], turned) - fixed.flex
+            if foot[5] <= 0.0 or excess < 1e-4 or foot[4] >= 1.25:
+                break
+            foot[4] = min(foot[4] + 1.05 * excess, 1.25)
+        held = foot_turn_kernel(bones[1], turned, fixed.lower[side, 2], fixed.upper[side, 2], turns[side, 2],
+                                orientations[hip + 2])
+        worst = max(worst, gap, held)
+        for k in range(3):
+            positions[hip, k], positions[hip + 1, k], positions[hip + 2, k] = chain[0, k], chain[1, k], chain[2, k]
+            positions[hip + 3, k] = chain[2, k]
+            for m in range(3):
+                positions[hip + 3, k] += orientations[hip + 2, k, m] * body.toe[m]
+        orientations[hip], orientations[hip + 1] = bones[0], bones[1]
+        foot_kernel(foot[3], 0.0, orientations[hip + 3])  # toes stay level
+        for k in range(3):
+            turn_kernel(turns[side, k], local[hip + k])
+        local[hip + 3] = orientations[hip + 2].T @ orientations[hip + 3]
+    return worst
+
+
+@kernel
+def support_kernel(body, feet, centre, middle):
+    """Write the middle (2,) x, z of the support polygon of two feet (2, 6), risen heels left out.
+
+    Returns the margin [m] of the centre of mass (3,) in it.
+    """
+    points, corners = np.empty((12, 2)), np.empty((13, 2))
+    half = HALF_SOLE * body.sole / 0.02
+    count = 0
+    for side in range(2):
+        foot = feet[side]
+        s, c = math.sin(foot[3]), math.cos(foot[3])
+        for k in range(3):
+            if k == 0 and foot[4] > 0.02:
+                continue
+            along = (body.heel[2] - body.toe[2], 0.0, body.tip[2])[k]
+            for aside in (half, -half):
+                points[count, 0] = foot[0] + aside * c + along * s
+                points[count, 1] = foot[2] - aside * s + along * c
+                count += 1
+    size = hull_kernel(points, count, corners)
+    centroid_kernel(corners, size, middle)
+    return margin_kernel(corners, size, centre[0], centre[2])
+
+
+@kernel
+def stand_pelvis_kernel(fixed, feet, pelvis, turns, local, positions, orientations):
+    """Write the pelvis (3,) of a body that stands over its feet, balanced, and its pose.
+
+    Returns the height of the centre of mass [m]; the pelvis' own is pelvis[1].
+    """
+    body = fixed.body
+    centre, middle = np.empty(3), np.empty(2)
+    length = STAND_REACH * (body.thigh + body.shank)
+    for i in range(3):
+        pelvis[i] = 0.5 * (feet[0, i] + feet[1, i])
+    pelvis[1] += length - body.toe[1] - body.offsets[body.hip[0], 1]
+    turns[:] = 0.0
+    turns[:, 1, 0] = 0.2
+    for _ in range(40):
+        pose_kernel(fixed, pelvis, pelvis[1], feet, turns, local, positions, orientations)
+        centre_kernel(body, positions, orientations, centre)
+        support_kernel(body, feet, centre, middle)
+        pelvis[0] += middle[0] - centre[0]
+        pelvis[2] += middle[1] - centre[2]
+        short = math.inf
+        for side in range(2):
+            hip = body.hip[side]
+            ankle = positions[hip + 2]
+            across = (positions[hip, 0] - ankle[0]) ** 2 + (positions[hip, 2] - ankle[2]) ** 2
+            short = min(short, math.sqrt(max(length**2 - across, 0.0)) - positions[hip, 1] + ankle[1])
+        pelvis[1] += short
+        if abs(short) + abs(middle[0] - centre[0]) + abs(middle[1] - centre[2]) < 1e-5:
+            break
+    pose_kernel(fixed, pelvis, pelvis[1], feet, turns, local, positions, orientations)
+    centre_kernel(body, positions, orientations, centre)
+    return centre[1]
+
+
+@kernel
+def force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces):
+    """Write bends, torques (2, 3) and ground forces (2, 3) [N] of both legs; returns their sum's size."""
+    total = 0.0
+    for side in range(2):
+        leg_force_kernel(fixed.body, side, feet[side], centre, fixed.stiffness, fixed.width, fixed.printed,
+                         positions, orientations, bends[side], torques[side], forces[side])
+    for i in range(3):
+        total += (forces[0, i] + forces[1, i]) ** 2
+    return math.sqrt(total)
+
+
+@kernel
+def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis, turns, local, positions,
+                  orientations, bends, torques, forces, required, history):
+    """Wind a standing body up; see `crouch`. standing: [m] its centre of mass's height, `pelvis` (3,) its
+    pelvis. history: (most + 1, 10) rows of pelvis, centre, force, required, balance, margin.
+
+    Returns how many rows there are, and whether both errors became small.
+    """
+    body = fixed.body
+    top = pelvis[1]
+    size = fixed.deep / DEEP
+    centre, middle = np.empty(3), np.empty(2)
+    error, before, step = np.zeros(3), np.zeros(3), np.empty(3)
+    safe, leeway = pelvis.copy(), gains.longest
+    floor = -math.inf  # below this the joints do not go
+    rows, converged = 0, False
+    for iteration in range(gains.most + 1):
+        gap = pose_kernel(fixed, pelvis, top, feet, turns, local, positions, orientations)
+        if gap > 2e-3:  # not a pose of this body: stay, and come no nearer than half as far
+            floor = max(floor, 0.5 * (pelvis[1] + safe[1]))
+            pelvis[:] = safe
+            pose_kernel(fixed, pelvis, top, feet, turns, local, positions, orientations)
+            leeway *= 0.5
+        else:
+            safe[:] = pelvis
+        centre_kernel(body, positions, orientations, centre)
+        margin = support_kernel(body, feet, centre, middle)
+        force = force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces)
+        push = max(standing - centre[1] + rise, 0.02 * size)
+        needed = 0.0
+        for i in range(3):
+            required[i] = body.total * (velocity[i] * velocity[1] / (2.0 * push) - gravity[i])
+            needed += required[i] ** 2
+        needed = math.sqrt(needed)
+        lacking = (needed - force) / needed if needed > 0.0 else 0.0
+        error[0], error[2] = gains.balance * (middle[0] - centre[0]), gains.balance * (middle[1] - centre[2])
+        error[1] = -gains.drop * size * lacking
+        row = history[rows]
+        row[0:3], row[3:6] = pelvis, centre
+        row[6], row[7] = force, needed
+        row[8], row[9] = math.hypot(middle[0] - centre[0], middle[1] - centre[2]), margin
+        rows += 1
+        least = lacking <= 0.0 and pelvis[1] >= top - LEAST * size - 1e-6  # the smallest crouch is more than enough
+        if row[8] < gains.balance_error and (abs(lacking) < gains.force_error or (least and iteration > 0)):
+            converged = True
+            break
+        if leeway < 5e-4:
+            break
+        length = 0.0
+        for i in range(3):
+            step[i] = gains.proportional * error[i]
+            if iteration > 0:
+                step[i] += gains.derivative * (error[i] - before[i])
+            before[i] = error[i]
+            length += step[i] ** 2
+        length = math.sqrt(length)
+        scale = min(1.0, leeway / length) if length > 0.0 else 0.0
+        for i in range(3):
+            pelvis[i] += scale * step[i]
+        pelvis[1] = max(min(pelvis[1], top - LEAST * size), floor)
+    return rows, converged
+
+
+@kernel
+def strength_kernel(fixed, feet, local, positions, orientations, step, depth, force):
+    """Write depth and force (N,) as the pelvis goes down by `step` [m]; returns how many were possible."""
+    pelvis, turns = np.empty(3), np.zeros((2, 3, 3))
+    centre, middle = np.empty(3), np.empty(2)
+    bends, torques, forces = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
+    standing = stand_pelvis_kernel(fixed, feet, pelvis, turns, local, positions, orientations)
+    top, found = pelvis[1], 0
+    for n in range(len(depth)):
+        pelvis[1] = top - LEAST * fixed.deep / DEEP - n * step
+        balanced = False
+        for _ in range(20):
+            if pose_kernel(fixed, pelvis, top, feet, turns, local, positions, orientations) > 2e-3:
+                break
+            centre_kernel(fixed.body, positions, orientations, centre)
+            support_kernel(fixed.body, feet, centre, middle)
+            balanced = math.hypot(middle[0] - centre[0], middle[1] - centre[2]) < 2e-3
+            if balanced:
+                break
+            pelvis[0] += middle[0] - centre[0]
+            pelvis[2] += middle[1] - centre[2]
+        if not balanced:
+            break
+        depth[n] = standing - centre[1]
+        force[n] = force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces)
+        found += 1
+    return found
