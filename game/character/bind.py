@@ -101,9 +101,11 @@ def _body(document: Document, tree: Nodes, surface: Surface, found: dict[str, in
     own = weights[:, :len(names)].copy()
     for k in range(len(names), len(skin.NAMES)):
         own[:, skin.AT[k]] += weights[:, k]
-    for j in np.flatnonzero(own.any(0)):
-        posed += own[:, j, None] * ((at - here[j]) @ turns[j].T + joints[j])
-        faced += own[:, j, None] * (normals @ turns[j].T)
+    for j in range(len(names)):
+        mine = np.flatnonzero(own[:, j])
+        share = own[mine, j, None]
+        posed[mine] += share * ((at[mine] - here[j]) @ turns[j].T + joints[j])
+        faced[mine] += share * (normals[mine] @ turns[j].T)
     if not weights[:, len(names):].any():
         _spread(weights, posed, joints)
     feet = own[:, [names.index(s + part) for s in _SIDES for part in ("Foot", "Toe")]].sum(1) > 0.5
@@ -112,7 +114,7 @@ def _body(document: Document, tree: Nodes, surface: Surface, found: dict[str, in
     layers, which = materials.pictures(document)
     uv = materials.placed(document, surface.uv, surface.material)
     paint = np.concatenate([uv, which[surface.material][:, None]], 1)
-    four = np.argsort(-weights, 1)[:, :4]
+    four = np.argpartition(-weights, 4, 1)[:, :4]
     share = np.take_along_axis(weights, four, 1)
     whole = Mesh(*(a.astype(np.float32) for a in (posed - shift, unit(faced))), surface.triangles.astype(np.uint32),
                  four.astype(np.uint8), (share / share.sum(1, keepdims=True)).astype(np.float32),
@@ -182,11 +184,10 @@ def clustered(mesh: Mesh, cell: float) -> Mesh:
     Vertices that look up other pictures, or far-off places in one, stay apart over one place, so
     that colours are not mixed and nothing cracks.
     """
-    _, place = np.unique(np.floor(mesh.positions / cell).astype(np.int64), axis=0, return_inverse=True)
-    look = np.floor(mesh.paint * [16.0, 16.0, 1.0]).astype(np.int64)
-    key = np.concatenate([place.reshape(-1, 1), look], 1)
-    _, first, vertex = np.unique(key, axis=0, return_index=True, return_inverse=True)
-    vertex, place = vertex.ravel(), place.ravel()
+    place = _numbered(np.floor(mesh.positions / cell))
+    look = np.floor(mesh.paint * [16.0, 16.0, 1.0])
+    _, first, vertex = np.unique(_numbered(np.concatenate([place[:, None], look], 1)), return_index=True,
+                                 return_inverse=True)
     count = np.bincount(place)[:, None]
     middle, normals = np.zeros((len(count), 3)), np.zeros((len(count), 3))
     np.add.at(middle, place, mesh.positions)
@@ -194,9 +195,19 @@ def clustered(mesh: Mesh, cell: float) -> Mesh:
     triangles = vertex[mesh.triangles]
     corners = place[first][triangles]
     kept = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
-    triangles = np.unique(triangles[kept], axis=0)
+    triangles = triangles[kept]
+    triangles = triangles[np.unique(_numbered(triangles), return_index=True)[1]]
     if not len(triangles):
         return mesh
     at = place[first]
     return Mesh((middle / count)[at].astype(np.float32), unit(normals)[at].astype(np.float32),
                 triangles.astype(np.uint32), mesh.joints[first], mesh.weights[first], mesh.open[first], mesh.paint[first])
+
+
+def _numbered(rows: np.ndarray) -> np.ndarray:
+    """A number (N,) from 0 for each different row of whole numbers (N, K)."""
+    number = np.zeros(len(rows), np.int64)
+    for column in rows.T.astype(np.int64):
+        column = np.clip(column - column.min(initial=0), 0, 1 << 31)
+        number = np.unique(number * (column.max(initial=0) + 1) + column, return_inverse=True)[1]
+    return number

@@ -8,6 +8,7 @@ from poses import CROUCH, HUMAN, STRIDE, figure
 from scipy.spatial.transform import Rotation
 
 from controllers.body import human
+from game.character import twotone
 from game.render import gl, mesh, skin
 from game.render.view import scale_of
 
@@ -113,3 +114,44 @@ def test_the_shader_skins_as_numpy_does(ctx):
     assert np.abs(got[:, :3] - skinned(posed)).max() < 1e-4
     for part in (array, vertices, block, out, program, somewhere):
         part.release()
+
+
+def test_the_paint_that_is_cut_into_files_is_the_one_the_shader_draws(ctx):
+    at = LEVEL["near"].paint.astype("f4")
+    vertex = "#version 330 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }"
+    fragment = gl.source("paint.glsl", {}) + ("\nuniform sampler2D places;\nout vec4 colour;\nvoid main() {"
+                                              "colour = vec4(paint(texelFetch(places, ivec2(gl_FragCoord.xy), 0).xyz), 0, 1); }")
+    program = ctx.program(vertex_shader=vertex, fragment_shader=fragment)
+    width = 128
+    rows = -(-len(at) // width)
+    data = np.zeros((rows * width, 3), "f4")
+    data[:len(at)] = at
+    places, colour = ctx.texture((width, rows), 3, data.tobytes(), dtype="f4"), ctx.renderbuffer((width, rows), 4, dtype="f4")
+    places.use(0)
+    target, array = ctx.framebuffer([colour]), ctx.vertex_array(program, [])
+    target.use()
+    ctx.disable(ctx.DEPTH_TEST | ctx.CULL_FACE | ctx.BLEND)
+    array.render(vertices=3)
+    got = np.frombuffer(target.read(components=4, dtype="f4"), "f4").reshape(-1, 4)[:len(at), 0]
+    wanted = twotone.field(at.astype(float))
+    assert np.abs(got - wanted).max() < 1e-4 and (wanted > 0).any() and (wanted < 0).any()
+    for part in (array, target, colour, places, program):
+        part.release()
+
+
+def test_cutting_two_materials_apart_leaves_the_surface_as_it_was():
+    shape = LEVEL["near"]
+    cut, dark = twotone.cut(shape)
+
+    def area(mesh, triangles):
+        a, b, c = (mesh.positions[triangles[:, i]].astype(float) for i in range(3))
+        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+    assert abs(area(cut, cut.triangles) / area(shape, shape.triangles) - 1.0) < 1e-6
+    assert 0.1 < area(cut, cut.triangles[dark]) / area(cut, cut.triangles) < 0.35
+    middles = cut.paint[cut.triangles].mean(1).astype(float)
+    sure = np.abs(twotone.field(middles)) > 0.004
+    assert ((twotone.field(middles) > 0) == dark)[sure].mean() > 0.995
+    edges = np.concatenate([cut.triangles[:, [0, 1]], cut.triangles[:, [1, 2]], cut.triangles[:, [2, 0]]])
+    seen = {tuple(e) for e in edges.tolist()}
+    assert len(seen) == len(edges) and all((b, a) in seen for a, b in seen), "still without holes"
+    assert np.allclose(cut.weights.sum(1), 1.0, atol=1e-5)
