@@ -25,8 +25,10 @@ TAKE_OFF_REACH, TOUCH_REACH, STAND_REACH = 0.965, 0.955, 0.98
 """How straight legs are, as shares of their length, as they take off, touch down, stand."""
 HALF_STANCE, SHOE = 0.10, 0.045
 """From the middle to a landing foot, and from a foot's line to the edge of its sole [m], at standard height."""
-MOST_LEAD = 0.62
-"""How far ahead of its foot a body may leave the floor, as a share of the leg."""
+MOST_LEAD = 0.68
+"""How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
+YIELD = (0.05, 0.13)
+"""How long a runner's foot gives before it pushes, at least and at most [s]."""
 MEAN_PUSH = 1.85
 """The mean force of a push in an adult's weights on Earth, at strength 1."""
 LEAST_AIRTIME = 0.30
@@ -76,11 +78,13 @@ class Path:
 
 @dataclass(frozen=True)
 class Measures:
-    """Heights [m] of a body's centre of mass over the floor: standing, as it takes off, as it touches down."""
+    """Heights [m] of a body's centre of mass over the floor: standing, as it takes off, as it touches
+    down; stride: from the ball of a runner's foot as it leaves."""
 
     stand: float
     leave: float
     touch: float
+    stride: float
 
 
 @lru_cache(maxsize=64)
@@ -91,7 +95,7 @@ def measures(physique: Physique) -> Measures:
     for angles, pitch, share in ((style.STAND, 0.0, STAND_REACH), (style.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH),
                                  (style.TOUCH, TOES_DOWN, TOUCH_REACH)):
         found.append(_height(physique, angles, pitch, share, feet))
-    return Measures(*found)
+    return Measures(*found, 1.08 * found[1])
 
 
 def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray) -> float:
@@ -166,17 +170,17 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         speed = float(velocity @ towards)
         trail = min(0.30 * size, max(0.16 * speed, 0.0))
         if running:
-            deep = 0.06 * size
-            height = min(start.centre[1] - 0.02 * size, floor + heights.stand - deep)
-            way = (passing + velocity * [1, 0, 1]) * 0.5
+            drop = 0.07 * size
+            height = min(start.centre[1] - 0.5 * drop, floor + heights.stand - drop)
             pushed = push(np.array([0.0, leave[1] - height, 0.0]), np.zeros(3), velocity, gravity)
-            low = low * [1, 0, 1] + [0.0, height, 0.0]
-            ahead_of = low + way * pushed.duration - stance
-            ahead_of[1] = 0.0
-            lead = float(np.linalg.norm(ahead_of))
-            ahead_of *= min(1.0, MOST_LEAD * (body.thigh + body.shank) / max(lead, 1e-9))
-            leave = stance + ahead_of
-            leave[1] = floor + _over(heights.leave, np.linalg.norm(ahead_of))
+            pace = float(np.linalg.norm(passing))
+            past = (start.centre - stance) @ passing / pace
+            most = MOST_LEAD * (body.thigh + body.shank)
+            mean = 0.5 * (passing + velocity * [1.0, 0.0, 1.0])
+            wind_up = float(np.clip((most - past - np.linalg.norm(mean) * pushed.duration) / pace, *YIELD))
+            low = (start.centre + start.velocity * wind_up) * [1.0, 0.0, 1.0] + [0.0, height, 0.0]
+            leave = low + mean * pushed.duration
+            leave[1] = floor + _over(heights.stride, np.linalg.norm((leave - stance)[[0, 2]]))
         else:
             rise = leave[1] - floor - heights.stand
             deep = depth(physique, float(velocity[1]), rise, g)

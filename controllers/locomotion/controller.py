@@ -134,8 +134,10 @@ class Locomotion:
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state as seen by this controller: as it is if it walked before, over this very library; else
-        standing or walking on from its pose, its motion and its feet."""
-        return state if self._knows(state.memory) else entered(self, state)
+        standing or walking on from its pose, its motion and its feet. A whole batch begins anew."""
+        if self._knows(state.memory):
+            return state
+        return entered(self, state) if np.ndim(state.ground) == 1 else self.start(state.ground, state.floor)
 
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""
