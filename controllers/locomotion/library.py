@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tokenize
 import zipfile
 import zlib
 from dataclasses import asdict, dataclass, field
@@ -110,7 +111,7 @@ class Library:
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
-                RuntimeError, zipfile.BadZipFile, zlib.error) as error:  # all that a damaged zip has in store
+                RuntimeError, tokenize.TokenError, zipfile.BadZipFile, zlib.error) as error:  # all a damaged zip has in store
             raise LibraryError(f"{path}: not a gait library ({error})") from None
         library._check(path)
         return library
