@@ -151,6 +151,8 @@ class Jump:
         jumping: Jumping = state.memory
         if jumping.fault:
             return Status("failed", jumping.fault)
+        if jumping.time >= jumping.plan.through:
+            return Status("done", "it has landed and can't stop here")
         return Status("done" if jumping.time >= jumping.plan.duration else "running")
 
     def _moment(self, state: CharacterState) -> bool:

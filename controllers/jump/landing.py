@@ -12,19 +12,33 @@ import numpy as np
 
 TIME = 1.15
 """From touch-down until the body stands [s]."""
-HOLD = 3.6
-"""Rate of the spring that brings the body over its feet [1/s]."""
+HOLD, PASS = 3.6, 1.0
+"""Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
+CATCH = 0.6
+"""How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
+OVER = 0.04
+"""A body that passes over its feet walks on once it is so far beyond their middle [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Landing:
     """The centre of mass after touch-down: rates (3,) [1/s] of the springs, `offset` (3,) [m] from where it
-    comes to rest, `velocity` (3,) [m/s] with which it landed, `goal` (3,) [m]."""
+    comes to rest, `velocity` (3,) [m/s] with which it landed, `goal` (3,) [m]. passes: it can't stop here."""
 
     rates: np.ndarray
     offset: np.ndarray
     velocity: np.ndarray
     goal: np.ndarray
+    passes: bool = False
+
+    def until(self, times: np.ndarray) -> float:
+        """When [s] a body that passes over its feet walks on: infinite for one that stops."""
+        if not self.passes:
+            return np.inf
+        place, velocity, _ = self.motion(times)
+        ahead = self.velocity * [1.0, 0.0, 1.0] / np.linalg.norm(self.velocity[[0, 2]])
+        beyond = (place - self.goal) @ ahead > OVER
+        return float(times[int(np.argmax(beyond))]) if beyond.any() else np.inf
 
     def motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Place, velocity, acceleration (N, 3) at times (N,) [s] after touch-down."""
@@ -36,12 +50,20 @@ class Landing:
                 fade * (-2.0 * self.rates * pull + self.rates**2 * (self.offset + pull * t)))
 
 
-def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray) -> Landing:
-    """The landing of a body at `land` (3,) with `velocity` (3,) that should come to rest at `goal` (3,).
+def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float) -> Landing:
+    """The landing of a body at `land` (3,) with `velocity` (3,) over feet whose middle is under `goal` (3,).
 
-    It sinks the deeper the faster it fell: a critically damped spring met with speed v sinks
-    v / (e·rate), 60 to 90 degrees of knee for a human.
+    support: (C, 3) corners of the soles. It comes to rest if its capture point, x + v √(h/g), lies over
+    them; else it passes over them and must step on (Ha 2012 rolls on; feet do it here). It sinks the
+    deeper the faster it fell: a critically damped spring met with speed v sinks v / (e·rate).
     """
     fall = max(-velocity[1], 0.0)
-    dip = 0.08 + 0.07 * fall
-    return Landing(np.array([HOLD, max(fall / (np.e * dip), 2.0), HOLD]), land - goal, velocity, goal)
+    flat = velocity * [1.0, 0.0, 1.0]
+    pace = float(np.linalg.norm(flat))
+    passes = False
+    if pace > 1e-6:
+        ahead = flat / pace
+        capture = (land - goal) @ ahead + pace * np.sqrt(goal[1] / gravity) * CATCH
+        passes = bool(capture > ((support - goal) @ ahead).max())
+    rate, sink = (PASS if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), 2.0)
+    return Landing(np.array([rate, sink, rate]), land - goal, velocity, goal, passes)

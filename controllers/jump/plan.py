@@ -18,7 +18,8 @@ class Plan:
 
     times: (N,) [s]. roots: (N, 3), local: (N, J, 3, 3) poses. centres, velocities: (N, 3) of the
     centre of mass. forces: (N, 3) [N] of the ground. contacts: (N, 4) bool. push_off, take_off,
-    touch_down, lowest: times [s] of the events. feet: (2, 5) where they land. momentum: (3,)
+    touch_down, lowest: times [s] of the events; through: when a body that can't stop
+    over its feet walks on, infinite for one that stops. feet: (2, 5) where they land. momentum: (3,)
     [kg m²/s] in flight. path: what was estimated first.
     """
 
@@ -33,6 +34,7 @@ class Plan:
     take_off: float
     touch_down: float
     lowest: float
+    through: float
     feet: np.ndarray
     momentum: np.ndarray
     path: Path

@@ -76,7 +76,7 @@ class _Draft:
         self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)
-        after, landed = self._land()
+        after, landed, through = self._land()
         way, mass, g = self.way, self.physique.mass, self.gravity
         contacts = np.zeros((len(self.times) + len(self.flying) - 1 + len(after), 4), bool)
         heel_up = self.feet[:, :, 4] > 0.03
@@ -91,7 +91,7 @@ class _Draft:
             np.concatenate([self.centres, self.arc[1:], landed[2]]),
             np.concatenate([self.velocities, way.velocity + g * flying[:, None], landed[3]]),
             mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
-            contacts, self.off, self.leave, self.down, self.down + 0.28, self.landing, self.momentum.copy(), way)
+            contacts, self.off, self.leave, self.down, self.down + 0.28, self.down + through, self.landing, self.momentum.copy(), way)
 
     def _prepare_ground(self) -> None:
         """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
@@ -233,9 +233,10 @@ class _Draft:
         mass's place, velocity and acceleration."""
         way, body = self.way, self.body
         after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
-        middle = soles(self.landing, body).mean(0)
-        goal = middle + [0.0, measures(self.physique).stand, 0.0]
-        c, v, a = absorb(way.land, way.falling, goal).motion(after)
+        support = soles(self.landing, body)
+        goal = support.mean(0) + [0.0, measures(self.physique).stand, 0.0]
+        landing = absorb(way.land, way.falling, goal, support, -self.gravity[1])
+        c, v, a = landing.motion(after)
         angles = style.keyed(self.keys, self.shapes, self.down + after)
         feet = np.ones((len(after), 2, 6))
         feet[..., :5] = self.landing
@@ -246,7 +247,7 @@ class _Draft:
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         ground_kernel(body, self.flex, angles, self.joints, np.zeros((len(after), self.count, 3)), turns, c, feet,
                       self.air_roots[-1].copy(), roots, local)
-        return after, (roots, local, c, v, a)
+        return after, (roots, local, c, v, a), landing.until(after)
 
 
 def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:

@@ -378,8 +378,9 @@ def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis,
         if row[8] < gains.balance_error and (abs(lacking) < gains.force_error or (least and iteration > 0)):
             converged = True
             break
-        if leeway < 5e-4:
-            break
+        if leeway < 5e-4 or (iteration > 1 and row[0] == history[rows - 2, 0] and row[1] == history[rows - 2, 1]
+                             and row[2] == history[rows - 2, 2]):
+            break  # its joints go no further
         length = 0.0
         for i in range(3):
             step[i] = gains.proportional * error[i]
@@ -422,3 +423,15 @@ def strength_kernel(fixed, feet, local, positions, orientations, step, depth, fo
         force[n] = force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces)
         found += 1
     return found
+
+
+@kernel
+def capacity_kernel(fixed, roots, local, feet, out):
+    """Write the ground force (N,) [N] that muscles hold in poses: roots (N, 3), local (N, J, 3, 3), feet (N, 2, 6)."""
+    count = local.shape[1]
+    positions, orientations, centre = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty(3)
+    bends, torques, forces = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
+    for n in range(len(roots)):
+        place_kernel(fixed.body, roots[n], local[n], positions, orientations)
+        centre_kernel(fixed.body, positions, orientations, centre)
+        out[n] = force_kernel(fixed, feet[n], centre, positions, orientations, bends, torques, forces)
