@@ -25,7 +25,7 @@ SKATING = 0.2
 RUNNING = 1.7
 """Whose hips go faster than this [m/s] is judged as a runner."""
 AROUND = 0.5
-"""Seconds over which that speed is taken, and before and after which a runner still counts as one."""
+"""Seconds over which that speed is taken, and before and after a run for which its accelerations are a runner's."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def running(hips: np.ndarray, dt: float) -> np.ndarray:
     """In which of N frames the hips (N, 3) [m] are a runner's, (N,) bool; N ≥ 2."""
     frames = max(1, round(AROUND / dt))
     velocity = uniform_filter1d(np.gradient(hips[:, [0, 2]], dt, axis=0), frames, axis=0)
-    return maximum_filter1d(np.linalg.norm(velocity, axis=-1), 2 * frames + 1) > RUNNING
+    return np.linalg.norm(velocity, axis=-1) > RUNNING
 
 
 def _roughest(skeleton: Skeleton, positions: np.ndarray, runs: np.ndarray, dt: float,
@@ -108,6 +108,7 @@ def _roughest(skeleton: Skeleton, positions: np.ndarray, runs: np.ndarray, dt: f
     stride = max(1, round(1 / (ACCELERATION_RATE * dt)))
     if not natural or "walk" not in natural or len(positions) <= 2 * stride:
         return float("nan"), ""
+    runs = maximum_filter1d(runs, 2 * round(AROUND / dt) + 1)  # who sets off or stops is as rough as who runs
     limit = np.where(runs[:, None], natural.get("run", natural["walk"]), natural["walk"])
     # frames are left out and not averaged, so every phase of the leaving out counts
     over = np.concatenate([joint_acceleration(positions[phase:], dt) / limit[phase::stride][1:-1]
