@@ -264,7 +264,7 @@ class Play:
         """Play on from the moment that is shown; what came after it is forgotten."""
         self.look = None
         if look.behind:
-            self.tape = None
+            self.tape, self.halted = None, False
             self._wish(Wish(pressed=(f"back={look.behind}",)))
         elif self.now.paused:
             self._wish(Wish(pressed=("pause",)))
