@@ -97,7 +97,8 @@ def main() -> None:
     print(f"window {options.size[0]}×{options.size[1]} {options.preset}, {shown[-1] - shown[0]:.1f} s, {len(shown)} frames: "
           f"interval p50 {np.percentile(took, 50):.2f} ms, p99 {np.percentile(took, 99):.2f} ms, longest {took.max():.1f} ms")
     drift = (game.wall[-1] - game.wall[0]) - (game.counted[-1] - game.counted[0])
-    print(f"clock: drift {1000 * drift:+.3f} ms in {game.wall[-1] - game.wall[0]:.1f} s; {game.now.number} ticks, dropped {1000 * game.clock.dropped:.1f} ms, owed {1000 * game.clock.owed:.2f} ms")
+    print(f"clock: drift {1000 * drift:+.3f} ms in {game.wall[-1] - game.wall[0]:.1f} s; "
+          f"{game.now.number} ticks, dropped {1000 * game.clock.dropped:.1f} ms, owed {1000 * game.clock.owed:.2f} ms")
 
 
 if __name__ == "__main__":
