@@ -32,6 +32,8 @@ def reason(character: Character) -> str:
         if reached <= s.run_above:
             return f"runs still: {reached:.1f} m/s is not yet below {s.walk_below:.2f} m/s"
         return f"runs: asked {asked:.1f} m/s is above {s.run_above:.2f} m/s"
+    if s.run_above == float("inf"):
+        return f"walks: asked {asked:.1f} m/s, and its library has no runs"
     if reached > s.run_above:
         return "walks on until the foot stands that running begins with"
     if asked > s.run_above:

@@ -18,7 +18,7 @@ from game.hud.ghost import ghost
 from game.hud.panels import PANELS, layout
 from game.hud.plots import runs, ticks
 from game.hud.sliders import Row
-from game.hud.space import Mesh, Orbit
+from game.hud.tetrahedra import Mesh, Orbit
 from game.hud.trace import STEPS, Trace
 from game.input import Wish
 from game.play import Play
