@@ -87,7 +87,7 @@ class BoxTable(Table):
     centre: Point3
     size: tuple[Length, Length, Length]
     heading: Degrees = 0.0
-    tint: Colour = (0.55, 0.56, 0.60)
+    tint: Colour = Box.tint
 
     def prop(self) -> Box:
         """The same in SI units."""
@@ -101,7 +101,7 @@ class PillarTable(Table):
     foot: Point3
     radius: Length = 0.25
     height: Length = 2.5
-    tint: Colour = (0.55, 0.56, 0.60)
+    tint: Colour = Pillar.tint
 
     def prop(self) -> Pillar:
         """The same as the renderer takes it."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class Preset:
     """What the renderer spends.
 
-    samples: per pixel for antialiasing; 0 for none. shadow_size: texels along a side of the shadow map.
+    samples: per pixel for antialiasing; 0 for none. shadow_size: texels along a side of the figures' shadow map.
     floor_taps, body_taps: 1, 4 or 16 reads of it per pixel; 16 make shadows softer the farther they fall.
     detail: the pixels that a metre must measure for the fine mesh, and for the middle one.
     """

@@ -22,6 +22,8 @@ from .text import TextPass
 
 FLOATS = 68
 """In the uniform block of frame.glsl."""
+STAGE_TEXELS = 2048
+"""Along a side of the solids' shadow map, in any preset: it is hardly ever drawn."""
 GAP = (0.02, 0.022, 0.026)
 """The colour of the line between parts of a picture, and of what no part covers."""
 
@@ -37,7 +39,7 @@ class Renderer:
         self.ctx, self.preset = ctx, preset(chosen)
         floor, body = self.preset.floor_taps, self.preset.body_taps
         self.target = gl.Target(ctx, size, self.preset.samples)
-        self.figures_map, self.solids_map = (gl.ShadowMap(ctx, self.preset.shadow_size) for _ in range(2))
+        self.figures_map, self.solids_map = (gl.ShadowMap(ctx, n) for n in (self.preset.shadow_size, STAGE_TEXELS))
         self.kept: Any = None  # what the solids' map shows: solids and light box
         self.frame = ctx.buffer(reserve=4 * FLOATS, dynamic=True)
         self.occluders = Occluders(ctx)
@@ -83,8 +85,7 @@ class Renderer:
         figures = tuple(figure for figure in scene.figures if drawable(figure))
         solids = tuple(prop for prop in scene.props if not isinstance(prop, Goal))
         shown = figures if scene.overlays.mesh else ()
-        texels = self.preset.shadow_size
-        boxes = figures_box(camera, shown, texels), solids_box(camera, solids, texels)
+        boxes = figures_box(camera, shown, self.preset.shadow_size), solids_box(camera, solids, STAGE_TEXELS)
         projection = view.perspective(camera.fov, size[0] / size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
         self._frame(matrix, eye, origin, boxes, view.clear_air(camera), size)

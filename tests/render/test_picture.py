@@ -37,7 +37,7 @@ def test_golden(draw, compare, name):
 
 
 def test_golden_fast(draw, compare):
-    compare(draw(GOLDEN["stride"], "fast"), "stride_fast", outliers=0.02)
+    compare(draw(GOLDEN["stride"], "fast"), "stride_fast")
 
 
 def test_the_same_scene_twice_gives_the_same_bytes(draw):
