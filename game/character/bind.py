@@ -34,7 +34,7 @@ def load(path: str | Path) -> Body:
     CharacterError, naming the file and what would be right, if it holds no human with a skin.
     """
     document = gltf.read(path)
-    with gltf.sound(document.path):
+    with gltf.sound(document.path), np.errstate(all="ignore"):  # what is not finite is found and named
         tree = gltf.nodes(document)
         skins = document.list("skins")
         if not skins:

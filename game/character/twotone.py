@@ -22,7 +22,7 @@ def field(at: np.ndarray) -> np.ndarray:
     arm = np.maximum(x - 0.722 - 0.10 * np.abs(z + 0.015),
                      strip(x + 0.30 * np.clip(z + 0.015, -0.05, 0.05), 0.436, 0.490))
     leg = np.maximum(0.098 - 0.22 * np.clip(z, -0.08, 0.06) - y, strip(y - 0.25 * np.clip(z, -0.05, 0.05), 0.470, 0.540))
-    collar = np.where(x < 0.10, strip(y + 0.35 * np.clip(z, -0.05, 0.10), 1.498, 1.528), -0.03)
+    collar = np.where(x < 0.10, strip(y + 0.35 * np.clip(z, -0.05, 0.10) - 2.6 * x * x, 1.492, 1.522), -0.03)
     radii = np.array([0.063, 0.074, 0.085])
     q = (at - [0.0, 1.605, 0.120]) / radii
     k0, k1 = np.linalg.norm(q, axis=1), np.linalg.norm(q / radii, axis=1)

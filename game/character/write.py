@@ -156,9 +156,9 @@ def _mesh(glb: Glb, actor: Actor, nodes: list[int]) -> int:
                   "JOINTS_0": glb.array(joints, UBYTE, target=34962),
                   "WEIGHTS_0": glb.array(mesh.weights, target=34962),
                   "_OPEN": glb.array(mesh.open, target=34962)}
-    if actor.body.pictures is not None:
-        attributes["TEXCOORD_0"] = glb.array(mesh.paint[:, :2], target=34962)
-    primitives = [{"attributes": attributes, "material": material,
+    pictured = [m for _, m in groups if "baseColorTexture" in glb.json["materials"][m]["pbrMetallicRoughness"]]
+    placed = {"TEXCOORD_0": glb.array(mesh.paint[:, :2], target=34962)} if pictured else {}
+    primitives = [{"attributes": attributes | (placed if material in pictured else {}), "material": material,
                    "indices": glb.array(triangles.reshape(-1), UINT if len(mesh.positions) > 65535 else USHORT, target=34963)}
                   for triangles, material in groups if len(triangles)]
     inverse = np.broadcast_to(np.eye(4), (len(nodes), 4, 4)).copy()

@@ -38,6 +38,24 @@ def test_a_human_is_the_same_in_anybodys_rig(tmp_path, rig):
     assert np.allclose(body.levels[0].weights.sum(1), 1.0, atol=1e-5)
 
 
+@pytest.mark.parametrize("version", [0, 1])
+def test_vrm_tells_its_joints_by_a_table(tmp_path, version):
+    bones = {"Hips": "hips", "Spine": "spine", "Spine1": "chest", "Spine2": "upperChest", "Neck": "neck", "Head": "head"}
+    parts = {"Shoulder": "Shoulder", "Arm": "UpperArm", "ForeArm": "LowerArm", "Hand": "Hand", "UpLeg": "UpperLeg",
+             "Leg": "LowerLeg", "Foot": "Foot", "Toe": "Toes"}
+    bones |= {side + ours: side.lower() + theirs for side in ("Left", "Right") for ours, theirs in parts.items()}
+
+    def table(glb):
+        node = {bones[name]: k for k, name in enumerate(skin.STANDARD.names, 1)}
+        for number in node.values():
+            glb.json["nodes"][number]["name"] = "bone"
+        glb.json["extensions"] = {"VRMC_vrm": {"humanoid": {"humanBones": {b: {"node": n} for b, n in node.items()}}}} \
+            if version else {"VRM": {"humanoid": {"humanBones": [{"bone": b, "node": n} for b, n in node.items()]}}}
+    foreign.write(tmp_path / "x.vrm.glb", change=table)
+    (tmp_path / "x.vrm.glb").rename(tmp_path / "x.vrm")
+    assert np.abs(load(tmp_path / "x.vrm").joints - skin.REST).max() < 2e-3
+
+
 def test_fingers_follow_their_hand(tmp_path):
     foreign.write(tmp_path / "x.glb", fingers=True)
     mesh = load(tmp_path / "x.glb").levels[0]
