@@ -181,3 +181,31 @@ def exp_kernel(x, y, z, out):
     out[0, 0], out[0, 1], out[0, 2] = 1.0 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y
     out[1, 0], out[1, 1], out[1, 2] = c * x * y + s * z, 1.0 - c * (x * x + z * z), c * y * z - s * x
     out[2, 0], out[2, 1], out[2, 2] = c * x * z - s * y, c * y * z + s * x, 1.0 - c * (x * x + y * y)
+
+
+def turns(vectors: np.ndarray) -> np.ndarray:
+    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) [rad]: scipy's, without its checks."""
+    flat = np.ascontiguousarray(vectors, float).reshape(-1, 3)
+    out = np.empty((len(flat), 3, 3))
+    _turns(flat, out)
+    return out.reshape(np.shape(vectors) + (3,))
+
+
+def vectors(matrices: np.ndarray) -> np.ndarray:
+    """Rotation vectors (..., 3) [rad] of rotation matrices (..., 3, 3) by less than half a turn."""
+    flat = np.ascontiguousarray(matrices, float).reshape(-1, 3, 3)
+    out = np.empty((len(flat), 3))
+    _vectors(flat, out)
+    return out.reshape(np.shape(matrices)[:-1])
+
+
+@kernel
+def _turns(flat, out):
+    for n in range(len(flat)):
+        exp_kernel(flat[n, 0], flat[n, 1], flat[n, 2], out[n])
+
+
+@kernel
+def _vectors(flat, out):
+    for n in range(len(flat)):
+        log_kernel(flat[n], out[n])

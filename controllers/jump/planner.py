@@ -7,13 +7,11 @@ follow from where the feet are, and in the air the turning of the whole body fol
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
-from scipy.spatial.transform import Rotation
 
-from ..body.rotations import exp, log, wrap, yaw
+from ..body.rotations import yaw
 from ..compiled import kernel
 from . import style
-from .dynamics import BodyTables, Physique, exp_kernel, momentum_kernel, place_kernel
+from .dynamics import Physique, exp_kernel, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .landing import TIME, absorb
 from .path import FLEX, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, path, soles
@@ -126,32 +124,32 @@ class _Draft:
         start, local = self.start, np.tile(np.eye(3), (self.count, 1, 1))
         style.carry_kernel(self.angles[0], self.joints, local)
         turn = self._upright(self.angles[:1, 0])[0]
-        offset, root = log(start.rotations @ np.swapaxes(local, -1, -2)), log(start.rotations[0] @ turn.T)
+        offset, root = vectors(start.rotations @ np.swapaxes(local, -1, -2)), vectors(start.rotations[0] @ turn.T)
         self.offsets = faded(offset, start.rates, FADE, self.times)
         self.offsets[:, 0] = self.offsets[:, self.legs] = 0.0
         self.offsets[np.abs(self.offsets).max(-1) < 1e-6] = 0.0
-        self.turns = exp(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0])
+        self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0])
 
     def _upright(self, lean: np.ndarray) -> np.ndarray:
         """The pelvis' turns (N, 3, 3), facing where the jumper faces and leaning (N,) [rad]."""
-        return yaw(self.start.heading) @ exp(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
+        return yaw(self.start.heading) @ turns(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
 
     def _knee_drive(self, side: int) -> np.ndarray:
         """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: forward and up."""
         ids = self.legs[4 * side:4 * side + 4]
-        start = log(self.start.rotations[ids])
+        start = vectors(self.start.rotations[ids])
         high = np.zeros((4, 3))
         high[0, 0], high[1, 0], high[2, 0] = -1.05, 1.25, -0.1
         times = np.array([0.0, self.leave])
         slopes = np.stack([self.start.rates[ids], np.zeros((4, 3))])
-        return exp(CubicHermiteSpline(times, np.stack([start, high]), slopes)(self.times))
+        return turns(hermite(times, np.stack([start, high]), slopes, self.times))
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""
-        turns = exp(self.nudge[first:] * spin) @ self.turns[first:]
+        turned = turns(self.nudge[first:] * spin) @ self.turns[first:]
         root = np.array(self.start.root if first == 0 else self.roots[first], float)
         self.feet[first:, :, 4] = self.pitches[first:]
-        ground_kernel(self.body, self.flex, self.angles[first:], self.joints, self.offsets[first:], turns,
+        ground_kernel(self.body, self.flex, self.angles[first:], self.joints, self.offsets[first:], turned,
                       self.centres[first:], self.feet[first:], root, self.roots[first:], self.local[first:])
 
     def _prepare_air(self) -> None:
@@ -171,12 +169,12 @@ class _Draft:
 
         A spin turns the body by about itself times the airtime; Broyden's method learns the rest.
         """
-        self._stand(np.zeros(3), 0)
+        self.roots[-3:] = self.centres[-3:]  # a guess
         wanted = self._upright(self.air_angles[-1:, 0])[0]
         spin, gain = np.array([-1.8 / self.way.airtime, 0.0, 0.0]), 0.57 * self.way.airtime * np.eye(3)
         for attempt in range(ROUNDS):
             self._flight(spin, wanted, 1e-4)
-            miss = log(wanted @ self.air[-1, 0].T)
+            miss = vectors(wanted @ self.air[-1, 0].T)
             if attempt:
                 gain += np.outer(before - miss - gain @ change, change) / (change @ change)
             if np.abs(miss).max() < CLOSE:
@@ -198,7 +196,7 @@ class _Draft:
                         self.momentum, np.empty((3, 3)))
         self.air[:, self.legs] = self._legs_in_flight(step, self._touching(landed)[1])
         self.air[0] = self.local[-1]
-        rate = log(self.local[-1, 0] @ self.local[-2, 0].T) / step
+        rate = vectors(self.local[-1, 0] @ self.local[-2, 0].T) / step
         flight_kernel(self.body, self.arc, self.air, rate, self.momentum, self.flying[1], self.air_roots, tolerance)
 
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -214,7 +212,7 @@ class _Draft:
     def _legs_in_flight(self, step: float, end: np.ndarray) -> np.ndarray:
         """The legs' local rotations (N, 8, 3, 3): out of the push straight, then tucked, then reaching."""
         airtime, ids = self.way.airtime, self.legs
-        before, last, reach = log(self.local[-2, ids]), log(self.local[-1, ids]), log(end[ids])
+        before, last, reach = vectors(self.local[-2, ids]), vectors(self.local[-1, ids]), vectors(end[ids])
         tuck = np.clip((airtime - 0.25) / 0.35, 0.0, 1.0)
         straight, folded = last.copy(), reach.copy()
         for side, hip in enumerate((0, 4)):
@@ -226,7 +224,7 @@ class _Draft:
         times = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
         slopes = np.zeros((4, 8, 3))
         slopes[0] = (last - before) / step
-        return exp(CubicHermiteSpline(times, np.stack([last, straight, folded, reach]), slopes)(self.flying))
+        return turns(hermite(times, np.stack([last, straight, folded, reach]), slopes, self.flying))
 
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of
@@ -242,10 +240,10 @@ class _Draft:
         feet[..., :5] = self.landing
         feet[..., 4] = (TOES_DOWN * np.clip(1.0 - after / PLANT, 0.0, 1.0) ** 2)[:, None]
         upright = self._upright(angles[:, 0])
-        rate = log(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
-        turns = exp(faded(log(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
+        rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
+        turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
-        ground_kernel(body, self.flex, angles, self.joints, np.zeros((len(after), self.count, 3)), turns, c, feet,
+        ground_kernel(body, self.flex, angles, self.joints, np.zeros((len(after), self.count, 3)), turned, c, feet,
                       self.air_roots[-1].copy(), roots, local)
         return after, (roots, local, c, v, a), landing.until(after)
 
@@ -255,6 +253,15 @@ def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarr
     y = 2.0 * np.log(2.0) / halflife
     t = times.reshape((-1,) + (1,) * np.ndim(offset))
     return np.exp(-y * t) * (offset + (rate + offset * y) * t)
+
+
+def hermite(times: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The cubic Hermite curve (N, ...) through values (K, ...) with slopes (K, ...) at times (K,)."""
+    n = np.clip(np.searchsorted(times, at, "right") - 1, 0, len(times) - 2)
+    width = (times[n + 1] - times[n]).reshape((-1,) + (1,) * (values.ndim - 1))
+    s = (at - times[n]).reshape(width.shape) / width
+    return (values[n] * (1.0 + 2.0 * s) * (1.0 - s) ** 2 + slopes[n] * width * s * (1.0 - s) ** 2
+            + values[n + 1] * s**2 * (3.0 - 2.0 * s) + slopes[n + 1] * width * s**2 * (s - 1.0))
 
 
 def quintic(start, velocity, acceleration, end, end_velocity, end_acceleration, times):

@@ -34,6 +34,8 @@ DEEP = 0.39
 """How far down [m] the pelvis is, at standard height, when trunk and arms are as in `style.CROUCH`."""
 LEAST = 0.06
 """The least a pelvis goes down for a jump [m], at standard height."""
+SPLAY = 0.2
+"""How far hips turn and spread in a crouch [rad]: knees that part further push across the jump."""
 HALF_STANCE = 0.10
 """From the middle to a foot [m], at standard height."""
 
@@ -133,6 +135,7 @@ def frame(physique: Physique, reading: Reading = "wedge") -> Frame:
     limits = joint_limits(skeleton)
     numbers = body.hip[:, None] + np.arange(3)
     lower, upper = limits.lower[numbers] * physique.flexibility, limits.upper[numbers] * physique.flexibility
+    lower[:, 0, 1:], upper[:, 0, 1:] = -SPLAY, SPLAY
     lower[:, 1], upper[:, 1] = 0.0, 0.0
     upper[:, 1, 0] = min(limits.upper[numbers[0, 1], 0] * physique.flexibility, math.radians(160.0))
     flex = FLEX * physique.flexibility
@@ -159,7 +162,7 @@ def crouch(physique: Physique, velocity, rise: float, gravity=GRAVITY, *, feet: 
     downward [m/s²]. feet: (2, 6) where they stand, flat_feet by default.
     ValueError for numbers that are not finite or feet that are no (2, 6).
     """
-    velocity, gravity = _upward(velocity, 1.0), _upward(gravity, -1.0)
+    velocity, gravity = upward(velocity, 1.0), upward(gravity, -1.0)
     feet = np.array(flat_feet(physique) if feet is None else feet, float)
     if not (np.isfinite(velocity).all() and np.isfinite(gravity).all() and math.isfinite(rise)):
         raise ValueError(f"velocity, rise and gravity must be finite, got {velocity}, {rise}, {gravity}")
@@ -204,13 +207,13 @@ def strongest(physique: Physique, rise: float, gravity=GRAVITY) -> float:
 
     rise, gravity: as in `crouch`. 0 for a body that can't rise against its own weight.
     """
-    able, g = strength(physique), -float(_upward(gravity, -1.0)[1])
+    able, g = strength(physique), -float(upward(gravity, -1.0)[1])
     square = 2.0 * (able.depth + rise) * (able.force / physique.mass - g)
     return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
 
 
-def _upward(value, sign: float) -> np.ndarray:
-    """A vector (3,) as it is; a number as that much upward (1) or downward (−1)."""
+def upward(value, sign: float) -> np.ndarray:
+    """A vector (3,) as it is; a number as that much upward (`sign` 1) or downward (−1)."""
     value = np.asarray(value, float)
     return np.array([0.0, sign * float(value), 0.0]) if value.ndim == 0 else value
 
