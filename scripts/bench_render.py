@@ -37,7 +37,8 @@ from game.scene import Camera, Figure, Scene  # noqa: E402
 RIVALS = {"pyrender": (["pyrender", "numpy<2"], "its mesh still, floor, 1 shadow map, 4 samples"),
           "aitviewer": (["aitviewer"], "its mesh moving, floor, 2 shadow maps, 4 samples")}
 """What each needs installed, and what it draws."""
-OURS = {"full": "moving, floor, soft shadows, occlusion, 4 samples", "fast": "moving, floor, shadows, occlusion, 1 sample"}
+OURS = {"full": "moving, floor, soft shadows, occlusion, 4 samples",
+        "fast": "moving, floor, shadows, occlusion, 1 sample"}
 ROUNDS = 3
 WARM_UP = 10
 

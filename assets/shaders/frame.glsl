@@ -7,7 +7,7 @@ layout(std140) uniform Frame {
     vec4 eye;        // xyz; w: 1 / (fog distance)^4
     vec4 sun;        // xyz towards the sun
     vec4 viewport;   // width, height, 1 / width, 1 / height
-    vec4 shade;      // figures' map: xy: 1 / its size [1/m]; z: margin along a normal [m]; w: depth [m], 0 if there is none
+    vec4 shade;      // figures' map: xy: 1 / its size [1/m]; z: margin along a normal [m]; w: depth [m], 0 if none
     vec4 stage;      // the same of the solids' map
 };
 

@@ -1,6 +1,7 @@
 // How much of the sky a surface point sees past limbs, solids and the floor: 1 all, 0 nothing.
 // All from shapes, without samples: it is smooth, and the same from frame to frame.
 const int LIMBS = 15;
+// 16, 48 and LIMBS are FIGURES, SOLIDS and COUNT of render/occlusion.py.
 layout(std140) uniform Occluders {
     vec4 count;               // x: figures; y: solids
     vec4 ball[16];            // a figure's middle; w: (how far it darkens anything)^2
@@ -14,7 +15,7 @@ const float CREASE = 0.35;    // how far from a solid its darkening ends [m]
 // (after Quilez, "Capsule occlusion"). A limb never hides its own surface: its axis lies behind.
 float beside(vec3 at, vec3 n, vec4 a, vec3 b) {
     vec3 along = b - a.xyz, from = at - a.xyz;
-    vec3 d = along * clamp(dot(from, along) / dot(along, along), 0.0, 1.0) - from;
+    vec3 d = along * clamp(dot(from, along) / max(dot(along, along), 1e-8), 0.0, 1.0) - from;
     float l2 = dot(d, d) + 1e-6;
     float near = max(1.0 - l2 / (REACH * REACH), 0.0);
     float hidden = max(dot(n, d), 0.0) * inversesqrt(l2) * min(a.w * a.w / l2, 1.0) * near;

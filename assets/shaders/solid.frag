@@ -13,9 +13,10 @@ const float BEVEL = 0.018;
 
 // The normal of the solid with its upper edges rounded: away from the nearest point of its core.
 vec3 bevelled() {
-    vec3 local = clamp(v_local, -v_half, v_half), core = max(v_half - BEVEL, 0.0), low = vec3(-core.x, -v_half.y, -core.z);
+    vec3 local = clamp(v_local, -v_half, v_half), core = max(v_half - BEVEL, 0.0);
+    vec3 low = vec3(-core.x, -v_half.y, -core.z);
     if (v_turn.z > 0.5) {
-        float r = length(v_local.xz);
+        float r = max(length(v_local.xz), 1e-6);
         vec2 n = vec2(r, local.y) - clamp(vec2(r, local.y), low.xy, core.xy);
         local = vec3(local.x / r * n.x, n.y, local.z / r * n.x);
     } else {

@@ -60,7 +60,7 @@ class Stream:
 
 
 class ShadowMap:
-    """A depth texture of `texels` a side. Shaders compare with it, filtered over four texels, or read it as it is."""
+    """A depth texture of `texels` a side. Shaders compare with it, filtered over four texels, or read it."""
 
     def __init__(self, ctx: Any, texels: int):
         self.texture = ctx.depth_texture((texels, texels))
@@ -68,7 +68,8 @@ class ShadowMap:
         self.texture.filter = ctx.LINEAR, ctx.LINEAR
         self.texture.repeat_x = self.texture.repeat_y = False
         self.target = ctx.framebuffer(depth_attachment=self.texture)
-        self.plain = ctx.sampler(texture=self.texture, filter=(ctx.NEAREST, ctx.NEAREST), repeat_x=False, repeat_y=False)
+        nearest = ctx.NEAREST, ctx.NEAREST
+        self.plain = ctx.sampler(texture=self.texture, filter=nearest, repeat_x=False, repeat_y=False)
 
     def use(self, compared: int, read: int) -> None:
         """Bind to these two texture units."""

@@ -18,6 +18,9 @@ EXTENT = 390.0
 """How far the floor reaches [m]: beyond, it would be all fog."""
 SQUARE = 0.25
 """The side of the squares that the floor is cut into where something is near [m]."""
+MOST = 1000.0
+"""Beyond so many square metres around solids, all of the floor is cheaper."""
+WHOLE = EXTENT * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [-1, 0, -1], [1, 0, 1], [1, 0, -1.0]])
 CREASE = 0.40
 """How far from a solid the floor is darker [m]; a little more than in occlusion.glsl."""
 
@@ -44,7 +47,10 @@ def touched_floor(figures: Sequence[Figure], solids: Sequence[Box | Pillar], ori
         ends = np.stack([corners(solid) for solid in solids])
         ends[..., 1] = np.maximum(ends[..., 1], 0.0)
         points = np.concatenate([ends, ends * [1.0, 0.0, 1.0]], 1)
-        rims += [*outlines(points - origin, np.full(16, CREASE), sides=24)]
+        near = outlines(points - origin, np.full(16, CREASE), sides=24)
+        if np.prod(np.ptp(near, axis=1)[:, [0, 2]], axis=1).sum() > MOST:
+            return WHOLE
+        rims += [*near]
     return covered(rims)
 
 
@@ -54,7 +60,8 @@ def covered(rims: Sequence[np.ndarray]) -> np.ndarray:
     for rim in rims:
         flat, side = rim[:, [0, 2]], np.roll(rim, -1, 0)[:, [0, 2]] - rim[:, [0, 2]]
         low, high = np.floor(flat.min(0) / SQUARE), np.floor(flat.max(0) / SQUARE)
-        cells = np.stack(np.meshgrid(*(np.arange(a, b + 1) for a, b in zip(low, high)), indexing="ij"), -1).reshape(-1, 2)
+        ranges = (np.arange(a, b + 1) for a, b in zip(low, high))
+        cells = np.stack(np.meshgrid(*ranges, indexing="ij"), -1).reshape(-1, 2)
         inward = np.stack([side[:, 1], -side[:, 0]], 1)
         # of a square's corners, the innermost for each side decides
         depth = (cells @ inward.T + np.maximum(inward, 0.0).sum(1)) * SQUARE - np.sum(flat * inward, 1)
@@ -73,7 +80,6 @@ class Ground:
         self.ctx, self.streams = ctx, [gl.Stream(ctx), gl.Stream(ctx)]
         self.arrays = [ctx.vertex_array(program, [(stream.buffer, "3f", "position")])
                        for program, stream in zip(self.floors, self.streams)]
-        self.plain = EXTENT * np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [-1, 0, -1], [1, 0, 1], [1, 0, -1]], "f4")
         self.sky = ctx.vertex_array(self.above, [])
 
     def draw(self, touched: np.ndarray, inverse: np.ndarray) -> None:
@@ -82,7 +88,7 @@ class Ground:
         touched: triangles of the floor as of `touched_floor`. inverse: (4, 4) of the view-projection.
         """
         # the plain floor lies a hair behind, and so loses wherever the two overlap
-        for array, stream, triangles, behind in zip(self.arrays, self.streams, (touched, self.plain),
+        for array, stream, triangles, behind in zip(self.arrays, self.streams, (touched, WHOLE),
                                                     ((0.0, 0.0), (1.0, 4.0))):
             if len(triangles):
                 stream.write(triangles.astype(np.float32).tobytes())

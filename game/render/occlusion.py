@@ -22,7 +22,7 @@ FIGURES, SOLIDS = 16, 48
 REACH = 0.5
 """How far from a limb its darkening ends [m]; as in occlusion.glsl."""
 
-# each limb: where it begins and ends (joints; "heel"; "tip" of the last joint's bone), its radius [m]
+# each limb: where it begins and ends (joints, or the tip of the first one's bone) and its radius [m]
 _LIMBS = tuple((f"{side}{a}", b if b == "tip" else f"{side}{b}", radius) for side in ("Left", "Right")
                for a, b, radius in (("UpLeg", "Leg", 0.075), ("Leg", "Foot", 0.050), ("Arm", "ForeArm", 0.048),
                                     ("ForeArm", "Hand", 0.040), ("Hand", "tip", 0.036))) + (
@@ -87,8 +87,8 @@ class Occluders:
         figures = sorted(figures, key=lambda f: np.linalg.norm(f.positions[0] - target))[:FIGURES]
         rows = solid_rows(solids)
         if len(rows) > SOLIDS:
-            away = np.linalg.norm(np.maximum(np.abs(rows[:, :3] - target) - rows[:, 4:7].max(1, keepdims=True), 0.0), axis=1)
-            rows = rows[np.argsort(away, kind="stable")[:SOLIDS]]
+            away = np.maximum(np.abs(rows[:, :3] - target) - rows[:, 4:7].max(1, keepdims=True), 0.0)
+            rows = rows[np.argsort(np.linalg.norm(away, axis=1), kind="stable")[:SOLIDS]]
         rows[:, :3] -= origin
         capsules = limbs(figures)
         capsules[..., :3] -= origin  # on the floor: heights stay

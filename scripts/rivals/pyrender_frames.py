@@ -36,7 +36,8 @@ scene.add(pyrender.Mesh.from_trimesh(trimesh.Trimesh(data["vertices"][0], data["
 floor = trimesh.creation.box((20.0, 0.02, 20.0))
 floor.apply_translation((0.0, -0.01, 0.0))
 scene.add(pyrender.Mesh.from_trimesh(floor, smooth=False))
-scene.add(pyrender.PerspectiveCamera(float(data["fov"]), aspectRatio=width / height), pose=looking(data["eye"], data["target"]))
+scene.add(pyrender.PerspectiveCamera(float(data["fov"]), aspectRatio=width / height),
+          pose=looking(data["eye"], data["target"]))
 scene.add(pyrender.DirectionalLight(intensity=4.0), pose=looking(np.array([3.1, 3.75, -1.1]), np.zeros(3)))
 renderer = pyrender.OffscreenRenderer(width, height)
 took = []

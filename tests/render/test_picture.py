@@ -198,7 +198,8 @@ def test_two_renderers_in_one_process_do_not_mix(ctx):
 
 def shade(draw, scene, bare, at):
     """How much darker (levels) `scene` is than `bare` where the point `at` (3,) of the world is seen."""
-    matrix = view.perspective(scene.camera.fov, 16 / 9) @ view.look_at(scene.camera.eye, scene.camera.target, scene.camera.up)
+    shot = scene.camera
+    matrix = view.perspective(shot.fov, 16 / 9) @ view.look_at(shot.eye, shot.target, shot.up)
     x, y, _, w = matrix @ [*at, 1.0]
     column, row = round(160 * (1 + x / w)), round(90 * (1 - y / w))
     dark, light = (draw(s)[row - 1:row + 2, column - 1:column + 2, :3].mean() for s in (scene, bare))

@@ -45,7 +45,8 @@ def test_no_light_box_where_nothing_near_casts_a_shadow():
 @pytest.mark.parametrize("solid", [Box((0, 0.5, 0), (1, 1, 1)), Box((3, 1.2, -2), (0.2, 1.0, 9.0), 0.7),
                                    Box((0, 0.05, 0), (2, 0.1, 2), -2.0), Pillar((1, 0, 2))])
 def test_the_solids_light_box_holds_them_and_stays_where_it_is(solid):
-    here, there = (sun.solids_box(Camera(np.array([x, 2.0, 5.0]), np.array([x, 1.0, 0.0])), (solid,), 1024) for x in (0, 9.3))
+    here, there = (sun.solids_box(Camera(np.array([x, 2.0, 5.0]), np.array([x, 1.0, 0.0])), (solid,), 1024)
+                   for x in (0, 9.3))
     at = seen(here.matrix(np.zeros(3)), sun.corners(solid))
     assert at.min() > 0.0 and at.max() < 1.0
     assert (here.corner == there.corner).all() and (here.size == there.size).all()
@@ -90,3 +91,7 @@ def test_squares_of_overlapping_outlines_come_once():
     area = np.cross(twice[1::3] - twice[::3], twice[2::3] - twice[::3])[:, 1]
     assert np.allclose(area, SQUARE**2)  # all face up
     assert covered([]).shape == (0, 3)
+
+
+def test_a_vast_platform_costs_no_more_than_the_whole_floor():
+    assert len(touched_floor((figure(),), (Box((0, -0.1, 0), (300, 0.4, 300)),), np.zeros(3))) == 6
