@@ -21,7 +21,7 @@ from character import binding, shape, surface  # noqa: E402
 import assets  # noqa: E402
 from game.render.mesh import Mesh, pack  # noqa: E402
 
-TRIANGLES = {"near": 16000, "middle": 7000, "far": 3000}
+TRIANGLES = {"near": 19000, "middle": 7500, "far": 3200}
 """How many each level of detail gets, the finest first."""
 FINE = {"near": 0.0105, "middle": 0.0160, "far": 0.0240}
 """The length of their edges [m] where the shape needs it most not."""
@@ -37,7 +37,7 @@ def finished(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
 def main() -> None:
     fast = "--fast" in sys.argv
     began = time.perf_counter()
-    vertices, faces = surface.marched(0.013 if fast else 0.007)
+    vertices, faces = surface.marched(0.013 if fast else 0.0064)
     print(f"marching cubes: {len(faces)} triangles, {time.perf_counter() - began:.1f} s")
     stored = {}
     for level, wanted in TRIANGLES.items():

@@ -16,7 +16,7 @@ vec2 paint(vec3 p) {
         dark = max(dark, strip(p.y - 0.25 * clamp(p.z, -0.05, 0.05), 0.470, 0.540));
         seam = 0.8 * (0.868 + 0.70 * p.x - 0.35 * clamp(-p.z, 0.0, 0.06) - p.y);
     } else {
-        float collar = p.x < 0.10 ? strip(p.y + 0.35 * clamp(p.z, -0.05, 0.10), 1.498, 1.528) : -0.03;
+        float collar = p.x < 0.10 ? strip(p.y + 0.35 * clamp(p.z, -0.05, 0.10) - 2.6 * p.x * p.x, 1.492, 1.522) : -0.03;
         vec3 q = (p - vec3(0.0, 1.605, 0.120)) / vec3(0.063, 0.074, 0.085);
         float k0 = length(q), k1 = length(q / vec3(0.063, 0.074, 0.085));
         dark = max(max(dark, strip(p.y - 1.9 * p.x * p.x + 0.12 * p.z, 1.030, 1.088)), max(collar, k0 * (1.0 - k0) / k1));

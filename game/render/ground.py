@@ -13,6 +13,7 @@ from ..scene import Box, Figure, Pillar
 from . import gl, occlusion, skin
 from .sun import corners, outlines
 from .view import scale_of
+from .wear import bulk
 
 EXTENT = 390.0
 """How far the floor reaches [m]: beyond, it would be all fog."""
@@ -40,6 +41,7 @@ def touched_floor(figures: Sequence[Figure], solids: Sequence[Box | Pillar], ori
         at = np.stack([f.positions for f in figures]).astype(float)
         tips = end_positions(skin.STANDARD, at, np.stack([f.orientations for f in figures]).astype(float))
         scale = max(scale_of(at, skin.REST, skin.STANDARD.parents).max(), 1.0) * 1.1
+        scale *= max((bulk(f.body) for f in figures if f.body is not None), default=1.0)
         under = at[:, _FEET] * [1.0, 0.0, 1.0]
         points = np.concatenate([at, tips, under], 1)
         rims += [*outlines(points - origin, np.concatenate([_GIRTH * scale, np.full(len(_FEET), occlusion.REACH)]))]

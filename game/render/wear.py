@@ -8,26 +8,18 @@ stands still on every body.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
-from controllers.body import Skeleton
 from controllers.body.ik import two_bone_turns
 
 from . import skin
-from .mesh import Body
+from .mesh import Body, mannequin
 
 _UP = [skin.STANDARD.index(f"{side}UpLeg") for side in ("Left", "Right")]
 _KNEES = [skin.STANDARD.index(f"{side}Leg") for side in ("Left", "Right")]
 _FEET = [skin.STANDARD.index(f"{side}Foot") for side in ("Left", "Right")]
-
-
-def skeleton_of(body: Body) -> Skeleton:
-    """The 22 joints of a body as a skeleton, in the body's own size."""
-    parents = skin.STANDARD.parents
-    offsets = body.joints - np.where(parents[:, None] < 0, 0.0, body.joints[parents])
-    ratio = leg_length(body.joints) / leg_length(skin.REST)
-    return Skeleton(skin.STANDARD.names, parents, offsets, skin.STANDARD.end_parents,
-                    skin.STANDARD.end_offsets * ratio)
 
 
 def leg_length(joints: np.ndarray) -> np.ndarray:
@@ -39,6 +31,20 @@ def leg_length(joints: np.ndarray) -> np.ndarray:
 def ankle_height(positions: np.ndarray) -> np.ndarray:
     """How high (...) [m] the ankles of a standard human's figures (..., 22, 3) are above the sole."""
     return leg_length(positions) / leg_length(skin.REST) * skin.REST[_FEET[0], 1]
+
+
+@lru_cache(maxsize=64)
+def bulk(body: Body) -> float:
+    """How far a body's flesh reaches from its joints over the mannequin's, for what its shadow may cover: at least 1."""
+    return float(np.clip((_reach(body) / np.maximum(_reach(mannequin()), 0.1)).max(), 1.0, 3.0))
+
+
+def _reach(body: Body) -> np.ndarray:
+    """How far (22,) the flesh on each joint reaches over the length of the legs."""
+    mesh, out = body.levels[-1], np.zeros(len(body.joints))
+    joint = skin.AT[mesh.joints[np.arange(len(mesh.joints)), mesh.weights.argmax(1)]]
+    np.maximum.at(out, joint, np.linalg.norm(mesh.positions - body.joints[joint], axis=1))
+    return out / leg_length(body.joints)
 
 
 def worn(body: Body, positions: np.ndarray, orientations: np.ndarray

@@ -65,10 +65,9 @@ def head(p):
     jaw = ellipsoid(p, (0, 1.575, 0.040), (0.056, 0.052, 0.058), tilt=-0.25)
     chin = ellipsoid(p, (0, 1.538, 0.074), (0.028, 0.020, 0.024))
     d = join(join(skull, front, 0.05), join(jaw, chin, 0.045), 0.055)
-    nose = cone(p, (0, 1.628, 0.094), (0, 1.592, 0.103), 0.006, 0.010)
-    d = join(d, nose, 0.040)
-    brow = cone(p, (0, 1.648, 0.094), (0.036, 0.000 + 1.645, 0.078), 0.010, 0.010)
-    d = join(d, brow, 0.035)
+    # a mask rather than a face: one soft ridge tells where it looks
+    ridge = cone(p, (0, 1.652, 0.082), (0, 1.588, 0.094), 0.012, 0.014)
+    d = join(d, ridge, 0.060)
     ear = ellipsoid(p, (0.073, 1.614, -0.004), (0.012, 0.029, 0.018), tilt=-0.15)
     return join(d, ear, 0.010)
 
@@ -80,12 +79,12 @@ def neck(p):
 
 
 def trunk(p):
-    ribs = squashed(p, 0.70, 2, -0.004, cone, (0, 1.290, -0.004), (0, 1.180, 0.000), 0.158, 0.140)
+    ribs = squashed(p, 0.70, 2, -0.004, cone, (0, 1.295, -0.004), (0, 1.180, 0.000), 0.160, 0.132)
     upper = squashed(p, 0.70, 2, -0.010, cone, (0, 1.360, -0.010), (0.105, 1.385, -0.012), 0.130, 0.082)
-    chest = ellipsoid(p, (0.075, 1.350, 0.052), (0.088, 0.070, 0.045), tilt=-0.35)
+    chest = ellipsoid(p, (0.075, 1.350, 0.056), (0.086, 0.066, 0.046), tilt=-0.35)
     blades = ellipsoid(p, (0.085, 1.350, -0.080), (0.075, 0.100, 0.034), tilt=0.1)
-    wing = cone(p, (0.140, 1.345, -0.030), (0.108, 1.160, -0.012), 0.050, 0.036)
-    waist = squashed(p, 0.76, 2, 0.002, cone, (0, 1.180, 0.002), (0, 1.050, 0.0), 0.130, 0.133)
+    wing = cone(p, (0.143, 1.350, -0.030), (0.100, 1.165, -0.012), 0.052, 0.030)
+    waist = squashed(p, 0.76, 2, 0.002, cone, (0, 1.180, 0.002), (0, 1.050, 0.0), 0.121, 0.128)
     belly = ellipsoid(p, (0, 1.110, 0.052), (0.085, 0.130, 0.052))
     d = join(join(ribs, upper, 0.06), wing, 0.06)
     d = join(join(d, chest, 0.06), blades, 0.05)
@@ -99,9 +98,9 @@ def trunk(p):
 
 def leg(p):
     x = 0.0875
-    thigh = cone(p, (x + 0.006, 0.900, -0.002), (x, 0.520, 0.004), 0.086, 0.054)
+    thigh = cone(p, (x + 0.010, 0.900, -0.002), (x, 0.520, 0.004), 0.083, 0.054)
     front = ellipsoid(p, (x + 0.010, 0.740, 0.028), (0.062, 0.175, 0.060))
-    inner = ellipsoid(p, (x - 0.028, 0.800, -0.008), (0.052, 0.170, 0.062))
+    inner = ellipsoid(p, (x - 0.025, 0.790, -0.008), (0.048, 0.170, 0.062))
     hams = ellipsoid(p, (x, 0.720, -0.032), (0.056, 0.165, 0.054))
     d = join(join(thigh, front, 0.05), join(inner, hams, 0.05), 0.05)
     knee = ellipsoid(p, (x, 0.508, 0.016), (0.046, 0.056, 0.046))
@@ -143,19 +142,20 @@ def arm(p):
 
 def hand(p):
     y, z = 1.425, -0.015
-    palm = squashed(p, 0.42, 1, y, cone, (0.756, y, z - 0.002), (0.812, y, z), 0.040, 0.043)
-    d = palm
-    # four fingers side by side, a little bent, parted only by grooves
-    for k, (reach, thick) in enumerate(((0.906, 0.0112), (0.920, 0.0116), (0.913, 0.0112), (0.894, 0.0100))):
-        at = z + 0.0315 - 0.0208 * k
-        base, tip = (0.818, y + 0.001, at), (reach - thick, y - 0.016, at * 0.9 + z * 0.1)
-        middle = (0.5 * (base[0] + tip[0]) + 0.004, y - 0.002, 0.5 * (base[2] + tip[2]))
-        finger = join(cone(p, base, middle, thick + 0.001, thick), cone(p, middle, tip, thick, thick * 0.85), 0.004)
-        d = join(d, finger, 0.010)
-    pad = ellipsoid(p, (0.772, y - 0.008, z + 0.028), (0.034, 0.017, 0.020))
-    thumb = join(cone(p, (0.770, y - 0.008, z + 0.034), (0.806, y - 0.014, z + 0.062), 0.0155, 0.0130),
-                 cone(p, (0.806, y - 0.014, z + 0.062), (0.840, y - 0.019, z + 0.070), 0.0128, 0.0102), 0.005)
-    return join(join(d, pad, 0.025), thumb, 0.018)
+    palm = squashed(p, 0.40, 1, y, cone, (0.758, y, z - 0.001), (0.806, y, z), 0.039, 0.042)
+    knuckles = cone(p, (0.818, y + 0.003, z + 0.028), (0.814, y + 0.002, z - 0.029), 0.0110, 0.0098)
+    d = join(palm, knuckles, 0.016)
+    # four fingers, spread a little and at rest a little bent
+    for across, reach, thick in ((0.0310, 0.899, 0.0090), (0.0106, 0.912, 0.0093),
+                                 (-0.0098, 0.904, 0.0089), (-0.0290, 0.884, 0.0079)):
+        base, tip = (0.816, y + 0.002, z + across), (reach - thick, y - 0.019, z + 1.42 * across)
+        middle = (0.45 * base[0] + 0.55 * tip[0], y - 0.001, 0.45 * base[2] + 0.55 * tip[2])
+        finger = join(cone(p, base, middle, thick + 0.0012, thick), cone(p, middle, tip, thick, thick * 0.84), 0.004)
+        d = join(d, finger, 0.006)
+    pad = ellipsoid(p, (0.772, y - 0.009, z + 0.026), (0.034, 0.017, 0.021))
+    thumb = join(cone(p, (0.768, y - 0.009, z + 0.032), (0.806, y - 0.015, z + 0.064), 0.0150, 0.0118),
+                 cone(p, (0.806, y - 0.015, z + 0.064), (0.837, y - 0.020, z + 0.078), 0.0116, 0.0092), 0.005)
+    return join(join(d, pad, 0.025), thumb, 0.016)
 
 
 def body(points):

@@ -53,7 +53,7 @@ def edge_length(points: np.ndarray, fine: float) -> np.ndarray:
     """How long edges should be at points (N, 3) [m]: finer at hands, head, feet and where joints bend."""
     x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
     size = np.full(len(points), 1.55)
-    for near, radius, least in (((0.85, 1.425, -0.015), 0.15, 0.62), ((0.0, 1.61, 0.08), 0.13, 0.75),
+    for near, radius, least in (((0.85, 1.425, -0.015), 0.15, 0.52), ((0.0, 1.61, 0.08), 0.13, 0.75),
                                 ((0.0875, 0.03, 0.12), 0.16, 0.85), ((0.4617, 1.425, -0.015), 0.11, 1.05),
                                 ((0.0875, 0.502, 0.0), 0.13, 1.15), ((0.18, 1.425, -0.015), 0.14, 1.15),
                                 ((0.0875, 0.93, 0.0), 0.16, 1.30)):
