@@ -53,7 +53,7 @@ class Hud:
         self.open, self.who = frozenset(open), min(self.who, len(now.players) - 1)
         character = history[-1].after.characters[self.who]
         self.meter.frame(seconds)
-        signals = self.trace.read(history, self.who)
+        signals = self.trace.read(history, self.who) if self.open & {"space", "plots"} else None
         moved = self.canvas.begin(size, seconds)
         places, scale, actions = layout(size, self.canvas.scale), self.canvas.scale, []
         for name in (name for name in PANELS if name in self.open):
