@@ -155,7 +155,7 @@ def figures(film: Scenario, controller: Any) -> Figures:
 
 
 def entries(folder: str | Path) -> tuple[Entry, ...]:
-    """The films that a gallery has, those that come with Gambol first in their order."""
+    """The films that a gallery has: what shows most first, then by name."""
     folder, first = Path(folder), ("demo", "corridor")
     found = [entry for file in sorted(folder.glob("*.json")) if (entry := _entry(file)) is not None
              and all((folder / f"{entry.name}{suffix}").is_file() for suffix in (".mp4", ".png"))]
