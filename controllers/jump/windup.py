@@ -202,6 +202,25 @@ def strength(physique: Physique, reading: Reading = "wedge") -> Strength:
     return Strength(depth[:found], force[:found])
 
 
+def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY) -> float:
+    """How deep [m] `crouch` will end, told from the body's `strength` in a few microseconds.
+
+    velocity, rise, gravity: as in `crouch`. NaN where the body is too weak for that take-off.
+    """
+    able, velocity, gravity = strength(physique), upward(velocity, 1.0), upward(gravity, -1.0)
+    way = np.maximum(able.depth + rise, 0.02 * physique.height / STATURE)[:, None]
+    required = physique.mass * np.linalg.norm(velocity * velocity[1] / (2.0 * way) - gravity, axis=-1)
+    spare = able.force - required
+    enough = np.flatnonzero(spare >= 0.0)
+    if not len(enough):
+        return math.nan
+    n = int(enough[0])
+    if n == 0:
+        return float(able.depth[0])
+    part = spare[n - 1] / (spare[n - 1] - spare[n])
+    return float(able.depth[n - 1] + part * (able.depth[n] - able.depth[n - 1]))
+
+
 def strongest(physique: Physique, rise: float, gravity=GRAVITY) -> float:
     """The greatest upward take-off speed [m/s] of a body: v² = 2 d (F / m − g), at its best depth.
 
@@ -377,25 +396,23 @@ def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis,
         row[6], row[7] = force, needed
         row[8], row[9] = math.hypot(middle[0] - centre[0], middle[1] - centre[2]), margin
         rows += 1
-        least = lacking <= 0.0 and pelvis[1] >= top - LEAST * size - 1e-6  # the smallest crouch is more than enough
-        if row[8] < gains.balance_error and (abs(lacking) < gains.force_error or (least and iteration > 0)):
+        least = abs(top - LEAST * size - pelvis[1]) < 1e-6  # the smallest crouch may be more than enough
+        if row[8] < gains.balance_error and (abs(lacking) < gains.force_error or (least and lacking <= 0.0)):
             converged = True
             break
         if leeway < 5e-4 or (iteration > 1 and row[0] == history[rows - 2, 0] and row[1] == history[rows - 2, 1]
                              and row[2] == history[rows - 2, 2]):
             break  # its joints go no further
-        length = 0.0
         for i in range(3):
             step[i] = gains.proportional * error[i]
             if iteration > 0:
                 step[i] += gains.derivative * (error[i] - before[i])
             before[i] = error[i]
-            length += step[i] ** 2
-        length = math.sqrt(length)
+        step[1] = max(min(step[1], max(top - LEAST * size - pelvis[1], -leeway)), floor - pelvis[1])
+        length = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2)
         scale = min(1.0, leeway / length) if length > 0.0 else 0.0
         for i in range(3):
             pelvis[i] += scale * step[i]
-        pelvis[1] = max(min(pelvis[1], top - LEAST * size), floor)
     return rows, converged
 
 
