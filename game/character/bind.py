@@ -199,9 +199,10 @@ def clustered(mesh: Mesh, cell: float) -> Mesh:
     triangles = triangles[np.unique(_numbered(triangles), return_index=True)[1]]
     if not len(triangles):
         return mesh
-    at = place[first]
-    return Mesh((middle / count)[at].astype(np.float32), unit(normals)[at].astype(np.float32),
-                triangles.astype(np.uint32), mesh.joints[first], mesh.weights[first], mesh.open[first], mesh.paint[first])
+    at, members = place[first], np.bincount(vertex)[:, None]
+    paint = np.stack([np.bincount(vertex, column) for column in mesh.paint.T.astype(float)], 1) / members
+    return Mesh((middle / count)[at].astype(np.float32), unit(normals)[at].astype(np.float32), triangles.astype(np.uint32),
+                mesh.joints[first], mesh.weights[first], mesh.open[first], paint.astype(np.float32))
 
 
 def _numbered(rows: np.ndarray) -> np.ndarray:
