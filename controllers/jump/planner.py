@@ -286,7 +286,11 @@ def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, roo
     """
     count = local.shape[1]
     positions, orientations, turn = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((3, 3))
+    still = np.eye(3)
     for n in range(len(centres)):
+        for j in range(1, count):  # poses are made anew, whatever an earlier round left
+            if offsets[n, j, 0] != 0.0 or offsets[n, j, 1] != 0.0 or offsets[n, j, 2] != 0.0:
+                local[n, j] = still
         style.carry_kernel(angles[n], joints, local[n])
         for j in range(1, count):
             if offsets[n, j, 0] != 0.0 or offsets[n, j, 1] != 0.0 or offsets[n, j, 2] != 0.0:
