@@ -55,7 +55,7 @@ class Build:
 def tailored(build: Build, skeleton: Skeleton | None = None, name: str = "Mannequin") -> Body:
     """The mannequin of a build, around the bones of any human skeleton (its zero pose may be any).
 
-    ValueError if the skeleton is no human.
+    ValueError if the skeleton is no human, BuildError if it has no legs to measure.
     """
     lengths = _lengths(build, np.ones(len(_NAMES)) if skeleton is None else proportions(skeleton))
     body = _around(build, lengths)
@@ -66,25 +66,27 @@ def tailored(build: Build, skeleton: Skeleton | None = None, name: str = "Manneq
 def proportions(skeleton: Skeleton) -> np.ndarray:
     """How long (22,) the bones to our joints are in a skeleton over the standard's; its mean leg is 1."""
     part, at = roles(skeleton), zero_positions(skeleton)
-    out = np.full(len(_NAMES), np.nan)
+    out, limbs = np.full(len(_NAMES), np.nan), part.limbs
 
-    def share(joint, *chain, start=None):
-        """The bones that end at the chain's joints, as they lie between."""
-        length = sum(np.linalg.norm(at[a] - at[b]) for a, b in zip((start, *chain), chain))
-        return length / np.linalg.norm(skin.REST[_NAMES.index(joint)] - skin.REST[_PARENTS[_NAMES.index(joint)]])
-    limbs = part.limbs
+    def apart(place, *joints):
+        """How far the middles of two groups of joints are apart in some places."""
+        return np.linalg.norm(np.mean([place(n) for n in joints[0]], 0) - np.mean([place(n) for n in joints[1]], 0))
+
+    def ratio(*joints):
+        """The same of the skeleton over the standard human's."""
+        return apart(lambda n: at[limbs[n]], *joints) / apart(lambda n: skin.REST[_NAMES.index(n)], *joints)
     for side in _SIDES:
-        for joint, parent in (("Leg", "UpLeg"), ("Foot", "Leg"), ("Toe", "Foot"), ("ForeArm", "Arm"), ("Hand", "ForeArm"),
-                              ("Arm", "Shoulder")):
-            if side + joint in limbs and side + parent in limbs:
-                out[_NAMES.index(side + joint)] = share(side + joint, limbs[side + joint], start=limbs[side + parent])
-    trunk = ["Spine", "Spine1", "Spine2"]
-    own = sum(np.linalg.norm(at[a] - at[b]) for a, b in zip((limbs["Hips"], *part.trunk), part.trunk))
-    ours = sum(np.linalg.norm(skin.STANDARD.offsets[_NAMES.index(n)]) for n in trunk)
-    for joint in trunk:
-        out[_NAMES.index(joint)] = own / ours if part.trunk else np.nan
+        for joint, parent in (("Leg", "UpLeg"), ("Foot", "Leg"), ("Toe", "Foot"), ("ForeArm", "Arm"), ("Hand", "ForeArm")):
+            if side + joint in limbs:
+                out[_NAMES.index(side + joint)] = ratio([side + joint], [side + parent])
+        # where clavicles and hips begin differs from rig to rig: their widths do not
+        out[[_NAMES.index(side + n) for n in ("Shoulder", "Arm")]] = ratio(["LeftArm"], ["RightArm"])
+        out[_NAMES.index(side + "UpLeg")] = ratio(["LeftUpLeg"], ["RightUpLeg"])
+    out[[_NAMES.index(n) for n in ("Spine", "Spine1", "Spine2")]] = ratio(["LeftArm", "RightArm"], ["LeftUpLeg", "RightUpLeg"])
     legs = [_NAMES.index(side + n) for side in _SIDES for n in ("Leg", "Foot")]
-    whole = np.nanmean(out[legs])
+    whole = out[legs].mean()
+    if not whole > 0.0:
+        raise BuildError("the skeleton's legs have no length")
     out = np.where(np.isnan(out), whole, out) / whole
     for j, joint in enumerate(_NAMES):  # both sides alike, as the mannequin is
         if joint.startswith("Left"):
