@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
+import time
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,11 +17,14 @@ import numba
 from numba import njit
 
 _PACKAGE = Path(__file__).parent
+DAY = 86400.0
+"""[s]."""
 
 
 @lru_cache
 def cache_folder() -> Path:
-    """Where compiled kernels of exactly these sources are kept; older ones beside it are removed.
+    """Where compiled kernels of exactly these sources are kept; those unused for a day beside it are removed,
+    younger ones may belong to a program that still runs.
 
     An installation that can't be written to keeps them in its user's home, apart from any other's.
     """
@@ -33,7 +37,7 @@ def cache_folder() -> Path:
         home = Path.home() / ".cache" / "gambol" / hashlib.sha1(str(_PACKAGE.resolve()).encode()).hexdigest()[:12]
     folder = home / f"kernels-{stamp.hexdigest()[:12]}"
     for old in home.glob("kernels-*"):
-        if old != folder:
+        if old != folder and time.time() - old.stat().st_mtime > DAY:
             shutil.rmtree(old, ignore_errors=True)
     return folder
 

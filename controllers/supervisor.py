@@ -43,6 +43,25 @@ class Supervisor:
         """The skeleton that the poses are of."""
         return self.controllers[self.first].skeleton
 
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of other controllers, beside the library."""
+        return " + ".join(getattr(one, "kind", type(one).__name__) for one in self.controllers.values())
+
+    @property
+    def library(self) -> Any:
+        """The first controller's gaits."""
+        return getattr(self.controllers[self.first], "library", None)
+
+    @property
+    def settings(self) -> Any:
+        """The first controller's settings."""
+        return getattr(self.controllers[self.first], "settings", None)
+
+    def tuned(self, settings: Any) -> Supervisor:
+        """The same under other settings of the first controller."""
+        return Supervisor({**self.controllers, self.first: self.controllers[self.first].tuned(settings)})
+
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
         state = self.controllers[self.first].start(ground, floor)

@@ -397,14 +397,14 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
 
 
 def _controller(library: Path | None, character: Path | None = None):
-    from controllers.locomotion import Locomotion
+    from controllers.person import person
 
     if character is None:
-        return Locomotion.load(library)
+        return person(library)
     from .character import load
     from .embodied import Embodied
 
-    return Embodied.of(Locomotion.load(library), load(character))
+    return Embodied.of(person(library), load(character))
 
 
 def _size(text: str) -> tuple[int, int]:

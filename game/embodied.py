@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from controllers.body import Pose, Skeleton
-from controllers.contract import CharacterState, Intent, Status
+from controllers.contract import CharacterState, Intent, Leap, Status
 
 from .render import skin
 from .render.mesh import Body
 from .render.wear import leg_length
+from .scene import resized
 
 SMALLEST, LARGEST = 0.4, 1.6
 """Legs shorter or longer than this share of the standard's are taken for another unit, and fitted."""
@@ -64,10 +65,15 @@ class Embodied:
         """The same under other settings."""
         return replace(self, controller=self.controller.tuned(settings))
 
-    def start(self, ground=(0.0, 0.0, 0.0)) -> CharacterState:
-        """Standing at x, z [m], heading."""
+    @property
+    def controllers(self) -> Any:
+        """Those under a supervisor, by name; none without one."""
+        return getattr(self.controller, "controllers", {})
+
+    def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
+        """Standing at x, z [m], heading, on a floor so high [m]."""
         x, z, heading = (float(v) for v in ground)
-        return self._grown(self.controller.start(ground=(x / self.factor, z / self.factor, heading)))
+        return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds."""
@@ -93,7 +99,12 @@ class Embodied:
         return np.array([self.factor**0.5, self.factor**-0.5, self.factor**0.5])
 
     def _asked(self, intent: Intent) -> Intent:
-        return replace(intent, velocity=intent.velocity / self._speeds)
+        leap = intent.leap
+        if leap is not None:
+            leap = Leap(np.asarray(leap.place) / self.factor,
+                        None if leap.airtime is None else leap.airtime / self.factor**0.5)
+        return replace(intent, velocity=intent.velocity / self._speeds, leap=leap,
+                       around=tuple(resized(prop, 1.0 / self.factor) for prop in intent.around))
 
     def _grown(self, state: CharacterState) -> CharacterState:
         return _resized(state, self.factor, state.velocity * self._speeds)
@@ -103,5 +114,7 @@ class Embodied:
 
 
 def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:
-    return replace(state, ground=state.ground * [factor, factor, 1.0], velocity=velocity,
-                   pose=Pose(state.pose.root * factor, state.pose.rotations))
+    def pose(one: Pose | None) -> Pose | None:
+        return None if one is None else Pose(one.root * factor, one.rotations)
+    return replace(state, ground=state.ground * [factor, factor, 1.0], velocity=velocity, floor=state.floor * factor,
+                   pose=pose(state.pose), previous=pose(state.previous), elapsed=state.elapsed * factor**0.5)

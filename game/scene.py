@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -70,6 +70,13 @@ class Goal:
 
 
 Prop = Box | Pillar | Goal
+
+
+def resized(prop: Prop, factor: float) -> Prop:
+    """The prop where everything measures `factor` times as much."""
+    lengths = {"centre", "size", "foot", "radius", "height", "place"} & {part.name for part in fields(prop)}
+    return replace(prop, **{name: tuple(v * factor for v in value) if isinstance(value, tuple) else value * factor
+                            for name in lengths for value in (getattr(prop, name),)})
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 
 from controllers.contract import Intent
-from controllers.navigation import Steering, in_world
+from controllers.navigation import Steering, in_world, slide
 
 from . import settings
 from .camera import Follow, PlayerCamera, between, cycled
+from .input.aim import Aim
 from .input.pilot import STEERING, Pilot
 from .input.wish import Wish
 from .scene import Camera, Figure
@@ -38,12 +39,13 @@ ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", 
 
 @dataclass(frozen=True, eq=False)
 class Player:
-    """One pair of hands: its pilot, how it steers, its camera now and (`last`) a tick ago."""
+    """One pair of hands: its pilot, how it steers, where it aims, its camera now and (`last`) a tick ago."""
 
     pilot: Pilot
     camera: PlayerCamera
     last: PlayerCamera
     steering: Steering = STEERING
+    aim: Aim = Aim()
 
     @staticmethod
     def behind(character: Character) -> Player:
@@ -134,12 +136,26 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
         state = character.state
         if player.camera.flown:  # the sticks fly the camera
             wish = Wish()
+        jump, jumping = jump_of(character)
+        aim = player.aim.step(wish, player.camera.yaw, state, jumping, DT) if jump is not None else player.aim
+        if aim.stands:
+            wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
         camera = player.camera.turned(command.swing * DT) if command.swing else player.camera
-        players.append(replace(player, pilot=pilot, camera=camera))
-        intents.append(command.intent(state, player.steering))
+        players.append(replace(player, pilot=pilot, camera=camera, aim=aim))
+        props = moment.after.props
+        command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
+            slide(state.ground[:2], command.velocity, float(state.floor), props)))
+        leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
+        intents.append(replace(command.intent(state, player.steering), leap=leap))
     intents += [Intent()] * (len(moment.after.characters) - len(intents))
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
+
+
+def jump_of(character: Character) -> tuple[Any, bool]:
+    """Somebody's jump controller, None for one that can't jump, and whether it is jumping now."""
+    jump = getattr(character.controller, "controllers", {}).get("jump")
+    return jump, jump is not None and character.state.memory.active == "jump"
 
 
 def _filmed(moment: Moment, who: int, wish: Wish, stepped: bool) -> Player:

@@ -50,7 +50,7 @@ class Character:
         state, _ = self.controller.step(self.state, intent, DT)
         trail = self.trail
         if number % TRAIL_EVERY == 0:
-            here = np.array([[state.ground[0], FLOOR_LIFT, state.ground[1]]])
+            here = np.array([[state.ground[0], float(state.floor) + FLOOR_LIFT, state.ground[1]]])
             trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
         return replace(self, state=state, intent=intent, trail=trail)
 
@@ -74,7 +74,8 @@ class World:
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
         return replace(self, number=number, characters=tuple(
-            character.step(intent, number) for character, intent in zip(self.characters, intents)))
+            character.step(replace(intent, around=self.props), number)
+            for character, intent in zip(self.characters, intents)))
 
     def index(self, name: str) -> int:
         """The number of a character. KeyError, naming it, if there is none."""

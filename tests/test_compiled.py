@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -54,12 +55,31 @@ def test_kernels_are_kept_and_found_again(package):
 
 
 def test_a_change_in_another_file_is_seen(package):
-    """The callee changes and the caller does not: numba alone would run the old one. Old folders go."""
+    """The callee changes and the caller does not: numba alone would run the old one."""
     call(package)
     first = folders(package)
     touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 1", "x + 2"))
     assert call(package) == ["30.0", "0"]
-    assert len(folders(package)) == 1 and folders(package) != first
+    assert len(folders(package)) == 2
+
+
+def test_folders_that_nobody_used_for_a_day_go_and_younger_ones_stay(package):
+    """A younger one may belong to a program that still compiles into it."""
+    call(package)
+    first, = folders(package)
+    touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 1", "x + 2"))
+    call(package)
+    assert first in folders(package)
+    aged(package / "__pycache__" / first)
+    touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 2", "x + 3"))
+    call(package)
+    assert first not in folders(package)
+
+
+def aged(folder):
+    """A folder as if nobody had touched it for two days."""
+    then = time.time() - 2 * 86400.0
+    os.utime(folder, (then, then))
 
 
 def names(package, *changes):
@@ -109,6 +129,8 @@ print(c.cache_folder())""")
     mine, theirs = cached(package), cached(other)
     assert mine.is_dir() and theirs.is_dir() and mine != theirs
     assert home / ".cache" / "gambol" in mine.parents and home / ".cache" / "gambol" in theirs.parents
+    aged(mine)
+    aged(theirs)
     touch(package / "inner.py", "# another\n" + (package / "inner.py").read_text())
     newer = cached(package)
     assert newer.is_dir() and not mine.exists() and theirs.is_dir()

@@ -10,11 +10,12 @@ from ..body import Pose, Skeleton, forward_kinematics
 from ..body.anatomy import centre_of_mass
 from ..body.rotations import log
 from ..contract import CharacterState, Intent, Status
+from ..navigation import floor_at, gap
 from .dynamics import GRAVITY, Physique
 from .path import Path, Start, landing_feet, path
 from .plan import Plan
 from .planner import plan
-from .reach import Refused, fault, floor_at, gap
+from .reach import Refused, fault
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -59,6 +60,11 @@ class Jump:
     def skeleton(self) -> Skeleton:
         """The skeleton that the poses are of."""
         return self.physique.skeleton
+
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of other jumpers."""
+        return f"Jump {self.physique} {self.gravity.tolist()}"
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """READY if the jump that is asked can start now; while one goes on, how firmly it holds on."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..contract import Unable
+from ..navigation import gap
 from .ballistics import along
 from .dynamics import Physique
 from .path import Path, measures
@@ -65,33 +66,3 @@ def blocked(physique: Physique, way: Path, around) -> str:
                 x, y, z = place[inner][int(near.argmin())]
                 return f"its {name} would hit something at ({x:.1f}, {y:.1f}, {z:.1f}) m"
     return ""
-
-
-def gap(points: np.ndarray, thing) -> np.ndarray:
-    """How far points (N, 3) [m] are from a box or a pillar: 0 on its surface, negative inside."""
-    if hasattr(thing, "foot"):
-        foot = np.asarray(thing.foot, float)
-        aside = np.hypot(points[:, 0] - foot[0], points[:, 2] - foot[2]) - thing.radius
-        along_y = np.abs(points[:, 1] - foot[1] - 0.5 * thing.height) - 0.5 * thing.height
-        outside = np.stack([aside, along_y], 1)
-    elif hasattr(thing, "size"):
-        c, s = np.cos(thing.heading), np.sin(thing.heading)
-        local = (points - np.asarray(thing.centre)) @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-        outside = np.abs(local) - 0.5 * np.asarray(thing.size)
-    else:  # a goal stops nobody
-        return np.full(len(points), np.inf)
-    return np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(1), 0.0)
-
-
-def floor_at(x: float, z: float, around, below: float = np.inf) -> float:
-    """The height [m] of the highest box or the floor at a place, no higher than `below`."""
-    height = 0.0
-    for thing in around:
-        if hasattr(thing, "size"):
-            c, s = np.cos(thing.heading), np.sin(thing.heading)
-            dx, dz = x - thing.centre[0], z - thing.centre[2]
-            top = thing.centre[1] + 0.5 * thing.size[1]
-            if (abs(c * dx - s * dz) <= 0.5 * thing.size[0] and abs(s * dx + c * dz) <= 0.5 * thing.size[2]
-                    and height < top <= below):
-                height = top
-    return height

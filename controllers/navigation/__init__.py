@@ -1,6 +1,8 @@
-"""Getting somewhere: from a wish in the world to an intent, along a path, and where it would lead."""
+"""Getting somewhere: from a wish in the world to an intent, along a path, past what stands about."""
 
+from .obstacles import floor_at, gap, slide
 from .path import Path, follow
 from .steering import Reach, Steering, drift, in_world, steer, turn_towards
 
-__all__ = ["Path", "Reach", "Steering", "drift", "follow", "in_world", "steer", "turn_towards"]
+__all__ = ["Path", "Reach", "Steering", "drift", "floor_at", "follow", "gap", "in_world", "slide", "steer",
+           "turn_towards"]

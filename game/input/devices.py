@@ -46,7 +46,8 @@ class Keyboard:
             return float(self.held(plus, bindings)) - float(self.held(minus, bindings))
         return Wish(move=unit_disc(axis("right", "left"), axis("forward", "back")),
                     turn=axis("turn_left", "turn_right"), run=float(self.held("run", bindings)),
-                    slow=self.held("slow", bindings), strafe=self.held("strafe", bindings))
+                    slow=self.held("slow", bindings), strafe=self.held("strafe", bindings),
+                    jump=self.held("jump", bindings))
 
 
 def dead_zone(x: float, y: float, sticks: Sticks) -> tuple[float, float]:
@@ -105,7 +106,7 @@ def pad_wish(pad: Any, bindings: Bindings) -> Wish:
     # a trigger that runs does so by degrees
     run = max((pulled.get(name, float(name in pad.buttons)) for name in bindings.row("run").buttons), default=0.0)
     return Wish(move=move, look=(0.0, 0.0) if held("orbit") else look, orbit=orbit if held("orbit") else (0.0, 0.0),
-                turn=axis("turn_left", "turn_right"), run=run, slow=held("slow"), strafe=held("strafe"))
+                turn=axis("turn_left", "turn_right"), run=run, slow=held("slow"), strafe=held("strafe"), jump=held("jump"))
 
 
 def pad_pressed(before: Any, after: Any, bindings: Bindings, mode: str = "") -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-STEPS = (127,) * 6 + (1, 1) + (127,) * 2 + (4096,) * 2 + (16,) + (4096,) * 2
+STEPS = (127,) * 6 + (1, 1, 1) + (127,) * 2 + (4096,) * 2 + (16,) + (4096,) * 2
 """How finely a log keeps the controls, in the order of `Wish`: steps in 1, a radian, a notch."""
 
 
@@ -15,7 +15,8 @@ class Wish:
     """The state of the controls at one moment.
 
     move, look: (x to the right, y away from the camera) within the unit circle; look is (0, 0)
-    when no direction is to be faced. turn: −1 … 1, positive to the left. run: 0 … 1.
+    when no direction is to be faced. turn: −1 … 1, positive to the left. run: 0 … 1. jump: held to
+    aim, let go to jump.
     orbit: rates −1 … 1 at which the camera turns (left, up). drag: angles [rad] by which the mouse
     turned it (left, up) since the last moment, zoom: notches of the wheel, positive nearer.
     pan: how far the mouse pushed the picture (right, up), in heights of the window.
@@ -28,6 +29,7 @@ class Wish:
     run: float = 0.0
     slow: bool = False
     strafe: bool = False
+    jump: bool = False
     orbit: tuple[float, float] = (0.0, 0.0)
     drag: tuple[float, float] = (0.0, 0.0)
     zoom: float = 0.0
@@ -40,13 +42,13 @@ class Wish:
             return a if math.hypot(*a) >= math.hypot(*b) else b
         return Wish(further(self.move, other.move), further(self.look, other.look),
                     max(self.turn, other.turn, key=abs), max(self.run, other.run),
-                    self.slow or other.slow, self.strafe or other.strafe, further(self.orbit, other.orbit),
-                    (self.drag[0] + other.drag[0], self.drag[1] + other.drag[1]), self.zoom + other.zoom,
+                    self.slow or other.slow, self.strafe or other.strafe, self.jump or other.jump,
+                    further(self.orbit, other.orbit), (self.drag[0] + other.drag[0], self.drag[1] + other.drag[1]), self.zoom + other.zoom,
                     (self.pan[0] + other.pan[0], self.pan[1] + other.pan[1]), self.pressed + other.pressed)
 
     def numbers(self) -> tuple[int, ...]:
         """All but `pressed` in whole steps (see `STEPS`), as a log keeps them; no number counts as 0."""
-        values = (*self.move, *self.look, self.turn, self.run, self.slow, self.strafe, *self.orbit, *self.drag,
+        values = (*self.move, *self.look, self.turn, self.run, self.slow, self.strafe, self.jump, *self.orbit, *self.drag,
                   self.zoom, *self.pan)
         return tuple(round(min(max(value * steps, -32767), 32767)) if math.isfinite(value) else 0
                      for value, steps in zip(values, STEPS))
@@ -55,8 +57,8 @@ class Wish:
     def of(numbers: Sequence[int], pressed: tuple[str, ...] = ()) -> Wish:
         """The wish of such whole steps."""
         v = [number / steps for number, steps in zip(numbers, STEPS, strict=True)]
-        return Wish((v[0], v[1]), (v[2], v[3]), v[4], v[5], v[6] > 0, v[7] > 0, (v[8], v[9]), (v[10], v[11]), v[12],
-                    (v[13], v[14]), pressed)
+        return Wish((v[0], v[1]), (v[2], v[3]), v[4], v[5], v[6] > 0, v[7] > 0, v[8] > 0, (v[9], v[10]), (v[11], v[12]),
+                    v[13], (v[14], v[15]), pressed)
 
     def rounded(self) -> Wish:
         """The wish as a log would give it back: what is played is what is logged."""

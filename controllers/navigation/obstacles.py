@@ -1,0 +1,79 @@
+"""What stands about: how far it is, how high its top lies, and how a walker slides along it.
+
+Anything with a box's centre, full size and heading, or a pillar's foot, radius and height, stands in
+the way; anything else stops nobody.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+STEP = 0.12
+"""No higher step is taken without a jump [m]."""
+HEAD = 1.9
+"""What hangs higher than this over the floor is walked under [m]."""
+SHOULDER = 0.30
+"""A walker keeps so far from walls [m] ..."""
+LOOK = 0.30
+"""... and looks so far ahead [s]."""
+DEVIATIONS = np.radians([0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0, 88.0, -88.0])
+"""The directions that are tried beside the wished one, the nearest first [rad]."""
+
+
+def gap(points: np.ndarray, thing) -> np.ndarray:
+    """How far points (N, 3) [m] are from a box or a pillar: 0 on its surface, negative inside."""
+    if hasattr(thing, "foot"):
+        foot = np.asarray(thing.foot, float)
+        aside = np.hypot(points[:, 0] - foot[0], points[:, 2] - foot[2]) - thing.radius
+        along_y = np.abs(points[:, 1] - foot[1] - 0.5 * thing.height) - 0.5 * thing.height
+        outside = np.stack([aside, along_y], 1)
+    elif hasattr(thing, "size"):
+        c, s = np.cos(thing.heading), np.sin(thing.heading)
+        local = (points - np.asarray(thing.centre)) @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+        outside = np.abs(local) - 0.5 * np.asarray(thing.size)
+    else:  # a goal stops nobody
+        return np.full(len(points), np.inf)
+    return np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(1), 0.0)
+
+
+def floor_at(x: float, z: float, around, below: float = np.inf) -> float:
+    """The height [m] of the highest box or the floor at a place, no higher than `below`."""
+    height = 0.0
+    for thing in around:
+        if hasattr(thing, "size"):
+            c, s = np.cos(thing.heading), np.sin(thing.heading)
+            dx, dz = x - thing.centre[0], z - thing.centre[2]
+            top = thing.centre[1] + 0.5 * thing.size[1]
+            if (abs(c * dx - s * dz) <= 0.5 * thing.size[0] and abs(s * dx + c * dz) <= 0.5 * thing.size[2]
+                    and height < top <= below):
+                height = top
+    return height
+
+
+def slide(place, velocity, floor: float, around: Sequence[Any]) -> np.ndarray:
+    """The velocity (2,) along x and z [m/s] nearest to the wished one that runs into nothing and over no edge.
+
+    place: (2,) x, z [m]. velocity: (2,) wished. floor: how high the walker stands [m]. A walker that
+    finds no way stops; one that stands in something already may leave it any way.
+    """
+    place, velocity = np.asarray(place, float), np.asarray(velocity, float)
+    speed = float(np.hypot(*velocity))
+    if speed < 1e-6 or not len(around) or not _free(place, floor, around):
+        return velocity
+    for turn in DEVIATIONS:
+        c, s = np.cos(turn), np.sin(turn)
+        tried = c * np.array([c * velocity[0] + s * velocity[1], -s * velocity[0] + c * velocity[1]])
+        if _free(place + tried * max(LOOK, 0.25 / speed), floor, around):
+            return tried
+    return np.zeros(2)
+
+
+def _free(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
+    """Whether somebody can stand there: the floor goes on, and no wall is near."""
+    if abs(floor_at(place[0], place[1], around, floor + STEP) - floor) > STEP:
+        return False
+    body = np.array([[place[0], floor + height, place[1]] for height in (STEP + SHOULDER, 1.0, HEAD - SHOULDER)])
+    return all(gap(body, thing).min() > SHOULDER for thing in around)

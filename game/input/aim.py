@@ -1,0 +1,108 @@
+"""Aiming a jump: a button is held, a ring on the floor is moved, and letting go jumps there.
+
+Standing, the stick pushes the ring away from the feet; walking or running, the ring lies ahead at the
+distance that the speed gives. Without a push the jump goes straight up, the higher the longer it was held.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from controllers.contract import CharacterState, Leap
+from controllers.navigation import floor_at, in_world
+
+from .wish import Wish
+
+MOVING = 0.9
+"""Faster than this [m/s] the jump goes on the way one goes."""
+PUSH = 1.5
+"""How fast a stick pushes the ring [m/s]."""
+FARTHEST = 2.6
+"""How far from a standing body the ring may be [m]."""
+NEAR = 0.12
+"""A ring nearer than this [m] means straight up."""
+AHEAD = 0.55, 0.50
+"""How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
+AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
+"""A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
+STEP_UP = 0.95
+"""The ring climbs onto whatever is no higher than this over the feet [m]."""
+PATIENCE = 0.9
+"""So long a jump that was asked waits for the feet to be ready [s]."""
+ASKEW = 0.35
+"""A standing body faces the ring to within this before it jumps [rad]."""
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Where somebody aims.
+
+    offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
+    aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead.
+    """
+
+    offset: tuple[float, float] = (0.0, 0.0)
+    held: float = 0.0
+    aiming: bool = False
+    waiting: float = 0.0
+    moving: bool = False
+
+    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, jumping: bool, dt: float) -> Aim:
+        """The aim `dt` seconds later. jumping: the body is in the air or about to be."""
+        if jumping:
+            return Aim()
+        if not wish.jump:
+            if self.aiming:
+                return replace(self, aiming=False, waiting=PATIENCE)
+            return replace(self, waiting=max(self.waiting - dt, 0.0)) if self.waiting > dt else Aim()
+        velocity = in_world(state.ground, state.velocity)
+        speed = float(np.hypot(*velocity))
+        moving = speed > MOVING
+        if moving:
+            far = AHEAD[0] + AHEAD[1] * speed
+            offset = (far * float(velocity[0]) / speed, far * float(velocity[1]) / speed)
+        else:
+            right, away = wish.move
+            c, s = math.cos(camera_yaw), math.sin(camera_yaw)
+            x = self.offset[0] + PUSH * dt * (away * s - right * c)
+            z = self.offset[1] + PUSH * dt * (away * c + right * s)
+            shrink = min(1.0, FARTHEST / max(math.hypot(x, z), 1e-9))
+            offset = (x * shrink, z * shrink)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving)
+
+    @property
+    def facing(self) -> float | None:
+        """The heading [rad] that a body about to jump from a stand turns to, if any."""
+        if self.moving or not (self.aiming or self.waiting) or math.hypot(*self.offset) < NEAR:
+            return None
+        return math.atan2(*self.offset)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the sticks move the ring and not the body."""
+        return (self.aiming or self.waiting > 0.0) and not self.moving
+
+    def target(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
+        """The jump that would be made now; None where nobody aims. gravity: [m/s²], downwards positive."""
+        if not (self.aiming or self.waiting > 0.0):
+            return None
+        floor = float(state.floor)
+        if not self.moving and math.hypot(*self.offset) < NEAR:
+            here = np.array([state.ground[0], floor, state.ground[1]])
+            airtime = min(AIRTIME + CHARGE * self.held, LONGEST) * math.sqrt(9.81 / gravity)
+            return Leap(here, airtime)
+        x, z = float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1]
+        return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]))
+
+    def asked(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
+        """The jump that is wanted now that the button was let go; None while the body still turns to it."""
+        if self.aiming or self.waiting <= 0.0:
+            return None
+        if self.facing is not None and abs(math.remainder(self.facing - float(state.ground[2]), math.tau)) > ASKEW:
+            return None
+        return self.target(state, around, gravity)
