@@ -15,7 +15,7 @@ from . import style
 from .ballistics import apex_airtime, least_effort, take_off_velocity
 from .dynamics import BodyTables, Physique
 from .posture import stand_kernel
-from .thrust import Push, push
+from .thrust import Push, push, risen
 
 HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
@@ -29,6 +29,8 @@ MOST_LEAD = 0.68
 """How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
 YIELD = (0.05, 0.13)
 """How long a runner's foot gives before it pushes, at least and at most [s]."""
+SHORTEST_PUSH = 0.08
+"""No foot pushes a runner off in less [s]."""
 MEAN_PUSH = 1.85
 """The mean force of a push in an adult's weights on Earth, at strength 1."""
 LEAST_AIRTIME = 0.30
@@ -172,13 +174,16 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         if running:
             drop = 0.07 * size
             height = min(start.centre[1] - 0.5 * drop, floor + heights.stand - drop)
-            pushed = push(np.array([0.0, leave[1] - height, 0.0]), np.zeros(3), velocity, gravity)
             pace = float(np.linalg.norm(passing))
             past = (start.centre - stance) @ passing / pace
             most = MOST_LEAD * (body.thigh + body.shank)
             mean = 0.5 * (passing + velocity * [1.0, 0.0, 1.0])
+            # the foot stays where it is: no longer than the leg reaches, and then from less deep
+            longest = max((most - past - pace * YIELD[0]) / max(float(np.linalg.norm(mean)), 1e-6), SHORTEST_PUSH)
+            rise = min(max(leave[1] - height, 0.0), risen(longest, velocity[1], g))
+            pushed = push(np.array([0.0, rise, 0.0]), np.zeros(3), velocity, gravity)
             wind_up = float(np.clip((most - past - np.linalg.norm(mean) * pushed.duration) / pace, *YIELD))
-            low = (start.centre + start.velocity * wind_up) * [1.0, 0.0, 1.0] + [0.0, height, 0.0]
+            low = (start.centre + start.velocity * wind_up) * [1.0, 0.0, 1.0] + [0.0, leave[1] - rise, 0.0]
             leave = low + mean * pushed.duration
             leave[1] = floor + _over(heights.stride, np.linalg.norm((leave - stance)[[0, 2]]))
         else:

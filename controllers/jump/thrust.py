@@ -65,3 +65,10 @@ def push(way: np.ndarray, before: np.ndarray, after: np.ndarray, gravity: np.nda
     determinant = _A1 * _C2 - _C1 * _A2
     return Push(float(duration), (gain * _C2 - gone * _C1) / determinant,
                 (gone * _A1 - gain * _A2) / determinant, gravity)
+
+
+def risen(duration: float, velocity: float, gravity: float, rise: float = RISE) -> float:
+    """How far [m] a push of `duration` [s] rises that leaves upward with `velocity` [m/s] from rest, under
+    `gravity` [m/s²]: what `push` inverts."""
+    share = (_A2 + _C2 * rise) / (_A1 + _C1 * rise)
+    return duration * (velocity * share + gravity * duration * (share - 0.5))
