@@ -36,7 +36,7 @@ So that the crouch of a jump 0.35 m high lowers the centre of mass by 0.33 m.
 POINTED, CALF = 0.70, 0.5
 """The calf pulls until the foot points down this far [rad], so an ankle's bend counts from there, and it is
 softer than the others by this factor: a level sole then carries what hip and knee push."""
-BURST = 1.4
+BURST = 1.45
 """How much more than these springs a muscle gives for a moment: the peak of a push over its mean."""
 MUSCLES = ("left hip", "left knee", "left ankle", "right hip", "right knee", "right ankle")
 """The order of everything that has an entry per muscle."""

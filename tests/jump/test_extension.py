@@ -5,6 +5,7 @@ import pytest
 
 from controllers.jump.dynamics import Physique
 from controllers.jump.extension import LONGEST_STEP, capacity, extend
+from controllers.jump.muscles import BURST
 from controllers.jump.windup import crouch
 
 ADULT = Physique()
@@ -56,4 +57,4 @@ def test_readings_other_than_the_whole_chain_do_not_keep_energy(low):
 
 def test_capacity_at_the_crouch_is_a_burst_of_what_its_muscles_hold(low):
     able = capacity(ADULT, np.stack([low.pelvis] * 2), np.stack([low.rotations] * 2), np.stack([low.feet] * 2))
-    np.testing.assert_allclose(able, 1.4 * np.linalg.norm(low.force), rtol=1e-9)
+    np.testing.assert_allclose(able, BURST * np.linalg.norm(low.force), rtol=1e-9)
