@@ -56,7 +56,7 @@ class Physique:
         hip = np.array([skeleton.index("LeftUpLeg"), skeleton.index("RightUpLeg")])
         offsets = skeleton.offsets
         return BodyTables(
-            skeleton.parents, offsets, masses.joints, masses.masses, masses.centres, masses.inertias, self.mass,
+            skeleton.parents, offsets, masses.joints, masses.masses, masses.centres, masses.inertias, float(self.mass),
             hip, -offsets[hip[0] + 1, 1], -offsets[hip[0] + 2, 1], offsets[hip[0] + 3], heel_offset(skeleton),
             skeleton.end_offsets[skeleton.end_index["LeftToe"]], contact_height(skeleton))
 

@@ -20,7 +20,8 @@ import numpy as np
 
 from .dynamics import GRAVITY, Physique, place_kernel
 from .muscles import BURST, CALF, muscle, spring_torque
-from .windup import Crouch, capacity_kernel, frame
+from .poise import capacity_kernel, frame
+from .windup import Crouch
 
 LONGEST_STEP = 1.0 / 240.0
 """No longer steps are taken [s]."""

@@ -15,7 +15,8 @@ from scipy.stats import qmc
 
 from ..compiled import kernel
 from .dynamics import GRAVITY, Physique, centre_kernel
-from .windup import flat_feet, force_kernel, frame, pose_kernel, stand_pelvis_kernel, support_kernel, upward
+from .poise import flat_feet, force_kernel, frame, pose_kernel, stand_pelvis_kernel, support_kernel
+from .windup import upward
 
 KEPT = 0.1
 """The share that counts as having the wished momentum: "ten percent was found empirically"."""

@@ -5,7 +5,8 @@ import pytest
 
 from controllers.body.support import centroid, hull, margin, sole_corners, standing_corners
 from controllers.jump.dynamics import Physique, centre_kernel, place_kernel
-from controllers.jump.windup import GAINS, crouch, crouch_depth, flat_feet, frame, strength, strongest
+from controllers.jump.poise import flat_feet, frame
+from controllers.jump.windup import GAINS, crouch, crouch_depth, strength, strongest
 
 ADULT = Physique()
 BODIES = (ADULT, Physique(25.0, 1.25), Physique(110.0, 1.8), Physique(60.0, 1.65, 1.3, 1.2, "female"))
