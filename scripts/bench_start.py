@@ -24,11 +24,11 @@ import json, sys, time
 began, done = float(sys.argv[1]), {}
 def after(what): done[what] = time.time() - began, time.process_time()
 after("interpreter")
-import game.cli
+from game.cli.base import person_of
 from game.hosts import Offscreen
 from game.play import Play
 after("imports")
-controller = game.cli._controller(None)
+controller = person_of(None)
 play = Play(controller)
 after("library")
 with Offscreen((1280, 720), "full") as host:

@@ -44,7 +44,7 @@ class Stage:
 
 @pytest.fixture
 def short(tmp_path, monkeypatch):
-    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
+    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
     monkeypatch.setattr(game.hosts, "Offscreen", Stage, raising=False)
     file = tmp_path / "short.toml"
     file.write_text(SHORT)
@@ -161,7 +161,7 @@ def test_playing_without_a_display_says_what_to_do(short, monkeypatch):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     done = gambol("play")
-    assert done.exit_code == cli.NO_DISPLAY and "no display" in done.output and "gambol render" in done.output
+    assert done.exit_code == cli.play.NO_DISPLAY and "no display" in done.output and "gambol render" in done.output
 
 
 def test_a_machine_without_opengl_says_so_and_leaves_nothing(short, tmp_path, monkeypatch):

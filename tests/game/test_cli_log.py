@@ -17,7 +17,7 @@ from test_cli import Stage, gambol
 @pytest.fixture
 def log(tmp_path, monkeypatch):
     """Two seconds of two who walk, from the second one on."""
-    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
+    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
     monkeypatch.setattr(game.hosts, "Offscreen", Stage, raising=False)
     path = tmp_path / "a.gambol"
     played = Play(Glide(), 2, log=LogWriter(path, Glide(), 2))
@@ -61,7 +61,7 @@ def test_in_the_background_progress_is_told_in_lines(log, tmp_path):
 
 
 def test_a_log_that_goes_another_way_is_filmed_with_a_warning(log, tmp_path, monkeypatch):
-    monkeypatch.setattr(cli, "_controller", lambda *_: Glide(halflife=0.3))
+    monkeypatch.setattr("controllers.person.person", lambda *_: Glide(halflife=0.3))
     done = gambol("render", "--replay", log, "-o", tmp_path / "f", "--size", "16x16", "--fps", 5)
     assert done.exit_code == 0 and done.output.count("another version of Gambol") == 1
 

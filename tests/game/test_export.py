@@ -178,7 +178,7 @@ def test_the_commands_write_what_they_are_asked_for(tmp_path, monkeypatch):
     assert code == 2 and "height 12" in text
     code, text = said("export", "demo", "-o", tmp_path / "x.glb", "--character", tmp_path / "none.glb")
     assert code == 2 and "none.glb: can't be read" in text
-    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
+    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
     assert said("export", "start_stop", "-o", tmp_path / "x.glb", "--fps", 10)[0] == 0
     assert described(tmp_path / "x.glb")["animations"][0]["extras"]["fps"] == 10
     code, text = said("export", "start_stop", "-o", tmp_path / "x.fbx")

@@ -130,7 +130,7 @@ def test_the_command_makes_what_is_missing(names, tmp_path, monkeypatch):
         __exit__ = lambda self, *error: None
 
     monkeypatch.setattr(game.hosts, "Offscreen", Hidden)
-    monkeypatch.setattr(cli, "_controller", lambda *_: Glide())
+    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
     def gallery_of(*more):
         return CliRunner().invoke(cli.app, ["gallery", *more, "-o", str(tmp_path / "out"), "--preset", "fast"])
     assert "1 of 1 films made" in gallery_of(names[0]).stderr

@@ -1,0 +1,5 @@
+"""`python -m game.cli` is `gambol`."""
+
+from . import main
+
+main()

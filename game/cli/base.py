@@ -1,0 +1,99 @@
+"""What all commands share: the app, its options and its manners."""
+
+from __future__ import annotations
+
+import functools
+import os
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False,
+                  context_settings={"help_option_names": ["-h", "--help"]},
+                  help="A real-time human character, driven by gamepad, keyboard or script.")
+
+
+class Preset(str, Enum):
+    """How much light and shadow is drawn."""
+
+    full = "full"
+    fast = "fast"
+
+
+Library = Annotated[Path | None, typer.Option(help="A gait library; the shipped one by default.")]
+Wearing = Annotated[Path | None, typer.Option("--character", help="Who to be: a human in a .glb, .gltf or .vrm file; the mannequin by default.")]
+Quality = Annotated[Preset, typer.Option(help="Picture quality.")]
+
+
+class Mistake(ValueError):
+    """Something wrong in what was typed."""
+
+
+def plainly(command):
+    """The command, with errors that a user can act on as one line instead of a traceback.
+
+    GAMBOL_TRACEBACK=1 in the environment shows the traceback.
+    """
+    @functools.wraps(command)
+    def wrapped(*args, **kwargs):
+        try:
+            return command(*args, **kwargs)
+        except BrokenPipeError:  # whoever read our words has had enough: no mistake, and typer ends quietly
+            raise
+        except (ValueError, OSError) as error:
+            # Gambol's own kinds of ValueError are about what the user gave; a bare one is our bug
+            if type(error) is ValueError or os.environ.get("GAMBOL_TRACEBACK"):
+                raise
+            say(f"gambol: {error}")
+            raise typer.Exit(2) from None
+        except KeyboardInterrupt:
+            say("gambol: stopped")
+            raise typer.Exit(130) from None
+    return wrapped
+
+
+def say(text: str) -> None:
+    """Tell the user something that is no result: it goes to the standard error."""
+    typer.echo(text, err=True)
+
+
+def person_of(library: Path | None, character: Path | None = None) -> Any:
+    """Who moves, with a gait library (the shipped one by default), in a character's body if one is named."""
+    from controllers.person import person
+
+    if character is None:
+        return person(library)
+    from ..character import load
+    from ..embodied import Embodied
+
+    return Embodied.of(person(library), load(character))
+
+
+def pixels_of(text: str) -> tuple[int, int]:
+    """Width and height from "WIDTHxHEIGHT". Mistake for anything else."""
+    width, _, height = text.lower().partition("x")
+    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
+        raise Mistake(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
+    return int(width), int(height)
+
+
+def overlays_of(text: str) -> list[str]:
+    """Overlays from their names with commas; bodies too, unless bones take their place. Mistake for others."""
+    from ..shots import OVERLAYS
+
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names:
+        if name not in OVERLAYS:
+            raise Mistake(f"--overlay {name!r}: there is no such overlay; choose from {', '.join(OVERLAYS)}")
+    return names if "mesh" in names or "skeleton" in names else ["mesh", *names]
+
+
+def progress_bar() -> Any:
+    """A bar for work that takes a while."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    return Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
+                    console=Console(stderr=True))

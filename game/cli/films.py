@@ -1,0 +1,157 @@
+"""`gambol render`, `scenarios` and `gallery`: films without a display."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, overlays_of, person_of, pixels_of, plainly,
+                   progress_bar, say)
+from .motion import write_motion
+
+
+@app.command()
+@plainly
+def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")] = None,
+           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")] = ...,
+           replay: Annotated[Path | None, typer.Option(help="Film this input log instead of a scenario, as its player saw it.")] = None,
+           start: Annotated[float | None, typer.Option("--from", min=0.0, help="Where in the log to begin, in seconds.")] = None,
+           end: Annotated[float | None, typer.Option("--to", min=0.0, help="Where in the log to end, in seconds.")] = None,
+           size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,
+           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
+           preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
+           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path.")] = None,
+           library: Library = None, character: Wearing = None,
+           background: Annotated[bool, typer.Option("--background", hidden=True, help="Yield to other programs; print progress as lines.")] = False) -> None:
+    """Film a scenario or an input log without a display, or write a scenario's motion as BVH."""
+    if (scenario is None) == (replay is None):
+        raise Mistake("render needs either a scenario or --replay LOG")
+    if background and hasattr(os, "nice"):
+        os.nice(15)
+    if replay is not None:
+        if out.lower().endswith(".bvh"):
+            raise Mistake(f"{out}: a log is filmed; name a .mp4 file or a folder for PNG frames")
+        _film_log(replay, start, end, out, pixels_of(size or "1920x1080"), fps or 60, preset, overlay,
+                  person_of(library, character), background)
+        return
+    for option, given in (("--from", start), ("--to", end)):
+        if given is not None:
+            raise Mistake(f"{option} goes with --replay")
+
+    from .. import scenario as scenarios
+
+    film = scenarios.load(scenario)
+    film = film if fps is None else film.at_fps(fps)
+    if out.lower().endswith(".bvh"):
+        for option, given in (("--size", size), ("--preset", preset), ("--overlay", overlay)):
+            if given is not None:
+                raise Mistake(f"{option} means nothing for {out}: BVH holds the motion, not pictures of it")
+        write_motion(film, out, person_of(library, character))
+        return
+    from ..film import scenes
+    from ..shots import overlays
+
+    film = film if size is None else film.at_size(pixels_of(size))
+    shown = None if overlay is None else overlays(overlays_of(overlay))
+    controller = person_of(library, character)
+    _draw((scene for _, scene in scenes(film, controller, shown)), film.frames, film.title, out, film.size, film.fps,
+          preset, background)
+
+
+def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
+              preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
+    from ..log import of_library, read
+    from ..shots import overlays
+    from ..views import filmed, frames
+
+    log = read(file)
+    start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
+    if not start < end:
+        raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
+    shown = overlays(overlays_of(overlay or "mesh"))
+    of_library(log, controller)
+
+    def stray() -> None:
+        say(f"gambol: {file} was played with another version of Gambol, which walks another way: "
+            "the film is not quite what was played")
+    _draw(filmed(log, controller, fps, start, end, shown, stray), frames(log, fps, start, end), file.name, out, size, fps,
+          preset, background)
+
+
+def _draw(scenes, frames: int, title: str, out: str, size: tuple[int, int], fps: int, preset: Preset | None,
+          background: bool) -> None:
+    """Draw scenes into a film or a folder."""
+    from ..recorder import recorder
+
+    target = recorder(out, size, fps)
+
+    from ..hosts import GraphicsError, Offscreen
+
+    try:
+        with Offscreen(size, (preset or Preset.full).value) as stage, target, progress_bar() as bar:
+            for scene in _told(scenes, frames) if background else bar.track(scenes, frames, description=title):
+                target.write(stage.frame(scene))
+    except BaseException as error:
+        if target.count:
+            say(f"gambol: what was drawn so far is in {target.part}")
+        if isinstance(error, GraphicsError):
+            raise Mistake(str(error)) from None
+        raise
+    say(f"{target.path}: {frames} frames, {frames / fps:g} s, {size[0]} × {size[1]}")
+
+
+def _told(scenes, frames: int):
+    """The scenes, with a line of progress for each: whoever began this in the background reads them."""
+    for number, scene in enumerate(scenes, 1):
+        say(f"{number} of {frames}")
+        yield scene
+
+
+@app.command()
+@plainly
+def scenarios() -> None:
+    """List the scenarios that come with Gambol."""
+    from ..scenario import load, shipped
+
+    for name in shipped():
+        film = load(name)
+        people = "1 actor" if len(film.actors) == 1 else f"{len(film.actors)} actors"
+        typer.echo(f"{name:14} {film.duration:4g} s  {people:8}  {film.title}")
+
+
+@app.command()
+@plainly
+def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scenarios or .toml files; all shipped ones by default.")] = None,
+            out: Annotated[Path, typer.Option("-o", "--out", help="The folder for the page and its films.")] = Path("gallery"),
+            size: Annotated[str | None, typer.Option(help="Width x height in pixels; each scenario's by default.")] = None,
+            preset: Quality = Preset.full,
+            library: Library = None,
+            force: Annotated[bool, typer.Option("--force", help="Make films anew that are up to date.")] = False) -> None:
+    """Film all scenarios into a folder, with a page of posters, films and figures."""
+    from ..gallery import PAGE, make, plan, write_page
+    from ..scenario import shipped
+
+    controller = person_of(library)
+    plans = plan(names or shipped(), out, controller, preset.value, None if size is None else pixels_of(size), force)
+    todo = [one for one in plans if not one.fresh]
+    write_page(out)
+
+    from ..hosts import GraphicsError, Offscreen
+
+    done = 0
+    try:
+        with progress_bar() as bar:
+            task = bar.add_task("", total=sum(one.film.frames for one in todo), visible=bool(todo))
+            for one in todo:
+                bar.update(task, description=one.film.title)
+                with Offscreen(one.film.size, preset.value) as stage:
+                    make(one, out, controller, stage, lambda: bar.advance(task))
+                done += 1
+    except GraphicsError as error:
+        raise Mistake(str(error)) from None
+    finally:
+        kept = len(plans) - len(todo)
+        say(f"{out / PAGE}: {done} of {len(todo)} films made" + (f", {kept} up to date" if kept else ""))

@@ -1,0 +1,73 @@
+"""`gambol export` and `character`: motion and bodies for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .base import Library, Wearing, app, person_of, plainly, progress_bar, say
+
+
+@app.command()
+@plainly
+def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml file of one, or an input log (.gambol).")],
+           out: Annotated[Path, typer.Option("-o", "--out", help="A .glb file (bodies, motion, contacts) or a .bvh file (motion).")],
+           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
+           library: Library = None, character: Wearing = None) -> None:
+    """Write the motion of a scenario or an input log for other programs."""
+    from ..export import checked, sampled, takes, write
+    from ..log import SUFFIX, of_library, read, replay
+
+    checked(out)
+    if not what.lower().endswith(SUFFIX):
+        from .. import scenario as scenarios
+
+        film = scenarios.load(what)
+        write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character))
+        return
+    log, controller = read(what), person_of(library, character)
+    of_library(log, controller)
+    with progress_bar() as bar:
+        moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)
+        done = takes(sampled(moments, fps or 60))
+    for path in write(out, done, fps or 60):
+        say(f"{path}: {len(done[0].poses)} frames, {log.duration:.1f} s")
+
+
+def write_motion(film: Any, out: str | Path, controller: Any) -> None:
+    """Write the motion of a scenario, told of as it goes."""
+    from ..export import checked, takes, write
+    from ..film import run
+
+    checked(out, [actor.name for actor in film.actors])
+    with progress_bar() as bar:
+        done = takes((frame.before, frame.after, frame.alpha)
+                     for frame in bar.track(run(film, controller), film.frames, description=film.title))
+    for path in write(out, done, film.fps):
+        say(f"{path}: {film.frames} frames, {film.duration:g} s")
+
+
+@app.command()
+@plainly
+def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb file to write.")],
+              height: Annotated[float, typer.Option(help="Height in metres.")] = 1.741,
+              build: Annotated[float, typer.Option(help="From -1, slim, over 0 to 1, heavy.")] = 0.0,
+              child: Annotated[float, typer.Option(help="From 0, grown up, to 1, the proportions of a child of six.")] = 0.0,
+              shoulders: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
+              hips: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
+              skeleton: Annotated[Path | None, typer.Option(help="Take the lengths of bones from this BVH or ASF/AMC file.")] = None) -> None:
+    """Make a mannequin of any size and build, as a GLB with skin and joints."""
+    from ..character import Actor, Build, joints_of, tailored, write
+    from ..output import output_file
+
+    output_file(out, ".glb")
+    bones = None
+    if skeleton is not None:
+        from controllers.mocap import load
+
+        bones = load(skeleton).skeleton
+    body = tailored(Build(height, build, child, shoulders, hips), bones, out.stem)
+    write(out, [Actor(out.stem, body, joints_of(body))])
+    say(f"{out}: {height:g} m, {len(body.levels[0].triangles)} triangles; `gambol play --character {out}` wears it")
