@@ -29,6 +29,8 @@ MOST_LEAD = 0.68
 """How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
 YIELD = (0.05, 0.13)
 """How long a runner's foot gives before it pushes, at least and at most [s]."""
+OVER_BALLS = 0.03
+"""A standing jumper's centre of mass leaves so far ahead of the balls of the feet [m], at standard height."""
 SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
 MEAN_PUSH = 1.85
@@ -157,6 +159,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     passing = start.velocity * [1.0, 0.0, 1.0] if running else np.zeros(3)
     reach = ((ground - middle) @ towards)
     ahead, behind = float(reach.max()) - 0.01, -float(reach.min()) - 0.01
+    facing = yaw(start.heading)[:, 2]
+    balls = float(((feet[:, :3] - middle) @ facing).max()) + OVER_BALLS * size
     g = -float(gravity[1])
     wind_up = 0.10
     low = start.centre + start.velocity * wind_up * [1.0, 0.0, 1.0]
@@ -183,16 +187,20 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             rise = min(max(leave[1] - height, 0.0), risen(longest, velocity[1], g))
             pushed = push(np.array([0.0, rise, 0.0]), np.zeros(3), velocity, gravity)
             wind_up = float(np.clip((most - past - np.linalg.norm(mean) * pushed.duration) / pace, *YIELD))
-            low = (start.centre + start.velocity * wind_up) * [1.0, 0.0, 1.0] + [0.0, leave[1] - rise, 0.0]
+            low = (start.centre + start.velocity * wind_up) * [1.0, 0.0, 1.0]
             leave = low + mean * pushed.duration
             leave[1] = floor + _over(heights.stride, np.linalg.norm((leave - stance)[[0, 2]]))
+            low[1] = leave[1] - rise
         else:
             rise = leave[1] - floor - heights.stand
             deep = depth(physique, float(velocity[1]), rise, g)
             need = 0.45 * push(np.array([0.0, deep + rise, 0.0]), np.zeros(3), velocity, gravity).duration * speed
             lead = min(ahead, 0.5 * need + 0.5 * max(ahead - behind, 0.0))
-            leave = middle * [1, 0, 1] + lead * towards + [0.0, floor + _over(heights.leave, lead), 0.0]
-            low = leave * [1, 0, 1] - towards * min(need, lead + behind) + [0.0, floor + heights.stand - deep, 0.0]
+            # heels rise before the body leaves: it must be over the balls by then
+            more = max(balls - lead * float(towards @ facing), 0.0) * facing * (towards @ facing > -0.1)
+            leave = middle * [1, 0, 1] + lead * towards + more
+            low = leave - towards * min(need, lead + 0.7 * behind) - 0.4 * more + [0.0, floor + heights.stand - deep, 0.0]
+            leave[1] = floor + _over(heights.leave, np.linalg.norm(lead * towards + more))
             wind_up = 0.34 + 0.9 * np.sqrt(max(start.centre[1] - low[1], 0.0) / max(g, 3.0))
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity))

@@ -28,6 +28,8 @@ STEADY = 0.12
 """Half-life with which the pelvis loses the turn it landed with [s]."""
 FOOT_FADE = 0.05
 """Half-life with which feet settle flat where they stand [s]."""
+HEELS_RISE = (0.45, 0.85)
+"""When in the push a heel starts to rise, at the earliest and at the latest."""
 FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 5, 0.02
@@ -105,7 +107,8 @@ class _Draft:
         self.angles = style.keyed(self.keys, self.shapes, self.times)
         self._leftovers()
         share = np.clip((self.times - self.off) / way.push.duration, 0.0, 1.0)
-        late = np.clip((share - 0.45) / 0.55, 0.0, 1.0)
+        rising = self._heels_rise(share)
+        late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
         self.nudge = (share**3 - share**2)[:, None] * way.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         fade = 2.0 ** (-self.times / FOOT_FADE)[:, None, None]
@@ -119,16 +122,30 @@ class _Draft:
             self.feet[:, swing, 5] = FREE
             self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
 
+    def _heels_rise(self, share: np.ndarray) -> float:
+        """When in the push (0 … 1) the heels rise: not before a standing jumper is over the balls of the feet."""
+        if self.start.single is not None:
+            return HEELS_RISE[0]
+        past = (self.centres - self.planted[:, None, :3]) @ yaw(self.start.heading)[:, 2]
+        over = (past > 0.0).all(0) & (share > 0.0)
+        return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
+
     def _leftovers(self) -> None:
         """What the start's pose differs by from the carried one, fading: of the joints, of the pelvis' turn."""
         start, local = self.start, np.tile(np.eye(3), (self.count, 1, 1))
         style.carry_kernel(self.angles[0], self.joints, local)
         turn = self._upright(self.angles[:1, 0])[0]
         offset, root = vectors(start.rotations @ np.swapaxes(local, -1, -2)), vectors(start.rotations[0] @ turn.T)
-        self.offsets = faded(offset, start.rates, FADE, self.times)
-        self.offsets[:, 0] = self.offsets[:, self.legs] = 0.0
-        self.offsets[np.abs(self.offsets).max(-1) < 1e-6] = 0.0
+        self.offset, self.offset_rate = offset, start.rates
+        self.offsets = self._left_over(self.times)
         self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0])
+
+    def _left_over(self, times: np.ndarray) -> np.ndarray:
+        """What is left (N, J, 3) [rad] of the start's pose at times (N,) [s], pelvis and legs apart."""
+        left = faded(self.offset, self.offset_rate, FADE, times)
+        left[:, 0] = left[:, self.legs] = 0.0
+        left[np.abs(left).max(-1) < 1e-6] = 0.0
+        return left
 
     def _upright(self, lean: np.ndarray) -> np.ndarray:
         """The pelvis' turns (N, 3, 3), facing where the jumper faces and leaning (N,) [rad]."""
@@ -160,8 +177,8 @@ class _Draft:
         self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
         self.air_angles = style.keyed(self.keys, self.shapes, self.leave + self.flying)
         self.air = np.tile(np.eye(3), (len(t), self.count, 1, 1))
-        for angles, local in zip(self.air_angles, self.air):
-            style.carry_kernel(angles, self.joints, local)
+        for angles, left, local in zip(self.air_angles, self._left_over(self.leave + self.flying), self.air):
+            carry_on_kernel(angles, self.joints, left, local)
         self.air_roots, self.momentum = np.empty((len(t), 3)), np.empty(3)
 
     def _fly(self) -> np.ndarray:
@@ -243,7 +260,7 @@ class _Draft:
         rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
         turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
-        ground_kernel(body, self.flex, angles, self.joints, np.zeros((len(after), self.count, 3)), turned, c, feet,
+        ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
                       self.air_roots[-1].copy(), roots, local)
         return after, (roots, local, c, v, a), landing.until(after)
 
@@ -285,20 +302,27 @@ def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, roo
     root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
     """
     count = local.shape[1]
-    positions, orientations, turn = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((3, 3))
-    still = np.eye(3)
+    positions, orientations = np.empty((count, 3)), np.empty((count, 3, 3))
     for n in range(len(centres)):
-        for j in range(1, count):  # poses are made anew, whatever an earlier round left
-            if offsets[n, j, 0] != 0.0 or offsets[n, j, 1] != 0.0 or offsets[n, j, 2] != 0.0:
-                local[n, j] = still
-        style.carry_kernel(angles[n], joints, local[n])
-        for j in range(1, count):
-            if offsets[n, j, 0] != 0.0 or offsets[n, j, 1] != 0.0 or offsets[n, j, 2] != 0.0:
-                exp_kernel(offsets[n, j, 0], offsets[n, j, 1], offsets[n, j, 2], turn)
-                local[n, j] = turn @ local[n, j]
+        carry_on_kernel(angles[n], joints, offsets[n], local[n])
         local[n, 0] = turns[n]
         if n > 0:
             for i in range(3):
                 root[i] += centres[n, i] - centres[n - 1, i]
         stand_kernel(body, centres[n], feet[n], flex, root, local[n], positions, orientations)
         roots[n] = root
+
+
+@kernel
+def carry_on_kernel(angles, joints, offsets, local):
+    """Write the local rotations (J, 3, 3) of a body carried by `angles` (6,), what is left of the start (J, 3)
+    added; neither the pelvis nor, where nothing is left, joints that are not carried are touched."""
+    turn = np.empty((3, 3))
+    for j in range(1, len(local)):  # poses are made anew, whatever an earlier round left
+        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
+            exp_kernel(0.0, 0.0, 0.0, local[j])
+    style.carry_kernel(angles, joints, local)
+    for j in range(1, len(local)):
+        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
+            exp_kernel(offsets[j, 0], offsets[j, 1], offsets[j, 2], turn)
+            local[j] = turn @ local[j]
