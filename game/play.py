@@ -1,8 +1,8 @@
 """The game as a host runs it: events in, seconds in, scenes out. It needs no window.
 
 What is played is a value that only wishes move (see `game.session`); they are all that
-the log keeps. Kept here is what is only looked at: overlays, panels, help, and where one is while
-looking back.
+the log keeps (see `game.keeper`). Here is what is only looked at: overlays, panels, help, and where
+one is while looking back.
 """
 
 from __future__ import annotations
@@ -19,23 +19,19 @@ from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
 from .input import (DEFAULT, Bindings, Keyboard, Wish, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
                     player_of, wheel_wish, wishes)
 from .input.names import key_label
+from .keeper import Keeper
 from .log import Log, LogWriter, strayed
-from .output import OutputError
 from .rewind import Look
 from .scene import Camera, Overlays, Scene
 from .session import Moment, Timeline
 from .studio import Studio
 from .views import scenes
-from .world import DT, RATE, FixedStep, World
+from .world import DT, FixedStep, World
 
 OVERLAYS = ("mesh", "skeleton", "contacts", "trail", "path")
 PANELS = ("space", "plots", "quality", "settings")
 SHOWN_SPEED = 0.03
 """Below this speed [m/s] or [rad/s] a character is said to stand."""
-SAVED_EVERY = 0.75
-"""How often the log is written [s]."""
-NOTICE = 4.0
-"""How long something is said in the picture [s]."""
 PUSHED = 0.3
 """How far a stick must be pushed to play on from a past moment."""
 
@@ -44,26 +40,24 @@ class Play:
     """The game as an app: `handle` events, `tick` seconds, draw `scene`, until `done`.
 
     moment: the one that is shown, present or past; history: the last half minute up to it.
-    look: how one looks back; None while one plays. panels: what is shown of `PANELS`. log, studio:
-    where what is played and what is filmed of it is kept, if anywhere. tape: a log that is watched,
-    until somebody walks. clock, held: the time that was dropped, and spent in help, past or halt [s].
+    look: how one looks back; None while one plays. panels: what is shown of `PANELS`. kept: what
+    is kept of it all. tape: a log that is watched, until somebody walks. clock, held: the time that was
+    dropped, and spent in help, past or halt [s].
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
                  log: LogWriter | None = None, studio: Studio | None = None, tape: Log | None = None):
         self.timeline = Timeline(session.opening(controller, players) if world is None else
                                  session.begin(world, players))
-        self.bindings, self.log, self.studio, self.tape = bindings, log, studio, tape
+        self.bindings, self.kept, self.tape = bindings, Keeper(log, studio), tape
         self.overlays, self.panels = Overlays(path=True), frozenset()
         self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
-        self.clock, self.held, self.unsaved = FixedStep(), 0.0, 0.0
+        self.clock, self.held = FixedStep(), 0.0
         self.hud: Any = None
         self.undrawn = 0.0  # seconds since panels were drawn
         self.look: Look | None = None
-        self.filming: int | None = None
-        self.notices: list[tuple[float, str]] = []
 
     # --- what is shown
 
@@ -141,9 +135,9 @@ class Play:
         elif action == "screenshot":
             self.wants_picture = True
         elif action == "film":
-            self._film()
+            self.kept.film(self.now, self._overlays())
         elif action == "export":
-            self._export()
+            self.kept.motion(self.history)
         elif action in session.ACTIONS or "=" in action or action == "resume":
             self._ask(action, player)
 
@@ -153,13 +147,13 @@ class Play:
             try:
                 settings.read(action)
             except settings.SettingError as error:
-                return self.say(str(error))
+                return self.kept.say(str(error))
         if self.look is not None:
             self._ask_past(self.look, action, player)
         elif self.tape is not None and action in ("pause", "resume"):
             self.halted = not self.halted
         elif self.tape is not None:
-            self.say("this is a log: walk to play on from here")
+            self.kept.say("this is a log: walk to play on from here")
         elif action != "resume":
             self._wish(Wish(pressed=(action,)), player)
 
@@ -171,7 +165,7 @@ class Play:
             if action != "resume":
                 self._wish(Wish(pressed=(action,)), player)
         else:
-            self.say(f"this is the past: {self._key('resume')} plays on from here")
+            self.kept.say(f"this is the past: {self._key('resume')} plays on from here")
 
     def _wish(self, wish: Wish, player: int = 0) -> None:
         """Add to what the next tick is asked for, unless the help holds everything."""
@@ -182,9 +176,7 @@ class Play:
         """Let `seconds` of real time pass, in whole ticks."""
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
         self.undrawn = self.undrawn + seconds if self.panels else 0.0
-        self.notices = [(left - seconds, text) for left, text in self.notices if left > seconds]
-        for line in self.studio.tend() if self.studio is not None else ():
-            self.say(line)
+        self.kept.tend(seconds)
         if self.helping:
             self.held += seconds
         else:
@@ -193,9 +185,7 @@ class Play:
             for _ in range(due):
                 self._tick()
             self.held += (due - (self.now.number - number)) * DT
-        self.unsaved += seconds
-        if self.unsaved >= SAVED_EVERY:
-            self.save()
+        self.kept.save_sometimes(seconds, self.now)
 
     def _tick(self) -> None:
         asked = any(wish.pressed for wish in self.pending.values())
@@ -213,8 +203,7 @@ class Play:
 
     def _advance(self, asked_for: tuple[Wish, ...]) -> None:
         self.timeline.advance(asked_for)
-        if self.log is not None:
-            self.log.add(asked_for)
+        self.kept.add(asked_for)
 
     def _play_back(self, tape: Log) -> None:
         """One tick of a log that is watched."""
@@ -226,11 +215,11 @@ class Play:
             return self._take_over(f"the log can't be played further: {error}")
         if strayed(tape, self.now) and not self.strayed:
             self.strayed = True
-            self.say("from here on it is not what was played: another version of Gambol walks another way")
+            self.kept.say("from here on it is not what was played: another version of Gambol walks another way")
 
     def _take_over(self, why: str) -> None:
         self.tape, self.halted = None, False
-        self.say(why)
+        self.kept.say(why)
 
     def _wishes(self) -> tuple[Wish, ...]:
         """What every player asks for in this tick; what was pressed is asked for once."""
@@ -269,69 +258,22 @@ class Play:
         elif self.now.paused:
             self._wish(Wish(pressed=("pause",)))
 
-    # --- what is kept
-
-    def save(self) -> None:
-        """Write what was played since the last time."""
-        self.unsaved = 0.0
-        if self.log is not None:
-            try:
-                self.log.flush(self.now)
-            except OutputError as error:  # a full disk must not end the game
-                self.log = None
-                self.say(f"the log ends here: {error}")
+    # --- the picture
 
     def take(self, pixels: np.ndarray) -> None:
         """Keep the picture (H, W, 3 or 4) that was asked for by `wants_picture`."""
         self.wants_picture = False
-        if self.studio is not None:
-            try:
-                self.say(str(self.studio.screenshot(pixels)))
-            except OutputError as error:
-                self.say(str(error))
-
-    def _export(self) -> None:
-        """Keep the motion of the last half minute, or since the last reset."""
-        if self.studio is not None:
-            try:
-                self.say(str(self.studio.motion(self.history)))
-            except OutputError as error:
-                self.say(str(error))
-
-    def _film(self) -> None:
-        """Begin a film, or end it and have it made."""
-        if self.studio is None or self.log is None:
-            return self.say("no film: no log is kept")
-        if self.filming is None:
-            self.filming = self.now.number
-            return
-        start, self.filming = self.filming, None
-        self.save()
-        if self.log is None or self.now.number == start:
-            return
-        try:
-            path = self.studio.film(self.log.path, start / RATE, self.now.number / RATE,
-                                    [name for name in OVERLAYS if getattr(self.overlays, name)])
-        except OutputError as error:
-            return self.say(str(error))
-        self.say(f"{path} is being made")
+        self.kept.picture(pixels)
 
     def close(self) -> None:
         """Write the rest of the log; a film that was begun ends here."""
-        if self.filming is not None:
-            self._film()
-        self.save()
-        if self.log is not None:
-            self.log.close()
+        self.kept.close(self.now, self._overlays())
         if self.hud is not None:
             self.hud.release()
             self.hud = None
 
-    # --- the picture
-
-    def say(self, text: str) -> None:
-        """Say something in the picture for a few seconds."""
-        self.notices.append((NOTICE, text))
+    def _overlays(self) -> list[str]:
+        return [name for name in OVERLAYS if getattr(self.overlays, name)]
 
     def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
         """What to draw now, one scene for each player; size: of the frame in pixels."""
@@ -359,7 +301,7 @@ class Play:
         for action in actions:
             self.do(action, self.hud.who)
         # the strip tells of looking back, pause and slow motion
-        text = (view.text[0], *(text for _, text in self.notices)) if view.text else ()
+        text = (view.text[0], *self.kept.notices) if view.text else ()
         return replace(view, ink=ink, text=text, figures=view.figures + self.hud.ghosts(view.figures, moment))
 
     def _shown(self, alpha: float) -> tuple[Moment, float, tuple[Camera, ...]]:
@@ -386,11 +328,8 @@ class Play:
             lines.append(f"paused: {self._key('pause')} goes on, {self._key('step')} makes one step")
         if moment.slow > 1:
             lines.append(f"slow motion 1/{moment.slow}")
-        if self.filming is not None:
-            lines.append(f"filming {(self.now.number - self.filming) * DT:.0f} s")
-        lines += self.studio.status() if self.studio is not None else ()
-        lines += [text for _, text in self.notices]
-        return ((*own[0], *lines, f"{self._key('help')} help"), *own[1:])
+        told = (*lines, *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
+        return ((*own[0], *told), *own[1:])
 
     def _moving(self, moment: Moment, who: int) -> str:
         v_f, omega, v_l = moment.after.characters[who].state.velocity

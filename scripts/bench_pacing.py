@@ -83,8 +83,8 @@ def main() -> None:
             run_window(game, options.size, options.preset, limit=options.seconds + WARM_UP)
             if options.film:
                 game.close()
-                print("film while playing:", *game.studio.status() or ["done"])
-                game.studio.finish(print)
+                print("film while playing:", *game.kept.studio.status() or ["done"])
+                game.kept.studio.finish(print)
     except DisplayError as error:
         sys.exit(str(error))
     finally:

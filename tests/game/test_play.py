@@ -398,7 +398,7 @@ def test_a_screenshot_is_clean_has_a_name_of_its_own_and_is_said(tmp_path):
         assert game.wants_picture and game.scene((10, 10)).text == ()
         game.take(pixels)
         assert not game.wants_picture and ".png" in text(game)
-    game.studio.finish(print)
+    game.kept.studio.finish(print)
     files = list(tmp_path.glob("*.png"))
     assert len(files) == 2 and all(np.array_equal(np.asarray(Image.open(file)), pixels[..., :3]) for file in files)
 
@@ -438,7 +438,7 @@ def test_a_log_that_cannot_be_written_does_not_end_the_game(tmp_path):
     (tmp_path / "file").touch()
     game = Play(Glide(), log=LogWriter(tmp_path / "file" / "a.gambol", Glide(), 1), studio=Studio(tmp_path / "file"))
     wait(game, 1.0)
-    assert "the log ends here" in text(game) and game.log is None
+    assert "the log ends here" in text(game) and game.kept.log is None
     tap(game, "F10")
     game.take(np.zeros((2, 2, 4), np.uint8))
     assert "no film" in text(game) and "is a file" in text(game)
