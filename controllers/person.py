@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+from .body.human import STATURE
 from .jump import GRAVITY, Jump, Physique
 from .locomotion import Locomotion
+from .scaled import Scaled
 from .supervisor import Supervisor
 
 
-def person(locomotion: Locomotion | str | Path | None = None, physique: Physique | None = None,
-           gravity=GRAVITY) -> Supervisor:
+def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRAVITY) -> Supervisor:
     """Somebody who walks, runs and jumps.
 
     locomotion: a controller or a library's file; the shipped library by default. physique: by default
-    an adult of the locomotion's own height. gravity: (3,) [m/s²] of the jumps.
+    a standard adult; another height walks as its legs are long. gravity: (3,) [m/s²] of the jumps.
     LibraryError if the library can't be used; ValueError for a physique or gravity that can't be.
     """
     walker = locomotion if hasattr(locomotion, "step") else Locomotion.load(locomotion)
-    if physique is None:
-        physique = Physique()
-    return Supervisor({"locomotion": walker, "jump": Jump(physique, gravity)})
+    physique = Physique() if physique is None else physique
+    factor = physique.height / STATURE
+    return Supervisor({"locomotion": walker if factor == 1.0 else Scaled(walker, factor),
+                       "jump": Jump(physique, gravity)})
+
+
+def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:
+    """The same gaits in another body; a controller that is no person stays as it is."""
+    if "jump" not in getattr(someone, "controllers", {}):
+        return someone
+    walker = someone.controllers["locomotion"]
+    return person(walker.controller if isinstance(walker, Scaled) else walker, physique, gravity)

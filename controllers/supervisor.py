@@ -7,6 +7,7 @@ over without a jump is each controller's own `enter`.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -60,7 +61,9 @@ class Supervisor:
 
     def tuned(self, settings: Any) -> Supervisor:
         """The same under other settings of the first controller."""
-        return Supervisor({**self.controllers, self.first: self.controllers[self.first].tuned(settings)})
+        other = copy(self)
+        other.controllers = {**self.controllers, self.first: self.controllers[self.first].tuned(settings)}
+        return other
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""

@@ -1,120 +1,44 @@
-"""A controller in somebody's body: it moves as before, in that body's size.
-
-Small and large animals that move alike do so at equal Froude numbers v²/gℓ (Alexander & Jayes 1983):
-with legs k times as long, lengths grow by k, speeds by √k and times by √k. A child trots
-where an adult walks.
-"""
+"""A controller in somebody's body: it moves as before, in that body's size, and is drawn in it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from controllers.body import Pose, Skeleton
-from controllers.contract import CharacterState, Intent, Leap, Status
+from controllers.body.human import STATURE
+from controllers.jump import Jump, Physique
+from controllers.scaled import Scaled
+from controllers.supervisor import Supervisor
 
 from .render import skin
 from .render.mesh import Body
 from .render.wear import leg_length
-from .scene import resized
 
 SMALLEST, LARGEST = 0.4, 1.6
 """Legs shorter or longer than this share of the standard's are taken for another unit, and fitted."""
+ADULT = 73.0
+"""What a body of standard height weighs [kg]; others by the cube of their size."""
 
 
-@dataclass(frozen=True, eq=False)
-class Embodied:
-    """A controller (`controllers.contract.Controller` with `start` and `skeleton`) and what it moves.
+class Embodied(Supervisor):
+    """Controllers in a body's size. body: what they move. factor: its leg length over the standard human's."""
 
-    factor: the body's leg length over the standard human's.
-    """
-
-    controller: Any
-    body: Body
-    factor: float
+    def __init__(self, controllers, body: Body, factor: float = 1.0):
+        super().__init__(controllers)
+        self.body, self.factor = body, factor
 
     @staticmethod
     def of(controller: Any, body: Body) -> Embodied:
-        """The controller in a body; one of unlikely size is fitted to the standard human's."""
+        """A person, or one controller alone, in a body; one of unlikely size is fitted to the standard human's."""
         factor = float(leg_length(body.joints) / leg_length(skin.REST))
-        return Embodied(controller, body, factor if SMALLEST <= factor <= LARGEST else 1.0)
-
-    @property
-    def kind(self) -> str:
-        """What tells its motion from that of other controllers, beside the library."""
-        return type(self.controller).__name__ + (f" × {self.factor:.6f}" if self.factor != 1.0 else "")
-
-    @property
-    def skeleton(self) -> Skeleton:
-        """What it moves."""
-        return self.controller.skeleton.scaled(self.factor)
-
-    @property
-    def library(self) -> Any:
-        """The controller's gaits."""
-        return getattr(self.controller, "library", None)
-
-    @property
-    def settings(self) -> Any:
-        """The controller's settings."""
-        return getattr(self.controller, "settings", None)
-
-    def tuned(self, settings: Any) -> Embodied:
-        """The same under other settings."""
-        return replace(self, controller=self.controller.tuned(settings))
-
-    @property
-    def controllers(self) -> Any:
-        """Those under a supervisor, by name; none without one."""
-        return getattr(self.controller, "controllers", {})
-
-    def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
-        """Standing at x, z [m], heading, on a floor so high [m]."""
-        x, z, heading = (float(v) for v in ground)
-        return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
-
-    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of `dt` seconds."""
-        new, _ = self.controller.step(self._shrunk(state), self._asked(intent), dt / self.factor**0.5)
-        new = self._grown(new)
-        return new, new.pose
-
-    def precondition(self, state: CharacterState, intent: Intent) -> float:
-        """How well it could start from here for this intent."""
-        return self.controller.precondition(self._shrunk(state), self._asked(intent))
-
-    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state with this controller's own memory."""
-        return self._grown(self.controller.enter(self._shrunk(state), self._asked(intent)))
-
-    def status(self, state: CharacterState) -> Status:
-        """Whether it goes on."""
-        return self.controller.status(self._shrunk(state))
-
-    @property
-    def _speeds(self) -> np.ndarray:
-        """What v_f, ω and v_l grow by."""
-        return np.array([self.factor**0.5, self.factor**-0.5, self.factor**0.5])
-
-    def _asked(self, intent: Intent) -> Intent:
-        leap = intent.leap
-        if leap is not None:
-            leap = Leap(np.asarray(leap.place) / self.factor,
-                        None if leap.airtime is None else leap.airtime / self.factor**0.5)
-        return replace(intent, velocity=intent.velocity / self._speeds, leap=leap,
-                       around=tuple(resized(prop, 1.0 / self.factor) for prop in intent.around))
-
-    def _grown(self, state: CharacterState) -> CharacterState:
-        return _resized(state, self.factor, state.velocity * self._speeds)
-
-    def _shrunk(self, state: CharacterState) -> CharacterState:
-        return _resized(state, 1.0 / self.factor, state.velocity / self._speeds)
+        factor = factor if SMALLEST <= factor <= LARGEST else 1.0
+        controllers = getattr(controller, "controllers", {"locomotion": controller})
+        return Embodied({name: sized(one, factor) for name, one in controllers.items()}, body, factor)
 
 
-def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:
-    def pose(one: Pose | None) -> Pose | None:
-        return None if one is None else Pose(one.root * factor, one.rotations)
-    return replace(state, ground=state.ground * [factor, factor, 1.0], velocity=velocity, floor=state.floor * factor,
-                   pose=pose(state.pose), previous=pose(state.previous), elapsed=state.elapsed * factor**0.5)
+def sized(controller: Any, factor: float) -> Any:
+    """A controller in a body `factor` times as long as the standard human's."""
+    if factor == 1.0:
+        return controller
+    if isinstance(controller, Jump):
+        return Jump(Physique(max(ADULT * factor**3, 5.0), STATURE * factor), controller.gravity)
+    return Scaled(controller, factor)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -22,13 +22,69 @@ class Camera:
 
 
 @dataclass(frozen=True, eq=False)
+class Line:
+    """A line to explain with. layer: the overlay that it belongs to. points: (N, 3) [m]. width: [m].
+
+    opacity: of its first and its last point. flat: it lies instead of facing the camera. through:
+    bodies don't hide it.
+    """
+
+    layer: str
+    points: np.ndarray
+    tint: tuple[float, float, float]
+    width: float = 0.02
+    opacity: tuple[float, float] = (1.0, 1.0)
+    dashed: bool = False
+    flat: bool = False
+    through: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """An arrow in front of everything, from `start` (3,) as far as `along` (3,) [m]."""
+
+    layer: str
+    start: np.ndarray
+    along: np.ndarray
+    tint: tuple[float, float, float]
+    width: float = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class Dot:
+    """A disc that faces the camera, or lies flat. quartered: the sign of a centre of mass."""
+
+    layer: str
+    place: np.ndarray
+    tint: tuple[float, float, float]
+    radius: float = 0.03
+    flat: bool = False
+    quartered: bool = False
+    through: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """A filled convex polygon, corners (N, 3) [m]."""
+
+    layer: str
+    corners: np.ndarray
+    tint: tuple[float, float, float]
+    opacity: float = 0.3
+
+
+Sketch = Line | Arrow | Dot | Patch
+
+
+@dataclass(frozen=True, eq=False)
 class Figure:
     """One character to draw.
 
     positions, orientations: (J, 3) [m], (J, 3, 3) world transforms of the standard human's joints.
     tint: (3,) linear RGB. contacts: (4,) bool, left heel, left ball, right heel, right ball.
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
-    body: what it wears (`game.render.mesh.Body`); None for Gambol's mannequin.
+    body: what it wears (`game.render.mesh.Body`); None for Gambol's mannequin. sketches: what
+    explains its motion, each in a layer of its own.
     """
 
     positions: np.ndarray
@@ -38,6 +94,7 @@ class Figure:
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     body: Any = None
+    sketches: tuple[Sketch, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -72,13 +129,6 @@ class Goal:
 Prop = Box | Pillar | Goal
 
 
-def resized(prop: Prop, factor: float) -> Prop:
-    """The prop where everything measures `factor` times as much."""
-    lengths = {"centre", "size", "foot", "radius", "height", "place"} & {part.name for part in fields(prop)}
-    return replace(prop, **{name: tuple(v * factor for v in value) if isinstance(value, tuple) else value * factor
-                            for name in lengths for value in (getattr(prop, name),)})
-
-
 @dataclass(frozen=True)
 class Caption:
     """The title of a film or a shot: a large line, a smaller one under it. opacity: 0 … 1."""
@@ -97,6 +147,9 @@ class Overlays:
     contacts: bool = False
     trail: bool = False
     path: bool = False
+    jump: bool = False
+    balance: bool = False
+    forces: bool = False
 
 
 @dataclass(frozen=True, eq=False)

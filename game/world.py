@@ -146,10 +146,11 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         positions, orientations = forward_kinematics(new.controller.skeleton, pose.root, pose.rotations)
         ground = ground_between(old.state, new.state, alpha)
         ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16))
-        here = np.array([[ground[0], FLOOR_LIFT, ground[1]]])
+        lift = float(new.state.floor) + FLOOR_LIFT
+        here = np.array([[ground[0], lift, ground[1]]])
         contacts = (old if alpha < 0.5 else new).state.contacts
         drawn.append(Figure(positions, orientations, new.tint, contacts,
                             np.concatenate([old.trail, here]),
-                            np.stack([ahead[:, 0], np.full(len(ahead), FLOOR_LIFT), ahead[:, 1]], -1),
+                            np.stack([ahead[:, 0], np.full(len(ahead), lift), ahead[:, 1]], -1),
                             getattr(new.controller, "body", None)))
     return tuple(drawn)

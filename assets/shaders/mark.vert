@@ -9,4 +9,8 @@ void main() {
     v_tint = tint;
     v_shape = shape;
     gl_Position = view_projection * vec4(position, 1.0);
+#ifdef THROUGH
+    // the very nearest of the depth range: in front of every body and bone
+    gl_Position.z = (gl_Position.z + gl_Position.w) * 0.001 - gl_Position.w;
+#endif
 }

@@ -99,6 +99,7 @@ class Bindings:
 
 
 _SHOW = "body, bones, contacts, trail, path"
+_JUMPS = "jump, balance, forces"
 _PANELS = "space, plots, quality, settings"
 
 DEFAULT = Bindings((
@@ -140,6 +141,9 @@ DEFAULT = Bindings((
         Binding("contacts", _SHOW, ("3",)),
         Binding("trail", _SHOW, ("4",)),
         Binding("path", _SHOW, ("5",)),
+        Binding("show_jump", _JUMPS, ("6",)),
+        Binding("balance", _JUMPS, ("7",)),
+        Binding("forces", _JUMPS, ("8",)),
         Binding("panels", "all panels", ("F2",)),
         Binding("space_panel", _PANELS, ("F3",)),
         Binding("plots_panel", _PANELS, ("F4",)),
@@ -153,4 +157,4 @@ DEFAULT = Bindings((
         Binding("quit", "leave", ("ESCAPE",)),
     )),
 ))
-"""What Gambol comes with, in the order of the help sheet. Space and A are kept free, for a jump."""
+"""What Gambol comes with, in the order of the help sheet."""

@@ -1,4 +1,4 @@
-"""What explains the motion: bones, foot contacts, where somebody was and where they are going."""
+"""What explains the motion: bones, foot contacts, where somebody was and is going, and whatever is sketched."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 
 from controllers.body.human import HEEL
 
-from ..scene import Figure, Overlays
+from ..scene import Camera, Figure, Overlays
 from . import gl, skin
+from .sketches import sketched
 from .view import scale_of
 
 LIFT = 0.006
@@ -18,6 +19,9 @@ LIFT = 0.006
 LEFT, RIGHT, MIDDLE = (0.12, 0.55, 0.95), (0.95, 0.45, 0.10), (0.85, 0.85, 0.80)
 AHEAD = (0.85, 0.50, 0.02)
 DISC, BAND, DASHES = 0.0, 1.0, 2.0
+"""What a mark is; see mark.frag. `sketches` has more of them."""
+SOLE = 0.02
+"""How high heels and balls stand over their floor [m]."""
 _SIDES = np.array([LEFT if n.startswith("Left") else RIGHT if n.startswith("Right") else MIDDLE
                    for n in skin.STANDARD.names])
 
@@ -56,7 +60,7 @@ def discs(figure: Figure) -> np.ndarray:
                 radius = (0.075 if k == 0 else 0.085) * scale
                 corners = np.zeros((6, 10))
                 corners[:, [0, 2]] = place[[0, 2]] + square * radius
-                corners[:, 1] = LIFT
+                corners[:, 1] = max(place[1] - SOLE * scale, 0.0) + LIFT
                 corners[:, 3:6], corners[:, 6], corners[:, 7:9] = colour, 0.85, square
                 rows.append(corners)
     return np.concatenate(rows) if rows else np.zeros((0, 10))
@@ -121,13 +125,14 @@ class OverlayPass:
     """Draws bones and marks; made once per context."""
 
     def __init__(self, ctx: Any):
-        self.programs = [gl.program(ctx, "bone.vert", "bone.frag"), gl.program(ctx, "mark.vert", "mark.frag")]
+        self.programs = [gl.program(ctx, "bone.vert", "bone.frag"), gl.program(ctx, "mark.vert", "mark.frag"),
+                         gl.program(ctx, "mark.vert", "mark.frag", THROUGH=1)]
         self.shape, self.bones, self.marks = ctx.buffer(_octahedron().tobytes()), gl.Stream(ctx), gl.Stream(ctx)
         self.bone_array = ctx.vertex_array(self.programs[0], [
             (self.shape, "3f 3f", "position", "normal"),
             (self.bones.buffer, "3f 3f 3f 3f/i", "start", "along", "aside", "tint")])
-        self.mark_array = ctx.vertex_array(self.programs[1], [
-            (self.marks.buffer, "3f 4f 3f", "position", "tint", "shape")])
+        self.mark_arrays = [ctx.vertex_array(program, [(self.marks.buffer, "3f 4f 3f", "position", "tint", "shape")])
+                            for program in self.programs[1:]]
 
     def draw_bones(self, figures: Sequence[Figure], origin: np.ndarray) -> None:
         if not figures:
@@ -137,15 +142,21 @@ class OverlayPass:
         self.bones.write(rows.astype(np.float32).tobytes())
         self.bone_array.render(instances=len(rows))
 
-    def draw_marks(self, figures: Sequence[Figure], shown: Overlays, origin: np.ndarray) -> None:
-        rows = marks(figures, shown)
+    def draw_marks(self, figures: Sequence[Figure], shown: Overlays, origin: np.ndarray, camera: Camera,
+                   metre: float) -> None:
+        """metre: how many pixels a metre has that is one metre away."""
+        within, through = sketched(figures, shown, camera, metre)
+        first = np.concatenate([marks(figures, shown), within])
+        rows = np.concatenate([first, through])
         if len(rows):
             rows[:, :3] -= origin
             self.marks.write(rows.astype(np.float32).tobytes())
-            self.mark_array.render(vertices=len(rows))
+            for array, start, count in zip(self.mark_arrays, (0, len(first)), (len(first), len(through))):
+                if count:
+                    array.render(vertices=count, first=start)
 
     def release(self) -> None:
-        for part in (self.bone_array, self.mark_array, *self.programs, self.shape, self.bones, self.marks):
+        for part in (self.bone_array, *self.mark_arrays, *self.programs, self.shape, self.bones, self.marks):
             part.release()
 
 

@@ -107,7 +107,7 @@ class Renderer:
             self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
         self.ground.draw(touched_floor(shown if boxes[0] else (), solids, origin), np.linalg.inv(matrix))
-        self._over(scene, figures, origin, inside)
+        self._over(scene, figures, origin, inside, metre)
 
     def read(self, out: np.ndarray | None = None) -> np.ndarray:
         """The picture (H, W, 4) uint8, top row first; into `out` where one is given."""
@@ -168,14 +168,15 @@ class Renderer:
                 self.solids.draw("shadow")
                 self.kept = shows
 
-    def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray, inside: view.Rectangle) -> None:
+    def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray, inside: view.Rectangle,
+              metre: float) -> None:
         """Marks on the floor, then text over everything."""
         ctx = self.ctx
         ctx.enable(ctx.BLEND)
         ctx.disable(ctx.CULL_FACE)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
         self.target.masked(depth=False, viewport=inside)
-        self.overlays.draw_marks(figures, scene.overlays, origin)
+        self.overlays.draw_marks(figures, scene.overlays, origin, scene.camera, metre)
         self.goals.draw([prop for prop in scene.props if isinstance(prop, Goal)], origin)
         self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)

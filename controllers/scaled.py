@@ -1,0 +1,96 @@
+"""A controller for a larger or smaller body: it moves as before, in that body's size.
+
+Small and large animals that move alike do so at equal Froude numbers v²/gℓ (Alexander & Jayes 1983):
+with legs k times as long, lengths grow by k, speeds by √k and times by √k. A child trots
+where an adult walks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .body import Pose, Skeleton
+from .contract import CharacterState, Intent, Status
+
+
+@dataclass(frozen=True, eq=False)
+class Scaled:
+    """A walker in another size. What stands about and jumps is no matter of its own and not passed on.
+
+    controller: keeps the contract, with `start` and `skeleton`. factor: the legs' length over that of
+    the skeleton it is made for.
+    """
+
+    controller: Any
+    factor: float
+
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of other controllers, beside the library."""
+        return getattr(self.controller, "kind", type(self.controller).__name__) + f" × {self.factor:.6f}"
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """What it moves."""
+        return self.controller.skeleton.scaled(self.factor)
+
+    @property
+    def library(self) -> Any:
+        """The controller's gaits."""
+        return getattr(self.controller, "library", None)
+
+    @property
+    def settings(self) -> Any:
+        """The controller's settings."""
+        return getattr(self.controller, "settings", None)
+
+    def tuned(self, settings: Any) -> Scaled:
+        """The same under other settings."""
+        return replace(self, controller=self.controller.tuned(settings))
+
+    def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
+        """Standing at x, z [m], heading, on a floor so high [m]."""
+        x, z, heading = (float(v) for v in ground)
+        return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of `dt` seconds."""
+        new, _ = self.controller.step(self._shrunk(state), self._asked(intent), dt / self.factor**0.5)
+        new = self._grown(new)
+        return new, new.pose
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """How well it could start from here for this intent."""
+        return self.controller.precondition(self._shrunk(state), self._asked(intent))
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state with this controller's own memory."""
+        return self._grown(self.controller.enter(self._shrunk(state), self._asked(intent)))
+
+    def status(self, state: CharacterState) -> Status:
+        """Whether it goes on."""
+        return self.controller.status(self._shrunk(state))
+
+    @property
+    def _speeds(self) -> np.ndarray:
+        """What v_f, ω and v_l grow by."""
+        return np.array([self.factor**0.5, self.factor**-0.5, self.factor**0.5])
+
+    def _asked(self, intent: Intent) -> Intent:
+        return Intent(intent.velocity / self._speeds)
+
+    def _grown(self, state: CharacterState) -> CharacterState:
+        return _resized(state, self.factor, state.velocity * self._speeds)
+
+    def _shrunk(self, state: CharacterState) -> CharacterState:
+        return _resized(state, 1.0 / self.factor, state.velocity / self._speeds)
+
+
+def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:
+    def pose(one: Pose | None) -> Pose | None:
+        return None if one is None else Pose(one.root * factor, one.rotations)
+    return replace(state, ground=state.ground * [factor, factor, 1.0], velocity=velocity, floor=state.floor * factor,
+                   pose=pose(state.pose), previous=pose(state.previous), elapsed=state.elapsed * factor**0.5)
