@@ -13,6 +13,7 @@ import numpy as np
 
 from ..world import Character
 from . import style
+from .duty import acting
 from .reason import family
 from .tetrahedra import Mesh, Orbit
 from .toolkit import imgui
@@ -43,14 +44,15 @@ class SpacePanel:
 
     def draw(self, character: Character, trail: np.ndarray, dt: float, scale: float) -> None:
         """Fill the current window. trail: (N, 3) blended velocities up to now."""
-        controller = character.controller
-        if getattr(controller, "library", None) is not self.library:
-            self.library, self.chosen = getattr(controller, "library", None), None
-            self.meshes = tuple(m for m in (Mesh.of(controller, name) for name in ("walk", "run")) if m)
+        character = acting(character)
         gait = family(character)
-        if not self.meshes or not gait:
+        if not gait:  # the library stays, for when it is walked by again
             imgui.text_disabled("the active controller blends nothing")
             return
+        controller = character.controller
+        if controller.library is not self.library:
+            self.library, self.chosen = controller.library, None
+            self.meshes = tuple(m for m in (Mesh.of(controller, name) for name in ("walk", "run")) if m)
         active = next((m for m in self.meshes if m.family == gait), self.meshes[0])
         weights = share_of(character)
         bars = np.argsort(weights)[::-1][:BARS]

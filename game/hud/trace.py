@@ -9,6 +9,7 @@ import numpy as np
 
 from ..session import Moment
 from ..world import RATE, Character, World
+from .duty import acting
 
 STEPS = 10 * RATE
 """How many steps of the world the plots and the quality meter look back."""
@@ -79,7 +80,7 @@ def weights(character: Character) -> np.ndarray | None:
 
 
 def _row(world: World, who: int) -> np.ndarray:
-    character = world.characters[who]
+    character = acting(world.characters[who])
     state = character.state
     share = weights(character)
     blend, phase = (np.full(3, np.nan), np.nan) if share is None else \

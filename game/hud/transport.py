@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..session import Moment
 from ..world import RATE
 from . import style
+from .duty import acting, why
 from .reason import family, reason
 from .toolkit import imgui
 
@@ -14,7 +15,8 @@ def draw(now: Moment, shown: Moment, behind: int, kept: int, who: int, scale: fl
 
     shown: the moment looked at, `behind` steps before now. kept: how many steps one can look back.
     """
-    character, actions = shown.after.characters[who], []
+    chosen, actions = why(shown.after.characters[who]), []
+    character = acting(shown.after.characters[who])
     gait = family(character)
     pen, at, line = imgui.get_window_draw_list(), imgui.get_cursor_screen_pos(), imgui.get_text_line_height()
     pen.add_circle_filled((at.x + 0.4 * line, at.y + 0.5 * line), 0.28 * line, style.packed(style.family_colour(gait)))
@@ -28,7 +30,8 @@ def draw(now: Moment, shown: Moment, behind: int, kept: int, who: int, scale: fl
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(
         imgui.get_content_region_avail().x - imgui.calc_text_size(told).x, 0.0))
     imgui.text_disabled(told)
-    imgui.set_item_tooltip(f"the active controller; from here it could start with a fit of {fit:.0%}")
+    imgui.set_item_tooltip("the active controller" + (f": {chosen}" if chosen else "")
+                           + f"; from here it could start with a fit of {fit:.0%}")
 
     if len(now.players) > 1:
         if imgui.button(f"player {who + 1}"):

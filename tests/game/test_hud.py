@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 
 from controllers.body.rotations import yaw
 from controllers.locomotion import Locomotion
+from controllers.person import person
 from game.hosts.events import Focus, KeyEvent, MouseMove, Scroll
 from game.hud import Hud, reason
+from game.hud.duty import acting, why
 from game.hud.ghost import ghost
 from game.hud.panels import PANELS, layout
 from game.hud.plots import runs, ticks
@@ -37,7 +39,7 @@ def locomotion():
 
 @pytest.fixture
 def game(locomotion):
-    played = Play(locomotion)
+    played = Play(person(locomotion))
     yield played
     played.close()
 
@@ -231,6 +233,15 @@ def test_signals_are_what_was_played(locomotion):
     assert np.array_equal(signals.asked, [m.after.characters[0].intent.velocity for m in moments])
     np.testing.assert_allclose(signals.seconds, (np.arange(len(moments)) - len(moments) + 1) / 60)
     assert np.abs(signals.blended[-1] - signals.achieved[-30:].mean(0)).max() < 0.4
+
+
+def test_panels_look_through_a_supervisor(locomotion):
+    alone, led = (walked(one, 1.0, Wish(move=(0.3, 1.0))) for one in (locomotion, person(locomotion)))
+    seen, told = (Trace().read([*timeline.past, timeline.now]) for timeline in (alone, led))
+    assert np.isfinite(told.blended).all() and np.array_equal(seen.blended, told.blended)
+    walker, character = (timeline.now.after.characters[0] for timeline in (alone, led))
+    assert acting(walker) is walker and why(walker) == ""
+    assert reason(acting(character)) == reason(walker) and why(character)
 
 
 def test_signals_do_not_reach_over_a_reset(locomotion):
