@@ -57,7 +57,6 @@ def test_kernels_are_kept_and_found_again(package):
 def test_a_change_in_another_file_is_seen(package):
     """The callee changes and the caller does not: numba alone would run the old one."""
     call(package)
-    first = folders(package)
     touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 1", "x + 2"))
     assert call(package) == ["30.0", "0"]
     assert len(folders(package)) == 2

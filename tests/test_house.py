@@ -5,6 +5,7 @@ import importlib
 import re
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(p for wing in ("controllers", "game", "assets", "scripts", "tests") for p in (ROOT / wing).rglob("*.py")
                  if "__pycache__" not in p.parts)
-MODULES = [p for p in SOURCES if p.relative_to(ROOT).parts[0] in ("controllers", "game")]
+WINGS = ("controllers", "game")
+MODULES = [p for p in SOURCES if p.relative_to(ROOT).parts[0] in WINGS]
 
 
 def dotted(path):
@@ -56,6 +58,37 @@ def test_imports_run_one_way():
                 names = [a.name for a in node.names] if isinstance(node, ast.Import) else \
                     [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
                 assert not any(n.split(".")[0] in ("game", "moderngl", "glfw") for n in names), path
+
+
+def imported(path):
+    """Those of our modules that a module imports, whenever it does."""
+    own, names = dotted(path), {dotted(p) for p in MODULES}
+    room = own if path.name == "__init__.py" else own.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in names)
+        elif isinstance(node, ast.ImportFrom):
+            above = room.split(".")[:len(room.split(".")) + 1 - node.level] if node.level else []
+            source = ".".join([*above, node.module] if node.module else above)
+            yield from (name for alias in node.names
+                        if (name := f"{source}.{alias.name}" if f"{source}.{alias.name}" in names else source) in names)
+
+
+def room_of(name):
+    """The folder within a wing that a module is in; itself where it stands in the wing."""
+    parts = name.split(".")
+    return ".".join(parts[:2])
+
+
+@pytest.mark.parametrize("level", [str, room_of])
+def test_nothing_imports_what_imports_it(level):
+    """No ring of modules, nor of rooms, however late they import each other."""
+    needs = {}
+    for path in MODULES:
+        here = level(dotted(path))
+        needs.setdefault(here, set()).update({level(name) for name in imported(path)} - {here, *WINGS})
+    assert "controllers.body" in needs["controllers.supervisor"] and "game.session" in needs["game.play"]
+    tuple(TopologicalSorter(needs).static_order())  # raises CycleError, which names the ring
 
 
 ABSOLUTE = re.compile(r"""["'\s(=](/(?:home|work|Users|root|tmp|mnt|opt|srv|data|var)/|[A-Z]:\\\\)""")

@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from controllers.body.rotations import between, yaw
-from game.render import skin
-from game.render.mesh import Body, Mesh
-from game.render.wear import leg_length
+
+from ..render import skin
+from ..render.mesh import Body, Mesh
+from ..render.wear import leg_length
 
 from . import gltf, materials
 from .gltf import CharacterError, Document, Nodes

@@ -6,8 +6,8 @@ import numpy as np
 
 from controllers.body import Skeleton
 from controllers.mocap.names import Roles, plain, roles
-from game.render import skin
 
+from ..render import skin
 from .gltf import CharacterError, Document, Nodes
 
 _VRM = {"hips": "Hips", "spine": "Spine", "chest": "Spine1", "upperChest": "Spine2", "neck": "Neck", "head": "Head"}

@@ -16,9 +16,9 @@ from controllers.body.human import STATURE
 from controllers.body.rotations import between
 from controllers.mocap.calibration import zero_positions
 from controllers.mocap.names import roles
-from game.render import skin
-from game.render.mesh import Body, Mesh, mannequin
 
+from ..render import skin
+from ..render.mesh import Body, Mesh, mannequin
 from .surface import smooth
 
 _NAMES, _PARENTS = skin.STANDARD.names, skin.STANDARD.parents

@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from game.render import skin
-from game.render.mesh import Mesh
-
+from ..render import skin
+from ..render.mesh import Mesh
 from .surface import unit
 
 

@@ -17,10 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from game.output import named, output_file
-from game.render import skin
-from game.render.mesh import Body, Mesh
-
+from ..output import named, output_file
+from ..render import skin
+from ..render.mesh import Body, Mesh
 from .twotone import cut
 
 FLOAT, USHORT, UINT, UBYTE = 5126, 5123, 5125, 5121

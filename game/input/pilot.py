@@ -17,13 +17,12 @@ STEERING = Steering()
 
 @dataclass(frozen=True)
 class Pace:
-    """How fast the hands ask for: speeds [m/s], turning and orbiting [rad/s]."""
+    """How fast the hands ask for: speeds [m/s], turning [rad/s]."""
 
     slow: float = 0.7
     walk: float = 1.3
     run: float = 3.0
     turn: float = 1.5
-    orbit: float = 2.5
 
 
 @dataclass(frozen=True)

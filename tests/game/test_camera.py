@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game.camera import CUT, CameraSettings, Follow, Free, Orbit, between, cycled
+from game.camera import CUT, CameraSettings, Follow, Free, between, cycled
 from game.input import Wish
 from game.obstacles import FLOOR, MARGIN, above_floor, free_way, outside
 from game.rail import dolly, fixed, on_rail

@@ -6,7 +6,6 @@ import struct
 import foreign
 import numpy as np
 import pytest
-from foreign import figure
 
 from game.character import Build, BuildError, CharacterError, load, tailored
 from game.render import skin

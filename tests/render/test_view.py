@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from poses import STAND, STRIDE, camera, figure
+from poses import STRIDE, camera, figure
 
 from game.render import overlays, view
 from game.scene import Camera, Overlays
