@@ -16,6 +16,7 @@ from .ballistics import apex_airtime, least_effort, take_off_velocity
 from .dynamics import BodyTables, Physique
 from .posture import stand_kernel
 from .thrust import Push, push, risen
+from .windup import crouch_depth, strength
 
 HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
@@ -33,8 +34,8 @@ OVER_BALLS = 0.03
 """A standing jumper's centre of mass leaves so far ahead of the balls of the feet [m], at standard height."""
 SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
-MEAN_PUSH = 1.85
-"""The mean force of a push in an adult's weights on Earth, at strength 1."""
+LEAST_CROUCH = 0.07
+"""A body crouches at least so deep [m], at standard height."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 
@@ -62,7 +63,8 @@ class Start:
 @dataclass(frozen=True, eq=False)
 class Path:
     """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at
-    the lowest point and at take-off, the flight's and the wind-up's time [s], the push between."""
+    the lowest point and at take-off, the flight's and the wind-up's time [s], the push between;
+    strong: whether the muscles can."""
 
     low: np.ndarray
     leave: np.ndarray
@@ -73,6 +75,7 @@ class Path:
     wind_up: float
     gravity: np.ndarray
     push: Push
+    strong: bool = True
 
     @property
     def falling(self) -> np.ndarray:
@@ -145,8 +148,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
          gravity: np.ndarray, airtime: float | None = None) -> Path:
     """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
 
-    airtime: [s], or None for the least effort. Where it lies between, the crouch gives as much
-    way as the push needs for `style` and muscles; see `windup`.
+    airtime: [s], or None for the least effort. The crouch is as deep as the muscles need it (`windup`).
     """
     body, heights = physique.tables, measures(physique)
     size = body.sole / 0.02
@@ -166,8 +168,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     low = start.centre + start.velocity * wind_up * [1.0, 0.0, 1.0]
     stance = feet[:, :3].mean(0) * [1.0, 0.0, 1.0]
     leave = middle * [1, 0, 1] + [0.0, floor + heights.leave, 0.0]
-    trail, deep = 0.0, 0.1
-    for _ in range(6):
+    trail, deep, strong = 0.0, 0.1, True
+    for _ in range(12 if running else 6):
         land = goal * [1, 0, 1] - trail * towards + [0.0, goal[1] + _over(heights.touch, trail), 0.0]
         flight = airtime if airtime is not None else max(
             least_effort(leave, land, passing, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
@@ -188,12 +190,14 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             pushed = push(np.array([0.0, rise, 0.0]), np.zeros(3), velocity, gravity)
             wind_up = float(np.clip((most - past - np.linalg.norm(mean) * pushed.duration) / pace, *YIELD))
             low = (start.centre + start.velocity * wind_up) * [1.0, 0.0, 1.0]
-            leave = low + mean * pushed.duration
+            leave = 0.5 * (leave + low + mean * pushed.duration)  # half the way: the whole one swings about
             leave[1] = floor + _over(heights.stride, np.linalg.norm((leave - stance)[[0, 2]]))
             low[1] = leave[1] - rise
         else:
             rise = leave[1] - floor - heights.stand
-            deep = depth(physique, float(velocity[1]), rise, g)
+            deep = crouch_depth(physique, velocity, rise, gravity)
+            strong = deep == deep  # not a number where the muscles can't
+            deep = max(deep, LEAST_CROUCH * size) if strong else float(strength(physique).depth[-1])
             need = 0.45 * push(np.array([0.0, deep + rise, 0.0]), np.zeros(3), velocity, gravity).duration * speed
             lead = min(ahead, 0.5 * need + 0.5 * max(ahead - behind, 0.0))
             # heels rise before the body leaves: it must be over the balls by then
@@ -202,14 +206,9 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             low = leave - towards * min(need, lead + 0.7 * behind) - 0.4 * more + [0.0, floor + heights.stand - deep, 0.0]
             leave[1] = floor + _over(heights.leave, np.linalg.norm(lead * towards + more))
             wind_up = 0.34 + 0.9 * np.sqrt(max(start.centre[1] - low[1], 0.0) / max(g, 3.0))
+    velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
-                push(leave - low, passing, velocity, gravity))
-
-
-def depth(physique: Physique, velocity: float, rise: float, gravity: float) -> float:
-    """How deep [m] a body crouches so that its push brings it to `velocity` [m/s] upward."""
-    spare = MEAN_PUSH * 9.81 * physique.strength - gravity
-    return max(velocity**2 / (2.0 * max(spare, 0.1)) - rise, 0.07 * physique.height / 1.741)
+                push(leave - low, passing, velocity, gravity), strong)
 
 
 def _over(height: float, aside: float) -> float:

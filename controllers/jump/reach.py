@@ -9,7 +9,10 @@ from ..navigation import gap
 from .ballistics import along
 from .dynamics import Physique
 from .path import Path, measures
+from .windup import strongest
 
+RUNNER = 4.2
+"""What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
 CLEAR = 0.05
 """How near to something a flying body may come [m]."""
 
@@ -25,18 +28,16 @@ class Refused(Unable):
 
 def fault(physique: Physique, way: Path, around, floor: float) -> str:
     """Why a path can't be gone, or nothing. around: boxes and pillars; floor: of the take-off [m]."""
-    size = physique.height / 1.741
     if not all(np.isfinite(part).all() for part in (way.low, way.leave, way.land, way.velocity)):
         return "there is no such arc"
-    crouch = floor + measures(physique).stand - way.low[1]
-    deepest = 0.46 * size * physique.flexibility
-    if crouch > deepest + 1e-6:
-        return (f"taking off with {np.linalg.norm(way.velocity):.1f} m/s needs a crouch of {crouch:.2f} m, "
-                f"deeper than the {deepest:.2f} m of this body")
+    if not way.strong:
+        most = strongest(physique, way.leave[1] - floor - measures(physique).stand, way.gravity)
+        return (f"it would have to take off with {np.linalg.norm(way.velocity):.1f} m/s, "
+                f"{way.velocity[1]:.1f} of them upward; this body reaches {most:.1f} m/s straight up")
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
-    strongest = 9.81 * physique.strength * (4.2 if way.passing.any() else 3.1)
-    if force > strongest:
-        return f"the push needs {force / 9.81:.1f} times this body's weight on Earth; it has {strongest / 9.81:.1f}"
+    if way.passing.any() and force > RUNNER * 9.81 * physique.strength:
+        return (f"the push needs {force / 9.81:.1f} times this body's weight on Earth; "
+                f"its leg has {RUNNER * physique.strength:.1f}")
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
     return blocked(physique, way, around)
