@@ -38,6 +38,11 @@ class Jumping:
     time: float = 0.0
     fault: str = ""
 
+    @property
+    def landed(self) -> bool:
+        """Whether the feet have come down."""
+        return self.time >= self.plan.touch_down
+
 
 class Jump:
     """Jumps to where `intent.leap` says, from rest, a walk or a run.
