@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -24,12 +23,11 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from assets import path as asset
-from controllers.body import forward_kinematics
 
 from .film import scenes, worlds
 from .log import digest
-from .output import named, output_folder
-from .quality import Quality, measure
+from .output import output_folder, whole
+from .quality import Quality, quality_of
 from .recorder import recorder
 from .scenario import Scenario, ScenarioError, load, locate
 from .world import DT, RATE
@@ -137,13 +135,9 @@ def figures(film: Scenario, controller: Any) -> Figures:
     run = list(islice(worlds(film, controller), ticks + 1))
     took = time.perf_counter() - started
     quality, speed, distance = Quality(), 0.0, 0.0
-    natural = getattr(getattr(controller, "library", None), "accelerations", None)
-    for states in zip(*([character.state for character in world.characters] for world in run)):
-        skeleton = controller.skeleton
-        roots, rotations = (np.stack([getattr(s.pose, part) for s in states]) for part in ("root", "rotations"))
-        measured = measure(skeleton, *forward_kinematics(skeleton, roots, rotations), DT, natural)
-        quality = quality.merged(measured)
-        ground = np.stack([s.ground[:2] for s in states])
+    for who in range(len(film.actors)):
+        quality = quality.merged(quality_of(run, who))
+        ground = np.stack([world.characters[who].state.ground[:2] for world in run])
         steps = np.linalg.norm(np.diff(ground, axis=0), axis=-1)
         distance = max(distance, float(steps.sum()))
         # over half a second, so that it is the walker's speed and not that of a swaying chest
@@ -210,15 +204,11 @@ def _entry(file: Path) -> Entry | None:
 def _save_poster(picture: np.ndarray, file: Path) -> None:
     from PIL import Image
 
-    part = file.with_name(f"{file.stem}.part.png")
-    with named(file):
+    with whole(file) as part:
         Image.fromarray(picture).save(part, format="png")
-        os.replace(part, file)
 
 
 def _write(file: Path, text: str) -> None:
     """Write a file that appears whole or not at all."""
-    part = file.with_name(f"{file.name}.part")
-    with named(file):
+    with whole(file) as part:
         part.write_text(text, encoding="utf-8")
-        os.replace(part, file)

@@ -43,6 +43,21 @@ def output_folder(path: str | Path) -> Path:
 
 
 @contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """Where to write a file that is to appear whole or not at all; it takes its place when nothing went wrong.
+
+    OutputError as of `named`.
+    """
+    part = path.with_name(f"{path.name}.part")
+    with named(path):
+        try:
+            yield part
+            os.replace(part, path)
+        finally:
+            part.unlink(missing_ok=True)
+
+
+@contextmanager
 def named(path: Path) -> Iterator[None]:
     """What the system or an encoder refuses inside becomes an OutputError that names the path."""
     try:

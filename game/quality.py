@@ -1,20 +1,22 @@
 """How good a motion is, judged from its poses alone: drift and skate of the feet, floor, accelerations.
 
-Nothing here knows a controller, its foot lock or its labels: contact is what the detector of
+No foot lock and no label of a controller counts: contact is what the detector of
 `controllers.body.contact` sees in the final pose, at the height of flat stance and slow.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from controllers.body import Skeleton
+from controllers.body import Skeleton, forward_kinematics
 from controllers.body.contact import contact_height, contact_points, detect_contacts, foot_drift
 from controllers.locomotion.cycles import ACCELERATION_RATE, joint_acceleration
+
+from .world import DT, World
 
 GATE = 0.01
 """Higher than this above its place in flat stance [m] no point of a foot counts as standing."""
@@ -93,6 +95,15 @@ def measure(skeleton: Skeleton, positions: np.ndarray, orientations: np.ndarray,
     return Quality(len(positions) * dt, len(drift), float(drift.mean()) if len(drift) else 0.0,
                    float(drift.max(initial=0.0)), int(standing.sum()), float(sliding.mean()) if len(sliding) else 0.0,
                    max(0.0, rest - float(points[..., 1].min())), acceleration, joint)
+
+
+def quality_of(worlds: Sequence[World], who: int) -> Quality:
+    """The quality of character `who` over worlds one step apart."""
+    controller, poses = worlds[-1].characters[who].controller, [world.characters[who].state.pose for world in worlds]
+    posed = forward_kinematics(controller.skeleton, np.array([pose.root for pose in poses], float),
+                               np.array([pose.rotations for pose in poses], float))
+    natural = getattr(getattr(controller, "library", None), "accelerations", None)
+    return measure(controller.skeleton, *posed, DT, natural)
 
 
 def running(hips: np.ndarray, dt: float) -> np.ndarray:

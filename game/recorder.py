@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from controllers.body import Clip, Pose, Skeleton
 
-from .output import named, output_file, output_folder
+from .output import named, output_file, output_folder, whole
 
 PICTURE = re.compile(r"frame_\d{5,}\.png")
 
@@ -140,10 +140,8 @@ class Pictures:
         from PIL import Image
 
         _check(frame, self.size)
-        part, file = self.path / "frame.part", self.path / f"frame_{self.count:05d}.png"
-        with named(file):
+        with whole(self.path / f"frame_{self.count:05d}.png") as part:
             Image.fromarray(frame[..., :3]).save(part, format="png", compress_level=1)
-            os.replace(part, file)
         self.count += 1
 
     def __exit__(self, kind, *rest) -> None:
@@ -165,14 +163,8 @@ def write_motion(clip: Clip, path: str | Path) -> None:
     """Write a clip as BVH; the file appears whole or not at all. OutputError where it can't be written."""
     from controllers.mocap import write_bvh
 
-    path = output_file(path, ".bvh")
-    part = path.with_name(f"{path.stem}.part{path.suffix}")
-    with named(path):
-        try:
-            write_bvh(clip, part)
-            os.replace(part, path)
-        finally:
-            part.unlink(missing_ok=True)
+    with whole(output_file(path, ".bvh")) as part:
+        write_bvh(clip, part)
 
 
 def _whole(part: Path, path: Path) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..output import named, output_file
+from ..output import output_file, whole
 from ..render import skin
 from ..render.mesh import Body, Mesh
 from .twotone import cut
@@ -87,16 +86,10 @@ class Glb:
         text = json.dumps(self.json, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode()
         text += b" " * (-len(text) % 4)
         data = bytes(self.data) + b"\0" * (-len(self.data) % 4)
-        part = path.with_name(f"{path.stem}.part{path.suffix}")
-        with named(path):
-            try:
-                with open(part, "wb") as file:
-                    file.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data)))
-                    file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-                    file.write(struct.pack("<I4s", len(data), b"BIN\0") + data)
-                os.replace(part, path)
-            finally:
-                part.unlink(missing_ok=True)
+        with whole(path) as part, open(part, "wb") as file:
+            file.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data)))
+            file.write(struct.pack("<I4s", len(text), b"JSON") + text)
+            file.write(struct.pack("<I4s", len(data), b"BIN\0") + data)
         return path
 
 

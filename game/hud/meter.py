@@ -7,11 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from controllers.body import forward_kinematics
-
-from ..quality import Quality, measure
+from ..quality import Quality, quality_of
 from ..session import Moment
-from ..world import DT, World
 from . import style
 from .toolkit import imgui
 from .trace import STEPS, recent
@@ -70,17 +67,6 @@ class Meter:
             imgui.end_table()
         if self.last.joint:
             imgui.text_disabled(f"most accelerated: {self.last.joint}")
-
-
-def quality_of(worlds: Sequence[World], who: int) -> Quality:
-    """The quality of character `who` over worlds one step apart."""
-    first = worlds[-1].characters[who]
-    states = [world.characters[who].state for world in worlds]
-    positions, orientations = forward_kinematics(
-        first.controller.skeleton, np.array([s.pose.root for s in states], float),
-        np.array([s.pose.rotations for s in states], float))
-    library = getattr(first.controller, "library", None)
-    return measure(first.controller.skeleton, positions, orientations, DT, getattr(library, "accelerations", None))
 
 
 def _row(*cells: str) -> None:

@@ -156,7 +156,7 @@ def test_the_key_keeps_what_was_played_since_the_last_reset(tmp_path):
             game.do("reset")
         game.tick(1 / RATE)
     game.do("export")
-    game.studio.finish(lambda line: None)
+    game.kept.studio.finish(lambda line: None)
     file, = tmp_path.glob("*.glb")
     assert any(file.name in text for _, text in game.notices)
     frames = len(described(file)["animations"][0]["extras"]["contacts"]["Player 1"])
