@@ -158,7 +158,7 @@ def test_the_key_keeps_what_was_played_since_the_last_reset(tmp_path):
     game.do("export")
     game.kept.studio.finish(lambda line: None)
     file, = tmp_path.glob("*.glb")
-    assert any(file.name in text for _, text in game.notices)
+    assert any(file.name in text for text in game.kept.notices)
     frames = len(described(file)["animations"][0]["extras"]["contacts"]["Player 1"])
     assert 15 <= frames <= 21
 
