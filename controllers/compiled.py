@@ -42,6 +42,11 @@ def cache_folder() -> Path:
     return folder
 
 
+def cold() -> bool:
+    """Whether these sources were never compiled here: the first run then takes half a minute longer."""
+    return not any(cache_folder().rglob("*.nbc"))
+
+
 def kernel(function=None, **options):
     """Decorate a function for compilation by numba in no-Python mode, cached. Options are njit's."""
     if function is None:

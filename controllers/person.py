@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .body.human import STATURE
+from .contract import Intent, Leap
 from .jump import GRAVITY, Jump, Physique
 from .locomotion import Locomotion
 from .scaled import Scaled
@@ -24,6 +27,13 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
     factor = physique.height / STATURE
     return Supervisor({"locomotion": walker if factor == 1.0 else Scaled(walker, factor),
                        "jump": Jump(physique, gravity)})
+
+
+def rehearse(someone: Any) -> None:
+    """One step and one jump of nobody, so that what they compile or load does not halt a game."""
+    state = someone.start((0.0, 0.0, 0.0))
+    for leap in (None, Leap(np.array([0.0, 0.0, 0.5]))):
+        state, _ = someone.step(state, Intent(leap=leap), 1.0 / 60.0)
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:

@@ -61,14 +61,19 @@ def say(text: str) -> None:
 
 def person_of(library: Path | None, character: Path | None = None) -> Any:
     """Who moves, with a gait library (the shipped one by default), in a character's body if one is named."""
-    from controllers.person import person
+    from controllers.compiled import cold
+    from controllers.person import person, rehearse
 
+    if cold():
+        say("compiling the motion, once: half a minute")
+    somebody = person(library)
+    rehearse(somebody)
     if character is None:
-        return person(library)
+        return somebody
     from ..character import load
     from ..embodied import Embodied
 
-    return Embodied.of(person(library), load(character))
+    return Embodied.of(somebody, load(character))
 
 
 def pixels_of(text: str) -> tuple[int, int]:
