@@ -26,7 +26,7 @@ TAKE_OFF_REACH, TOUCH_REACH, STAND_REACH = 0.965, 0.955, 0.98
 """How straight legs are, as shares of their length, as they take off, touch down, stand."""
 HALF_STANCE, SHOE = 0.10, 0.045
 """From the middle to a landing foot, and from a foot's line to the edge of its sole [m], at standard height."""
-MOST_LEAD = 0.68
+MOST_LEAD = 0.60
 """How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
 YIELD = (0.05, 0.13)
 """How long a runner's foot gives before it pushes, at least and at most [s]."""
@@ -102,7 +102,7 @@ def measures(physique: Physique) -> Measures:
     for angles, pitch, share in ((style.STAND, 0.0, STAND_REACH), (style.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH),
                                  (style.TOUCH, TOES_DOWN, TOUCH_REACH)):
         found.append(_height(physique, angles, pitch, share, feet))
-    return Measures(*found, 1.08 * found[1])
+    return Measures(*found, 1.035 * found[1])
 
 
 def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray) -> float:
