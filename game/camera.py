@@ -44,10 +44,12 @@ class Follow(Armed):
 
     @staticmethod
     def behind(ground, settings: CameraSettings = CameraSettings(), yaw: float | None = None,
-               pitch: float = 0.25, distance: float = 4.0) -> Follow:
-        """A camera at rest behind a character's ground frame (3,), or looking along `yaw` [rad]."""
+               pitch: float = 0.25, distance: float = 4.0, level: float = 0.0) -> Follow:
+        """A camera at rest behind a character's ground frame (3,), or looking along `yaw` [rad].
+
+        level: how high the character's floor lies [m]."""
         yaw = float(ground[2]) if yaw is None else yaw
-        focus = np.array([ground[0], settings.height, ground[1]])
+        focus = np.array([ground[0], level + settings.height, ground[1]])
         return Follow(eye=focus - distance * forward(yaw, pitch), target=focus, focus=focus, yaw=yaw,
                       wanted_yaw=yaw, pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance,
                       settings=settings)
@@ -61,15 +63,15 @@ class Follow(Armed):
         """The player asks for the view from behind `heading` [rad]."""
         return replace(super().recentred(heading), still=10.0)
 
-    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = ()) -> Follow:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Follow:
         """The camera `dt` seconds later.
 
         ground: (3,) x, z [m], heading [rad] of whom it follows. velocity: (2,) its world velocity
-        along x and z [m/s], which the camera comes round behind. wish: what the hands do.
+        along x and z [m/s], which the camera comes round behind. wish: what the hands do. level: how
+        high the floor lies that carries it [m].
         """
         told, s = self._told(wish, dt), self.settings
-        here = np.array([ground[0], s.height, ground[1]])
-        focus = damp(told.focus, here, s.focus_halflife, dt)
+        focus = _near(told.focus, ground, level, s, dt)
         ahead = damp(told.ahead, s.ahead * np.array([velocity[0], 0.0, velocity[1]]), s.ahead_halflife, dt)
         slack = damp(told.slack, 0.0, s.change_halflife, dt)
         speed, wanted = math.hypot(velocity[0], velocity[1]), told.wanted_yaw
@@ -116,13 +118,14 @@ class Orbit(Armed):
         pivot = self.pivot - span * (right * sideways + up * upwards)
         return replace(self, pivot=above_floor(pivot), tracks=False)
 
-    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = ()) -> Orbit:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Orbit:
         """The camera `dt` seconds later; see `Follow.step`. The velocity plays no part."""
         told, s = self._told(wish, dt), self.settings
         if wish.pan != (0.0, 0.0):
             told = told.panned(*wish.pan)
-        pivot = np.array([ground[0], s.height, ground[1]]) if told.tracks else told.pivot
-        moved = replace(told, pivot=pivot, target=damp(told.target, pivot, s.focus_halflife, dt), **told._swung(dt))
+        pivot = np.array([ground[0], level + s.height, ground[1]]) if told.tracks else told.pivot
+        target = _near(told.target, ground, level, s, dt) if told.tracks else damp(told.target, pivot, s.focus_halflife, dt)
+        moved = replace(told, pivot=pivot, target=target, **told._swung(dt))
         return moved._reached(ground, dt, props, clear=False)
 
     def _pitches(self) -> tuple[float, float]:
@@ -145,7 +148,7 @@ class Free(Turned):
         """The speed divided by `factor`."""
         return replace(self, speed=min(max(self.speed / factor, 0.2), 20.0))
 
-    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = ()) -> Free:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Free:
         """The camera `dt` seconds later; see `Follow.step`. It keeps out of whoever stands at `ground`."""
         told, s = self._told(wish, dt), self.settings
         if wish.look != (0.0, 0.0):
@@ -174,14 +177,22 @@ class Free(Turned):
 PlayerCamera = Follow | Orbit | Free
 
 
-def cycled(camera: PlayerCamera, ground) -> PlayerCamera:
+def _near(focus: np.ndarray, ground, level: float, s: CameraSettings, dt: float) -> np.ndarray:
+    """What is looked at, `dt` seconds nearer to the character; slower up and down, where jumps go."""
+    here = np.array([ground[0], level + s.height, ground[1]])
+    nearer = damp(focus, here, s.focus_halflife, dt)
+    nearer[1] = damp(focus[1], here[1], s.level_halflife, dt)
+    return nearer
+
+
+def cycled(camera: PlayerCamera, ground, level: float = 0.0) -> PlayerCamera:
     """The next kind of camera: follow, orbit, free and round again; the eye stays where it is.
 
-    ground: (3,) of the character that the new one may look after.
+    ground: (3,) of the character that the new one may look after; level: how high it stands [m].
     """
     s, view = camera.settings, camera.view()
     yaw, pitch, arm = angles(view.target - view.eye)
-    here = np.array([ground[0], s.height, ground[1]])
+    here = np.array([ground[0], level + s.height, ground[1]])
     turned = {"eye": view.eye, "yaw": yaw, "wanted_yaw": yaw, "pitch": pitch, "settings": s}
     if isinstance(camera, Orbit):
         return Free(wanted_pitch=pitch, **turned)

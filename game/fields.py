@@ -36,6 +36,12 @@ Point = tuple[Metres, Metres]
 Point3 = tuple[Metres, Metres, Metres]
 Velocity = tuple[Speed, Turning, Speed]
 Colour = tuple[*(Annotated[float, Field(ge=0, le=1)],) * 3]
+Gravity = Annotated[float, Field(ge=0.2, le=50, allow_inf_nan=False)]  # m/s²
+Stature = Annotated[float, Field(ge=0.5, le=3, allow_inf_nan=False)]  # m, as far as `controllers.jump.Physique` goes
+Mass = Annotated[float, Field(ge=5, le=400, allow_inf_nan=False)]  # kg
+Strength = Annotated[float, Field(ge=0.05, le=20, allow_inf_nan=False)]
+Flexibility = Annotated[float, Field(ge=0.3, le=2, allow_inf_nan=False)]
+Airtime = Annotated[float, Field(ge=0.05, le=10, allow_inf_nan=False)]  # s
 FileName = Annotated[str, AfterValidator(_file_name)]
 
 

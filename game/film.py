@@ -14,10 +14,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from controllers.body.springs import damp
-from controllers.navigation import in_world
+from controllers.jump import GRAVITY
+from controllers.navigation import floor_at, in_world
+from controllers.person import built
 
 from .camera import CameraSettings, Follow, Orbit, between
 from .input import Wish
+from .input.script import Script
+from .jumping import explained
 from .rail import dolly, fixed
 from .scenario import Scenario
 from .scene import Camera, Caption, Overlays, Scene
@@ -30,6 +34,9 @@ CAPTION = (0.4, 4.4)
 FADE = 0.5
 """How long coming and going take [s]."""
 LOOK_HALFLIFE = 0.15
+REFUSED = 4.0
+"""How long is said why a jump was not made [s]."""
+EARTH = float(GRAVITY[1])
 HANDS_OFF = Wish()
 
 T = TypeVar("T")
@@ -37,32 +44,60 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One frame of a run: it shows the moment `alpha` (0 … 1) of the way from `before` to `after`."""
+    """One frame of a run: it shows the moment `alpha` (0 … 1) of the way from `before` to `after`.
+
+    refused: the jumps that were not made so far, and why.
+    """
 
     number: int
     time: float
     before: World
     after: World
     alpha: float
+    refused: tuple[str, ...] = ()
 
 
 def opening(scenario: Scenario, controller: Any) -> World:
-    """The world before the first step, every actor under the same controller."""
-    return World(props=scenario.stage(), characters=tuple(
-        Character(actor.name, controller, tint=actor.tint,
-                  state=controller.start(ground=(actor.start[0], actor.start[1], math.radians(actor.start[2]))))
-        for actor in scenario.actors))
+    """The world before the first step, every actor under the same controller, each in its own body."""
+    props, cast = scenario.stage(), []
+    for actor in scenario.actors:
+        someone, jumper = controller, actor.jumper(scenario.gravity)
+        if actor.body is not None or jumper.gravity[1] != EARTH:
+            someone = built(controller, jumper.physique, jumper.gravity)
+        x, z, heading = actor.start
+        state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
+        cast.append(Character(actor.name, someone, tint=actor.tint, state=state))
+    return World(tuple(cast), props)
+
+
+@dataclass(frozen=True, eq=False)
+class Act:
+    """A world of a run, and where every actor is in its script."""
+
+    world: World
+    scripts: tuple[Script, ...]
+
+    @property
+    def refused(self) -> tuple[str, ...]:
+        """The jumps that were not made so far, and why: a line for each."""
+        return tuple(f"{character.name}: {why}" for character, script in zip(self.world.characters, self.scripts)
+                     for why in script.refused)
+
+
+def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
+    """The run before the first step and after every one, without end."""
+    world, props = opening(scenario, controller), scenario.stage()
+    scripts = tuple(actor.script(actor.jumper(scenario.gravity), props) for actor in scenario.actors)
+    while True:
+        yield Act(world, scripts)
+        moves = [script.step(character.state, DT) for script, character in zip(scripts, world.characters)]
+        scripts = tuple(script for script, _ in moves)
+        world = world.step([intent for _, intent in moves])
 
 
 def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:
     """The world before the first step and after every one, without end."""
-    world = opening(scenario, controller)
-    scripts = [actor.script() for actor in scenario.actors]
-    while True:
-        yield world
-        moves = [script.step(character.state, DT) for script, character in zip(scripts, world.characters)]
-        scripts = [script for script, _ in moves]
-        world = world.step([intent for _, intent in moves])
+    return (act.world for act in acts(scenario, controller))
 
 
 def run(scenario: Scenario, controller: Any) -> Iterator[Frame]:
@@ -77,8 +112,13 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
 
     shown: replaces the overlays of the scenario and all its shots.
     """
-    for number, (before, old), (after, new), alpha in _sampled(takes(scenario, controller), scenario):
-        frame = Frame(number, number / scenario.fps, before, after, alpha)
+    told: dict[str, float] = {}
+    for number, (first, old), (second, new), alpha in _sampled(takes(scenario, controller), scenario):
+        before, after = first.world, second.world
+        frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused)
+        for line in first.refused:
+            told.setdefault(line, frame.time)
+        why = tuple(line for line, since in told.items() if frame.time < since + REFUSED)
         held = new.crew if new.shot is old.shot else old.crew  # nothing lies between two shots
         cameras = [between(a, b, alpha) for a, b in zip(old.crew, held)]
         drawn = figures(before, after, alpha)
@@ -88,9 +128,10 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
         for table, camera, part in zip(old.shot.cameras, cameras, places):
             names = next(o for o in (table.overlays, old.shot.overlays, scenario.overlays) if o is not None)
             corner = part[0] == 0.0 and part[1] == lowest
-            title = getattr(table, "title", "")
-            made.append(Scene(camera, drawn, after.props, overlays(names) if shown is None else shown,
-                              (title,) if title else (), caption=caption if corner else None, part=part))
+            title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
+            text = ((title,) if title else ()) + (why if not made else ())
+            made.append(Scene(camera, explained(drawn, before, after, alpha, over), after.props, over,
+                              text, caption=caption if corner else None, part=part))
         yield frame, tuple(made)
 
 
@@ -102,19 +143,20 @@ class Take:
     crew: tuple[Operator, ...]
 
 
-def takes(scenario: Scenario, controller: Any) -> Iterator[tuple[World, Take]]:
-    """Every world of a scenario with the take that films it, without end."""
+def takes(scenario: Scenario, controller: Any) -> Iterator[tuple[Act, Take]]:
+    """Every act of a scenario with the take that films it, without end."""
     take = None
     cuts = [round(shot.at * RATE) for shot in scenario.shots]
     ends = [shot.at for shot in scenario.shots[1:]] + [scenario.duration]
-    for world in worlds(scenario, controller):
+    for act in acts(scenario, controller):
+        world = act.world
         i = [i for i, cut in enumerate(cuts) if cut <= world.number][-1]
         shot = scenario.shots[i]
         if take is None or take.shot is not shot:
             take = Take(shot, tuple(Operator.ready(table, world, ends[i]) for table in shot.cameras))
         else:
             take = replace(take, crew=tuple(operator.step(world) for operator in take.crew))
-        yield world, take
+        yield act, take
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,12 +182,12 @@ class Operator:
         operator = Operator(table, watched, world.time, end, world.time)
         if table.kind in ("fixed", "dolly"):
             return replace(operator, target=_middle(world, watched, table.height) if table.target is None else np.array(table.target))
-        ground = world.characters[watched[0]].state.ground
+        ground, level = world.characters[watched[0]].state.ground, world.characters[watched[0]].level
         yaw, above = math.radians(table.around), math.radians(table.above)
         settings = CameraSettings(height=table.height, fov=math.radians(table.fov), nearest=0.5, highest=1.45,
                                   rest=0.0 if table.swing else math.inf)
         if table.target is None:
-            held = Follow.behind(ground, settings, float(ground[2]) + yaw, above, table.distance)
+            held = Follow.behind(ground, settings, float(ground[2]) + yaw, above, table.distance, level)
             if table.kind == "follow":
                 return replace(operator, held=held.placed(ground, world.props))
             target, yaw = held.target, held.yaw
@@ -157,7 +199,8 @@ class Operator:
     def step(self, world: World) -> Operator:
         """One tick on."""
         moved = replace(self, time=world.time)
-        state = world.characters[self.watched[0]].state
+        first = world.characters[self.watched[0]]
+        state = first.state
         if self.held is None:
             if self.table.target is not None:
                 return moved
@@ -165,7 +208,7 @@ class Operator:
         held, velocity = self.held, in_world(state.ground, state.velocity)
         if self.table.kind == "orbit":
             held = held.turned(math.radians(self.table.turn) * DT / max(self.end - self.start, DT))
-        return replace(moved, held=held.step(state.ground, velocity, HANDS_OFF, DT, world.props))
+        return replace(moved, held=held.step(state.ground, velocity, HANDS_OFF, DT, world.props, first.level))
 
     def view(self) -> Camera:
         """The camera."""
@@ -189,9 +232,10 @@ def _sampled(ticks: Iterator[T], scenario: Scenario) -> Iterator[tuple[int, T, T
 
 
 def _middle(world: World, watched: tuple[int, ...], height: float) -> np.ndarray:
-    """The middle (3,) [m] of some actors."""
-    ground = np.mean([world.characters[i].state.ground[:2] for i in watched], axis=0)
-    return np.array([ground[0], height, ground[1]])
+    """The middle (3,) [m] of some actors, `height` over what they stand on."""
+    people = [world.characters[i] for i in watched]
+    ground = np.mean([character.state.ground[:2] for character in people], axis=0)
+    return np.array([ground[0], height + np.mean([character.level for character in people]), ground[1]])
 
 
 def _caption(scenario: Scenario, shot: ShotTable, time: float) -> Caption | None:

@@ -17,10 +17,11 @@ from controllers.body.human import STATURE
 from controllers.body.support import hull, margin, sole_corners, standing_corners
 from controllers.body.anatomy import centre_of_mass
 from controllers.contract import Leap
-from controllers.jump import Jump, Physique, Plan
+from controllers.jump import Jump, Physique
 from controllers.jump.ballistics import along
 from controllers.jump.muscles import POINTED, bend_kernel, muscle, spring_force
 from controllers.jump.path import Path
+from controllers.jump.plan import Plan
 from controllers.jump.reach import fault
 from controllers.navigation import floor_at, gap
 

@@ -47,6 +47,7 @@ class CameraSettings:
     ahead: float = 0.35
     ahead_halflife: float = 0.35
     focus_halflife: float = 0.10
+    level_halflife: float = 0.16
     orbit_halflife: float = 0.06
     arm_halflife: float = 0.25
     change_halflife: float = 0.30

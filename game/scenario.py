@@ -7,13 +7,21 @@ import tomllib
 from pathlib import Path as File
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
 from assets import path as asset
+from controllers.body.human import STATURE
 from controllers.contract import Intent
+from controllers.jump import Jump as JumpController
+from controllers.jump import Physique
+from controllers.jump.ballistics import apex_airtime
+from controllers.jump.path import measures
+from controllers.navigation import floor_at
 
-from .fields import Colour, Degrees, FileName, Length, Metres, Moment, Pace, Point, Point3, Seconds, Table, Velocity, short
-from .input.script import Move, Script
+from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, Length, Mass, Metres, Moment, Pace, Point,
+                     Point3, Seconds, Stature, Strength, Table, Velocity, short)
+from .input.script import Jump, Move, Script
 from .obstacles import blocked
 from .rail import on_rail
 from .scene import Box, Goal, Pillar, Prop
@@ -25,7 +33,12 @@ class ScenarioError(ValueError):
 
 
 class MoveTable(Table):
-    """One move: exactly one of velocity, walk_to, path and stop. Angles in degrees."""
+    """One move: exactly one of velocity, walk_to, path, stop, jump_to and jump. Angles in degrees.
+
+    jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
+    velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
+    [m] it jumps. airtime: [s]; by default of the least effort.
+    """
 
     seconds: Seconds | None = Field(None, alias="for")
     velocity: Velocity | None = None
@@ -33,16 +46,26 @@ class MoveTable(Table):
     walk_to: Point | None = None
     path: Annotated[tuple[Point, ...], Field(min_length=1)] | None = None
     stop: Literal[True] | None = None
+    jump_to: Point | Point3 | None = None
+    jump: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] | None = None
+    airtime: Airtime | None = None
+    within: Length | None = None
     speed: Pace | None = None
     facing: Degrees | None = None
 
     @model_validator(mode="after")
     def _one_thing(self):
-        kinds = [k for k in ("velocity", "walk_to", "path", "stop") if getattr(self, k) is not None]
-        if len(kinds) != 1:
-            raise ValueError(f"needs exactly one of velocity, walk_to, path, stop; has {' and '.join(kinds) or 'none'}")
-        walks = kinds[0] in ("walk_to", "path")
-        if self.seconds is None and not walks:
+        kinds = [k for k in ("velocity", "walk_to", "path", "stop", "jump_to", "jump") if getattr(self, k) is not None]
+        feet = [k for k in kinds if k in ("velocity", "walk_to", "path")]
+        if len(kinds) != 1 and not (len(kinds) == 2 and "jump_to" in kinds and feet):
+            raise ValueError("needs exactly one of velocity, walk_to, path, stop, jump_to, jump, or jump_to with a run-up; "
+                             f"has {' and '.join(kinds) or 'none'}")
+        walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump")
+        for name, fits, with_ in (("airtime", self.jump_to is not None, "jump_to; a jump has its height"),
+                                  ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
+            if getattr(self, name) is not None and not fits:
+                raise ValueError(f"`{name}` goes with {with_}")
+        if self.seconds is None and not walks and not (jumps and not feet):
             raise ValueError(f"{kinds[0]} needs `for`, how many seconds it lasts")
         if self.until is not None and kinds[0] != "velocity":
             raise ValueError("`until` goes with velocity: where it has changed to at the end")
@@ -50,6 +73,8 @@ class MoveTable(Table):
             raise ValueError("`speed` goes with walk_to or path; velocity has its own")
         if self.facing is not None and kinds[0] == "velocity":
             raise ValueError("`facing` goes with walk_to, path or stop; velocity has its own ω")
+        if self.facing is not None and jumps:
+            raise ValueError("`facing` goes with walk_to, path or stop; who jumps faces where it goes")
         for name in ("velocity", "until"):
             value = getattr(self, name)
             if value is not None and abs(value[2]) > abs(value[0]) + 1e-9:
@@ -57,27 +82,63 @@ class MoveTable(Table):
                                  f"got v_t = {value[0]:g}, v_l = {value[2]:g}")
         return self
 
-    def move(self) -> Move:
-        """The same in SI units."""
+    def move(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Move:
+        """The same in SI units, for somebody who jumps among props."""
         points = self.path or ((self.walk_to,) if self.walk_to is not None else ())
+        leap = None
+        if self.jump is not None:
+            leap = Jump(airtime=_airtime_up(jumper, self.jump))
+        elif self.jump_to is not None:
+            x, z = self.jump_to[0], self.jump_to[-1]
+            y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
+            leap = Jump((x, y, z), self.airtime, self.within)
+            points = (*points, (x, z)) if points else ()
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
                     until=None if self.until is None else _forward(self.until),
                     points=points, speed=self.speed or 1.2,
-                    facing=None if self.facing is None else math.radians(self.facing))
+                    facing=None if self.facing is None else math.radians(self.facing), jump=leap)
+
+
+class BodyTable(Table):
+    """Whose body: height [m], mass [kg], strength and flexibility as shares of an adult's, sex.
+
+    By default the mass goes with the cube of the height.
+    """
+
+    height: Stature = STATURE
+    mass: Mass | None = None
+    strength: Strength = 1.0
+    flexibility: Flexibility = 1.0
+    sex: Literal["male", "female"] = "male"
+
+    def physique(self) -> Physique:
+        """The same for the controllers."""
+        mass = max(Physique.mass * (self.height / STATURE) ** 3, 5.0) if self.mass is None else self.mass
+        return Physique(mass, self.height, self.strength, self.flexibility, self.sex)
 
 
 class ActorTable(Table):
-    """Somebody. start: x, z [m] and heading [degrees]."""
+    """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
+
+    body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default.
+    """
 
     name: FileName = "A"
     tint: Colour = (0.75, 0.42, 0.22)
     start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
+    body: BodyTable | None = None
+    gravity: Gravity | None = None
     moves: tuple[MoveTable, ...] = ()
 
-    def script(self) -> Script:
-        """What it does."""
-        return Script(tuple(move.move() for move in self.moves))
+    def jumper(self, gravity: float) -> JumpController:
+        """Its jumps, where the scenario has that gravity."""
+        return JumpController(Physique() if self.body is None else self.body.physique(),
+                              (0.0, -(gravity if self.gravity is None else self.gravity), 0.0))
+
+    def script(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Script:
+        """What it does, among props."""
+        return Script(tuple(move.move(jumper, props) for move in self.moves))
 
 
 class BoxTable(Table):
@@ -136,7 +197,7 @@ class Scenario(Table):
     """A scripted run, and the short film of it.
 
     title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
-    pixels. overlays: what is drawn where a shot says nothing else. poster: the moment [s] that
+    pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. poster: the moment [s] that
     stands for the film.
     """
 
@@ -146,6 +207,7 @@ class Scenario(Table):
     fps: Annotated[int, Field(ge=1, le=240)] = 60
     size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
     overlays: Shown = ("mesh",)
+    gravity: Gravity = 9.81
     poster: Moment | None = None
     shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
     props: tuple[PropTable, ...] = ()
@@ -197,6 +259,13 @@ def _check_rail(where: str, camera, props: tuple[Prop, ...]) -> None:
         if at is not None:
             name = "eye" if camera.kind == "fixed" else "path"
             raise ValueError(f"{where}.{name}: the camera would be inside of props[{at}]; lead it round or over it")
+
+
+def _airtime_up(jumper: JumpController, height: float) -> float:
+    """The airtime [s] in which a body rises by `height` [m] after it has left the floor."""
+    heights = measures(jumper.physique)
+    start, end = np.array([0.0, heights.leave, 0.0]), np.array([0.0, heights.touch, 0.0])
+    return apex_airtime(start, end, max(height, end[1] - start[1]), jumper.gravity)
 
 
 def shipped() -> tuple[str, ...]:

@@ -21,7 +21,9 @@ from . import settings
 from .camera import Follow, PlayerCamera, between, cycled
 from .input.aim import Aim
 from .input.pilot import STEERING, Pilot
+from .input.script import jumping
 from .input.wish import Wish
+from .jumping import jump_of
 from .scene import Camera, Figure
 from .world import DT, RATE, Character, World, figures, ground_between
 
@@ -50,7 +52,7 @@ class Player:
     @staticmethod
     def behind(character: Character) -> Player:
         """Fresh hands, and a camera at rest behind a character."""
-        camera = Follow.behind(character.state.ground)
+        camera = Follow.behind(character.state.ground, level=character.level)
         return Player(Pilot(), camera, camera)
 
     def view(self, alpha: float) -> Camera:
@@ -136,8 +138,8 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
         state = character.state
         if player.camera.flown:  # the sticks fly the camera
             wish = Wish()
-        jump, jumping = jump_of(character)
-        aim = player.aim.step(wish, player.camera.yaw, state, jumping, DT) if jump is not None else player.aim
+        jump = jump_of(character)
+        aim = player.aim.step(wish, player.camera.yaw, state, jumping(state) is not None, DT) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
@@ -152,20 +154,16 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
 
 
-def jump_of(character: Character) -> tuple[Any, bool]:
-    """Somebody's jump controller, None for one that can't jump, and whether it is jumping now."""
-    jump = getattr(character.controller, "controllers", {}).get("jump")
-    return jump, jump is not None and character.state.memory.active == "jump"
-
-
 def _filmed(moment: Moment, who: int, wish: Wish, stepped: bool) -> Player:
     """A player whose camera is a tick further, after the character."""
-    old, new = moment.before.characters[who].state, moment.after.characters[who].state
+    first, second = moment.before.characters[who], moment.after.characters[who]
+    old, new, part = first.state, second.state, moment.fraction(1.0)
     still = moment.paused and not stepped
     velocity = np.zeros(2) if still else in_world(new.ground, new.velocity) / moment.slow
     player = moment.players[who]
     return replace(player, camera=player.camera.step(
-        ground_between(old, new, moment.fraction(1.0)), velocity, wish, DT, moment.after.props))
+        ground_between(old, new, part), velocity, wish, DT, moment.after.props,
+        first.level + part * (second.level - first.level)))
 
 
 def _done(moment: Moment, who: int, action: str) -> Moment:
@@ -185,11 +183,12 @@ def _done(moment: Moment, who: int, action: str) -> Moment:
         return _joined(moment)
     if name == "strafe_lock":
         return _with(moment, who, replace(player, pilot=player.pilot.toggled()))
-    ground = moment.after.characters[who].state.ground
+    character = moment.after.characters[who]
+    ground = character.state.ground
     if name == "recentre":
         return _with(moment, who, replace(player, camera=player.camera.recentred(float(ground[2]))))
     if name == "camera_mode":
-        return _with(moment, who, replace(player, camera=cycled(player.camera, ground)))
+        return _with(moment, who, replace(player, camera=cycled(player.camera, ground, character.level)))
     return moment
 
 
@@ -204,8 +203,8 @@ def _reset(moment: Moment) -> Moment:
         for first, now in zip(moment.opening.characters, moment.after.characters)))
     players = []
     for old, character in zip(moment.players, world.characters):
-        camera = Follow.behind(character.state.ground, old.camera.settings)
-        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera))
+        camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
+        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim()))
     return replace(moment, before=world, after=world, players=tuple(players), phase=0)
 
 

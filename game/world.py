@@ -28,6 +28,9 @@ TRAIL_LENGTH = 150
 FLOOR_LIFT = 0.01
 """How high trails and paths are drawn above the floor [m]."""
 
+RISE, CROUCH = 0.08, 0.45
+"""A pelvis no further than this above or below where it stands [m] lifts and lowers no camera."""
+
 
 @dataclass(frozen=True, eq=False)
 class Character:
@@ -44,6 +47,13 @@ class Character:
     tint: tuple[float, float, float] = (0.75, 0.42, 0.22)
     intent: Intent = field(default_factory=Intent)
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+
+    @property
+    def level(self) -> float:
+        """How high the floor seems to lie [m] that carries it, for whoever looks: in the air it goes along."""
+        floor, root = float(self.state.floor), float(self.state.pose.root[1])
+        over = root - floor - float(self.controller.skeleton.offsets[0, 1])
+        return floor + max(over - RISE, 0.0) + min(over + CROUCH, 0.0)
 
     def step(self, intent: Intent, number: int) -> Character:
         """One step on; `number` is that of the step that ends."""

@@ -4,15 +4,36 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from controllers.contract import CharacterState, Intent
+from controllers.contract import CharacterState, Intent, Leap
 from controllers.navigation import Path, Steering, follow, steer
 
 STEERING = Steering()
 ARRIVED = 0.12
 """A path is walked when no more than this is left of it [m]."""
+NEAR = 0.12
+"""A jump no farther than this [m] goes straight up: nobody turns for it."""
+ASKEW = 0.15
+"""A standing body faces where it jumps to within this [rad]."""
+PATIENCE = 1.0
+"""So long [s] a jump that can't be made from a stand is asked for."""
+AHEAD = 0.85, 0.5
+"""A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A jump to `place`, x, y, z [m]; None: straight up. airtime: [s], None for the least effort.
+
+    within: a runner jumps no farther from it than this [m]; None: as its speed suggests.
+    """
+
+    place: tuple[float, float, float] | None = None
+    airtime: float | None = None
+    within: float | None = None
 
 
 @dataclass(frozen=True)
@@ -22,7 +43,8 @@ class Move:
     seconds: how long; infinite for a path that takes as long as it takes.
     velocity, until: v_f [m/s], ω [rad/s], v_l [m/s] at the beginning and the end, linear between.
     points: x, z [m] to walk along from wherever the character is, instead of `velocity`.
-    speed: [m/s] along them. facing: a heading to hold [rad], or None.
+    speed: [m/s] along them. facing: a heading to hold [rad], or None. jump: what it ends with;
+    until it can begin, the rest of the move goes on.
     """
 
     seconds: float
@@ -31,17 +53,30 @@ class Move:
     points: tuple[tuple[float, float], ...] = ()
     speed: float = 1.2
     facing: float | None = None
+    jump: Jump | None = None
+
+    @property
+    def runs(self) -> bool:
+        """Whether it goes somewhere by foot."""
+        return bool(self.points) or any(self.velocity)
 
 
 @dataclass(frozen=True, eq=False)
 class Script:
-    """Where somebody is in a list of moves. steps: made of the current move. path, progress: along it."""
+    """Where somebody is in a list of moves.
+
+    steps: made of the current move. path, progress: along it. asked: for how many steps its jump was
+    asked for; jumped: whether it began. refused: why jumps were not made, so far.
+    """
 
     moves: tuple[Move, ...]
     index: int = 0
     steps: int = 0
     path: Path | None = None
     progress: float = 0.0
+    asked: int = 0
+    jumped: bool = False
+    refused: tuple[str, ...] = ()
 
     @property
     def done(self) -> bool:
@@ -52,20 +87,37 @@ class Script:
         """The script `dt` seconds later, and what it asks of a character in `state` meanwhile."""
         script = self
         while not script.done and script._over(state, dt):
-            script = replace(script, index=script.index + 1, steps=0, path=None, progress=0.0)
+            script = script._next(state)
         if script.done:
             return script, Intent()
         move = script.moves[script.index]
         if move.points and script.steps == 0:
             script = replace(script, path=_from_here(state.ground, move.points))
         script, intent = script._ask(move, state, dt)
+        if move.jump is not None:
+            script, intent = script._ask_jump(move, move.jump, state, intent)
         return replace(script, steps=script.steps + 1), intent
+
+    def _next(self, state: CharacterState) -> Script:
+        """The beginning of the next move."""
+        jump, refused = self.moves[self.index].jump, self.refused
+        if jump is not None and not self.jumped:
+            where = "up" if jump.place is None else "to ({:g}, {:g}, {:g})".format(*jump.place)
+            why = getattr(state.memory, "refused", "") or "it never came to where it could jump from"
+            refused = (*refused, f"no jump {where}: {why}")
+        return Script(self.moves, self.index + 1, refused=refused)
 
     def _over(self, state: CharacterState, dt: float) -> bool:
         move = self.moves[self.index]
-        if math.isinf(move.seconds):
+        if move.jump is not None and self.jumped:
+            return jumping(state) is None or jumping(state).landed
+        if self.steps * dt >= move.seconds - 0.5 * dt:
+            return True
+        if move.jump is not None and not move.runs:
+            return self.asked * dt > PATIENCE and jumping(state) is None
+        if move.points:
             return self.steps > 0 and (self.path is None or self.progress >= self.path.length - ARRIVED)
-        return self.steps * dt >= move.seconds - 0.5 * dt
+        return False
 
     def _ask(self, move: Move, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         if not move.points:
@@ -80,6 +132,31 @@ class Script:
             wish, progress = follow(self.path, state.ground, np.float64(progress), move.speed)
         intent = steer(state.ground, wish, move.facing, state.velocity[1], STEERING)
         return replace(self, progress=float(progress)), intent
+
+    def _ask_jump(self, move: Move, jump: Jump, state: CharacterState, intent: Intent) -> tuple[Script, Intent]:
+        """The same with the jump, once it is time for it: near enough at a run, turned to it at rest."""
+        if self.jumped or jumping(state) is not None:
+            return replace(self, jumped=True), Intent()
+        place = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place)
+        way = place[[0, 2]] - state.ground[:2]
+        far = float(np.hypot(*way))
+        if move.runs:
+            speed = float(np.hypot(state.velocity[0], state.velocity[2]))
+            ready = far <= (AHEAD[0] + AHEAD[1] * speed if jump.within is None else jump.within)
+        elif far > NEAR:
+            heading = math.atan2(*way)
+            intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
+            ready = abs(math.remainder(heading - float(state.ground[2]), math.tau)) < ASKEW
+        else:
+            ready = True
+        if not ready:
+            return self, intent
+        return replace(self, asked=self.asked + 1), replace(intent, leap=Leap(place, jump.airtime))
+
+
+def jumping(state: CharacterState) -> Any:
+    """What somebody who jumps remembers of it; None for everybody else."""
+    return state.memory.memory if getattr(state.memory, "active", "") == "jump" else None
 
 
 def _from_here(ground: np.ndarray, points) -> Path | None:

@@ -17,9 +17,10 @@ class Glide:
     halflife: float = 0.1
     skeleton: Skeleton = field(default_factory=human)
 
-    def start(self, ground=(0.0, 0.0, 0.0)) -> CharacterState:
+    def start(self, ground=(0.0, 0.0, 0.0), floor=0.0) -> CharacterState:
         ground = np.array(ground, float)
-        return CharacterState(ground, np.zeros(ground.shape), self._pose(ground), np.ones(ground.shape[:-1] + (4,), bool))
+        return CharacterState(ground, np.zeros(ground.shape), self._pose(ground), np.ones(ground.shape[:-1] + (4,), bool),
+                              floor=floor)
 
     def precondition(self, state, intent) -> float:
         return 1.0

@@ -25,7 +25,7 @@ def walked(controller, speed, steps=90):
 
 
 def test_in_the_standard_body_nothing_changes(walking):
-    (_, plain), (_, own) = walked(walking, 1.2), walked(Embodied(walking, mannequin(), 1.0), 1.2)
+    (_, plain), (_, own) = walked(walking, 1.2), walked(Embodied.of(walking, mannequin()), 1.2)
     a, b = plain.characters[0].state, own.characters[0].state
     assert np.array_equal(a.pose.rotations, b.pose.rotations) and np.array_equal(a.ground, b.ground)
 

@@ -52,7 +52,7 @@ FAULTS = [
     ("velocity = [1.2, 0.5, 0.3]", "velocity = [0.2, 0.5, 0.3]", "actors[0].moves[0]: velocity is [v_t, ω, v_l] and |v_l| ≤ |v_t|"),
     ("velocity = [1.2, 0.5, 0.3]", "velocity = [1.2, inf, 0.3]", "actors[0].moves[0].velocity[1]: input should be a finite number"),
     ("walk_to = [0, 0], speed", "walk_to = [0, 0], stop = true, speed", "actors[0].moves[1]: needs exactly one of"),
-    ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, path, stop; has none"),
+    ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, path, stop, jump_to, jump, or jump_to with a run-up; has none"),
     ("for = 1, velocity = [-0.5", "velocity = [-0.5", "actors[1].moves[0]: velocity needs `for`"),
     ('name = "B"', 'name = "a"', "actors need different names, in more than capitals; got A, a"),
     ('name = "B"', 'name = "b/../c"', "actors[1].name: files are named after it, so it needs letters"),
