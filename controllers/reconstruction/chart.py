@@ -19,7 +19,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body import human
-from ..body.rotations import exp, log, yaw
+from ..body.clip import mirror_index
+from ..body.rotations import exp, log, wrap, yaw
 
 SKELETON = human()
 """Whose body all recorded motion is put on."""
@@ -47,6 +48,24 @@ def _reference() -> np.ndarray:
 REFERENCE = _reference()
 """(J, 3, 3) the rotation of each joint that the zero vector stands for."""
 REFERENCE.setflags(write=False)
+
+
+def _mirror() -> tuple[np.ndarray, np.ndarray]:
+    """Which column each column of a mirror image comes from, and with which sign (WIDTH,)."""
+    swap = mirror_index(SKELETON)
+    place = {int(joint): k for k, joint in enumerate(JOINTS)}
+    partner = np.array([place[int(swap[joint])] for joint in JOINTS])
+    columns = np.concatenate([(3 * partner[:, None] + np.arange(3)).ravel(), np.arange(ANGLES, WIDTH)])
+    # height, pitch, roll, yaw rate, forward, leftward
+    return columns, np.concatenate([np.tile([1.0, -1.0, -1.0], len(JOINTS)), [1.0, 1.0, -1.0, -1.0, 1.0, -1.0]])
+
+
+_MIRROR_COLUMNS, _MIRROR_SIGNS = _mirror()
+
+
+def mirror(frames: np.ndarray) -> np.ndarray:
+    """Frames (..., WIDTH) with left and right exchanged."""
+    return frames[..., _MIRROR_COLUMNS] * _MIRROR_SIGNS
 
 
 def encode(root: np.ndarray, rotations: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
@@ -77,8 +96,7 @@ def encode(root: np.ndarray, rotations: np.ndarray, dt: float) -> tuple[np.ndarr
 def yaw_and_tilt(orientation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Heading (...) [rad], and pitch and roll (..., 2) [rad], of orientations (..., 3, 3) of the hips."""
     x, y, z, w = np.moveaxis(Rotation.from_matrix(orientation).as_quat(), -1, 0)
-    heading = 2 * np.arctan2(y, w)
-    heading = np.where(heading > np.pi, heading - 2 * np.pi, np.where(heading < -np.pi, heading + 2 * np.pi, heading))
+    heading = wrap(2 * np.arctan2(y, w))
     tilt = log(yaw(-heading) @ orientation)
     return heading, tilt[..., [0, 2]]
 
