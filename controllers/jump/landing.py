@@ -63,7 +63,7 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
     passes = False
     if pace > 1e-6:
         ahead = flat / pace
-        capture = (land - goal) @ ahead + pace * np.sqrt(goal[1] / gravity) * CATCH
+        capture = (land - goal) @ ahead + pace * np.sqrt((goal[1] - support[0, 1]) / gravity) * CATCH
         passes = bool(capture > ((support - goal) @ ahead).max())
     rate, sink = (PASS if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), 2.0)
     return Landing(np.array([rate, sink, rate]), land - goal, velocity, goal, passes)

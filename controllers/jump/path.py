@@ -30,10 +30,12 @@ MOST_LEAD = 0.60
 """How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
 YIELD = (0.05, 0.13)
 """How long a runner's foot gives before it pushes, at least and at most [s]."""
-OVER_BALLS = 0.03
+OVER_BALLS = 0.05
 """A standing jumper's centre of mass leaves so far ahead of the balls of the feet [m], at standard height."""
 SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
+SQUAT, DEEPEST_SQUAT = 0.6, 0.30
+"""How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
 LEAST_CROUCH = 0.07
 """A body crouches at least so deep [m], at standard height."""
 LEAST_AIRTIME = 0.30
@@ -164,13 +166,15 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     facing = yaw(start.heading)[:, 2]
     balls = float(((feet[:, :3] - middle) @ facing).max()) + OVER_BALLS * size
     g = -float(gravity[1])
+    # who jumps up lands with folded legs, and need not bring the body as high
+    squat = min(SQUAT * max(float(goal[1]) - floor, 0.0), DEEPEST_SQUAT * size)
     wind_up = 0.10
     low = start.centre + start.velocity * wind_up * [1.0, 0.0, 1.0]
     stance = feet[:, :3].mean(0) * [1.0, 0.0, 1.0]
     leave = middle * [1, 0, 1] + [0.0, floor + heights.leave, 0.0]
     trail, deep, strong = 0.0, 0.1, True
     for _ in range(12 if running else 6):
-        land = goal * [1, 0, 1] - trail * towards + [0.0, goal[1] + _over(heights.touch, trail), 0.0]
+        land = goal * [1, 0, 1] - trail * towards + [0.0, goal[1] + _over(heights.touch - squat, trail), 0.0]
         flight = airtime if airtime is not None else max(
             least_effort(leave, land, passing, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
             apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
@@ -203,7 +207,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             # heels rise before the body leaves: it must be over the balls by then
             more = max(balls - lead * float(towards @ facing), 0.0) * facing * (towards @ facing > -0.1)
             leave = middle * [1, 0, 1] + lead * towards + more
-            low = leave - towards * min(need, lead + 0.7 * behind) - 0.4 * more + [0.0, floor + heights.stand - deep, 0.0]
+            low = leave - towards * min(need, lead + 0.3 * behind) - 0.4 * more + [0.0, floor + heights.stand - deep, 0.0]
             leave[1] = floor + _over(heights.leave, np.linalg.norm(lead * towards + more))
             wind_up = 0.34 + 0.9 * np.sqrt(max(start.centre[1] - low[1], 0.0) / max(g, 3.0))
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end

@@ -157,9 +157,11 @@ class _Draft:
         start = vectors(self.start.rotations[ids])
         high = np.zeros((4, 3))
         high[0, 0], high[1, 0], high[2, 0] = -1.05, 1.25, -0.1
-        times = np.array([0.0, self.leave])
-        slopes = np.stack([self.start.rates[ids], np.zeros((4, 3))])
-        return turns(hermite(times, np.stack([start, high]), slopes, self.times))
+        passing = 0.5 * (start + high)
+        passing[1, 0] = max(start[1, 0], high[1, 0]) + 0.35  # the toes pass over the floor
+        times = np.array([0.0, 0.5 * self.leave, self.leave])
+        slopes = np.stack([self.start.rates[ids], (high - start) / self.leave, np.zeros((4, 3))])
+        return turns(hermite(times, np.stack([start, passing, high]), slopes, self.times))
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""

@@ -13,6 +13,9 @@ from .windup import strongest
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
+STOPS = 6.0, 0.5
+"""What legs give as they stop a fall, in an adult's weights on Earth at strength 1, and over which way [m], at
+standard height."""
 CLEAR = 0.05
 """How near to something a flying body may come [m]."""
 
@@ -40,6 +43,11 @@ def fault(physique: Physique, way: Path, around, floor: float) -> str:
                 f"its leg has {RUNNER * physique.strength:.1f}")
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
+    size, down = physique.height / 1.741, -float(way.falling[1])
+    spare = STOPS[0] * 9.81 * physique.strength + float(way.gravity[1])
+    stops = np.sqrt(2.0 * STOPS[1] * size * max(spare, 0.0))
+    if down > stops:
+        return f"it would land with {down:.1f} m/s downward; its legs stop {stops:.1f} m/s"
     return blocked(physique, way, around)
 
 
