@@ -21,7 +21,7 @@ from controllers.person import built
 from .camera import CameraSettings, Follow, Orbit, between
 from .input import Wish
 from .input.script import Script
-from .jumping import explained
+from .jumping import broken, explained
 from .rail import dolly, fixed
 from .scenario import Scenario
 from .scene import Camera, Caption, Overlays, Scene
@@ -118,7 +118,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
         frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused)
         for line in first.refused:
             told.setdefault(line, frame.time)
-        why = tuple(line for line, since in told.items() if frame.time < since + REFUSED)
+        why = tuple(part for line, since in told.items() if frame.time < since + REFUSED for part in broken(line))
         held = new.crew if new.shot is old.shot else old.crew  # nothing lies between two shots
         cameras = [between(a, b, alpha) for a, b in zip(old.crew, held)]
         drawn = figures(before, after, alpha)

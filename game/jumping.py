@@ -7,9 +7,9 @@ After Ooi 2015, chapter 4. Layers: "jump" the arc, "balance" centre of mass and 
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -30,7 +30,7 @@ from .scene import Arrow, Dot, Figure, Goal, Line, Overlays, Patch, Prop, Sketch
 from .world import Character, World
 
 LAYERS = ("jump", "balance", "forces")
-CAN, CANNOT, SEEN = (0.10, 0.80, 0.45), (0.95, 0.16, 0.08), (0.20, 0.62, 0.95)
+CAN, CANNOT, SEEN = (0.02, 0.52, 0.16), (0.80, 0.05, 0.02), (0.02, 0.24, 0.80)
 """Colours of a jump that can be made, of one that can't, of one that is being made."""
 GROUND, WEIGHT, PALE = (1.0, 0.72, 0.08), (0.55, 0.58, 0.62), (0.92, 0.92, 0.88)
 NEWTON = 0.42 / (73.0 * 9.81)
@@ -41,6 +41,8 @@ RING = 0.26
 """Where somebody lands [m]: its radius."""
 BEAT = 0.1
 """From one bead of an arc to the next [s]."""
+WIDE = 58
+"""Letters in a line of a picture's corner."""
 FADE = 0.5
 """So long after landing the arc is gone [s]."""
 
@@ -126,6 +128,11 @@ def explained(figures: Sequence[Figure], before: World, after: World, alpha: flo
     return tuple(drawn)
 
 
+def broken(line: str) -> tuple[str, ...]:
+    """A long line in parts that fit into a corner of the picture."""
+    return tuple(textwrap.wrap(line, WIDE))
+
+
 def moment_of(old: Character, new: Character, alpha: float) -> tuple[Plan, float] | None:
     """The jump that is drawn, and how far it is [s], `alpha` of the way between two worlds."""
     after, before = plan_of(new), plan_of(old)
@@ -156,8 +163,8 @@ def flown(plan: Plan, time: float) -> list[Sketch]:
 def _arc(arc: np.ndarray, beads: np.ndarray, tint, opacity: float) -> list[Sketch]:
     if not np.isfinite(arc).all():
         return []
-    return [Line("jump", arc, tint, 0.026, (0.75 * opacity, opacity)),
-            *(Dot("jump", bead, PALE, 0.024 * opacity) for bead in beads)]
+    return [Line("jump", arc, tint, 0.036, (0.8 * opacity, opacity)),
+            *(Dot("jump", bead, PALE, 0.030 * opacity) for bead in beads)]
 
 
 def ring(place: np.ndarray, tint, radius: float = RING) -> list[Sketch]:
@@ -165,9 +172,9 @@ def ring(place: np.ndarray, tint, radius: float = RING) -> list[Sketch]:
     angle = np.linspace(0.0, math.tau, 49)
     circle = np.stack([np.sin(angle), np.zeros(49), np.cos(angle)], 1)
     middle = place + [0.0, LIFT, 0.0]
-    return [Patch("jump", middle + radius * circle[:-1], tint, 0.22),
-            Line("jump", middle + radius * circle, tint, 0.035, flat=True),
-            Line("jump", middle + [0.0, 0.001, 0.0] + 0.3 * radius * circle, tint, 0.025, flat=True)]
+    return [Patch("jump", middle + radius * circle[:-1], tint, 0.3),
+            Line("jump", middle + radius * circle, tint, 0.045, flat=True),
+            Line("jump", middle + [0.0, 0.001, 0.0] + 0.3 * radius * circle, tint, 0.035, flat=True)]
 
 
 # --- balance

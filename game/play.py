@@ -19,16 +19,20 @@ from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
 from .input import (DEFAULT, Bindings, Keyboard, Wish, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
                     player_of, wheel_wish, wishes)
 from .input.names import key_label
+from .input.script import jumping
+from .jumping import broken
 from .keeper import Keeper
 from .log import Log, LogWriter, strayed
 from .rewind import Look
-from .scene import Camera, Overlays, Scene
-from .session import Moment, Timeline
+from .scene import OVERLAYS, Camera, Overlays, Scene
+from .session import Moment, Timeline, refused
+from .shots import OVERLAYS
 from .studio import Studio
 from .views import scenes
 from .world import DT, FixedStep, World
 
-OVERLAYS = ("mesh", "skeleton", "contacts", "trail", "path")
+SHOWS = {"show_jump" if name == "jump" else name: name for name in OVERLAYS}
+"""What shows an overlay and takes it away again: called as it is, but for the jump, which is jumped by its name."""
 PANELS = ("space", "plots", "quality", "settings")
 SHOWN_SPEED = 0.03
 """Below this speed [m/s] or [rad/s] a character is said to stand."""
@@ -50,7 +54,7 @@ class Play:
         self.timeline = Timeline(session.opening(controller, players) if world is None else
                                  session.begin(world, players))
         self.bindings, self.kept, self.tape = bindings, Keeper(log, studio), tape
-        self.overlays, self.panels = Overlays(path=True), frozenset()
+        self.overlays, self.panels = Overlays(path=True, jump=True), frozenset()
         self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
@@ -117,8 +121,9 @@ class Play:
 
     def do(self, action: str, player: int = 0) -> None:
         """Do what pressing the key or button of an action does, or set "name=value"."""
-        if action in OVERLAYS:
-            self.overlays = replace(self.overlays, **{action: not getattr(self.overlays, action)})
+        if action in SHOWS:
+            shown = SHOWS[action]
+            self.overlays = replace(self.overlays, **{shown: not getattr(self.overlays, shown)})
         elif action == "panels":
             self.panels = frozenset() if self.panels else frozenset(PANELS)
         elif action.removesuffix("_panel") in PANELS and action.endswith("_panel"):
@@ -202,8 +207,12 @@ class Play:
             self._play_back(self.tape)
 
     def _advance(self, asked_for: tuple[Wish, ...]) -> None:
+        before = self.now
         self.timeline.advance(asked_for)
         self.kept.add(asked_for)
+        for line in refused(before, self.now):
+            for part in broken(line):
+                self.kept.say(part)
 
     def _play_back(self, tape: Log) -> None:
         """One tick of a log that is watched."""
@@ -332,6 +341,8 @@ class Play:
         return ((*own[0], *told), *own[1:])
 
     def _moving(self, moment: Moment, who: int) -> str:
+        if jumping(moment.after.characters[who].state) is not None:
+            return "jumping"
         v_f, omega, v_l = moment.after.characters[who].state.velocity
         if math.hypot(v_f, v_l) < SHOWN_SPEED and abs(omega) < SHOWN_SPEED:
             moving = "standing"

@@ -24,8 +24,9 @@ from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, L
 from .input.script import Jump, Move, Script
 from .obstacles import blocked
 from .rail import on_rail
-from .scene import Box, Goal, Pillar, Prop
+from .scene import TINT, Box, Goal, Pillar, Prop
 from .shots import ShotTable, Shown
+from .stage import STAGES
 
 
 class ScenarioError(ValueError):
@@ -125,7 +126,7 @@ class ActorTable(Table):
     """
 
     name: FileName = "A"
-    tint: Colour = (0.75, 0.42, 0.22)
+    tint: Colour = TINT
     start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
     body: BodyTable | None = None
     gravity: Gravity | None = None
@@ -175,7 +176,7 @@ class GoalTable(Table):
     kind: Literal["goal"]
     place: Point3
     radius: Length = 0.4
-    tint: Colour = (0.95, 0.62, 0.15)
+    tint: Colour = Goal.tint
 
     def prop(self) -> Goal:
         """The same as the renderer takes it."""
@@ -197,7 +198,8 @@ class Scenario(Table):
     """A scripted run, and the short film of it.
 
     title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
-    pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. poster: the moment [s] that
+    pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. stage: what
+    stands there beside its own props. poster: the moment [s] that
     stands for the film.
     """
 
@@ -208,6 +210,7 @@ class Scenario(Table):
     size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
     overlays: Shown = ("mesh",)
     gravity: Gravity = 9.81
+    stage_name: Literal[tuple(STAGES)] | None = Field(None, alias="stage")
     poster: Moment | None = None
     shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
     props: tuple[PropTable, ...] = ()
@@ -234,8 +237,8 @@ class Scenario(Table):
         return self
 
     def stage(self) -> tuple[Prop, ...]:
-        """The props in SI units."""
-        return tuple(prop.prop() for prop in self.props)
+        """Everything that stands there, in SI units."""
+        return STAGES.get(self.stage_name or "", ()) + tuple(prop.prop() for prop in self.props)
 
     @property
     def frames(self) -> int:

@@ -24,7 +24,8 @@ from .input.pilot import STEERING, Pilot
 from .input.script import jumping
 from .input.wish import Wish
 from .jumping import jump_of
-from .scene import Camera, Figure
+from .scene import TINT, Camera, Figure
+from .stage import COURSE
 from .world import DT, RATE, Character, World, figures, ground_between
 
 KEPT = 30 * RATE
@@ -33,7 +34,7 @@ SLOWER = (1, 2, 4, 10)
 """Slow motion: how many ticks one step of the world takes."""
 APART = 1.2
 """How far from one another players start [m]."""
-TINTS = ((0.75, 0.42, 0.22), (0.20, 0.46, 0.72))
+TINTS = (TINT, (0.20, 0.46, 0.72))
 """What tells the players apart."""
 ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"))
 """What `advance` does of a wish's `pressed`, beside "back=N" and settings, "name=value"."""
@@ -93,8 +94,8 @@ class Moment:
 
 
 def opening(controller: Any, players: int = 1) -> Moment:
-    """The first moment: so many players side by side on an empty stage."""
-    return begin(World(tuple(_newcomer(controller, n, np.zeros(3)) for n in range(players))), players)
+    """The first moment: so many players side by side, with a course to jump on to their left."""
+    return begin(World(tuple(_newcomer(controller, n, np.zeros(3)) for n in range(players)), COURSE), players)
 
 
 def begin(world: World, players: int = 1) -> Moment:
@@ -152,6 +153,16 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
         intents.append(replace(command.intent(state, player.steering), leap=leap))
     intents += [Intent()] * (len(moment.after.characters) - len(intents))
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
+
+
+def refused(before: Moment, after: Moment) -> tuple[str, ...]:
+    """Why jumps that players had asked for were given up in the last step: a line for each."""
+    lines = []
+    for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
+        if old.aim.waiting > 0.0 and new.aim == Aim() and jumping(now.state) is None and now is not was:
+            why = getattr(was.state.memory, "refused", "") or "no foot stood ready"
+            lines.append(f"no jump: {why}")
+    return tuple(lines)
 
 
 def _filmed(moment: Moment, who: int, wish: Wish, stepped: bool) -> Player:

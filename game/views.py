@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from .jumping import explained, preview
+from .jumping import broken, explained, preview
 from .log import Log, replay, strayed
 from .scene import Camera, Overlays, Scene
 from .session import Moment
@@ -23,7 +23,7 @@ def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays:
     aimed = [preview(character, player.aim, after.props) for player, character in zip(moment.players, after.characters)]
     people = explained(figures(before, after, fraction), before, after, fraction, overlays, aimed)
     text = tuple(text) or ((),) * len(cameras)
-    text = tuple((*lines, f"no jump: {seen.fault}") if seen is not None and seen.fault else lines
+    text = tuple((*lines, *broken(f"no jump: {seen.fault}")) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))
     return tuple(Scene(camera, people, moment.after.props, overlays, lines, part=(i * width, 0.0, width, 1.0))
                  for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))

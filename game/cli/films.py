@@ -23,7 +23,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
            size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
-           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path.")] = None,
+           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path, jump, balance, forces.")] = None,
            library: Library = None, character: Wearing = None,
            background: Annotated[bool, typer.Option("--background", hidden=True, help="Yield to other programs; print progress as lines.")] = False) -> None:
     """Film a scenario or an input log without a display, or write a scenario's motion as BVH."""
@@ -57,8 +57,15 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     film = film if size is None else film.at_size(pixels_of(size))
     shown = None if overlay is None else overlays(overlays_of(overlay))
     controller = person_of(library, character)
-    _draw((scene for _, scene in scenes(film, controller, shown)), film.frames, film.title, out, film.size, film.fps,
-          preset, background)
+    refused: dict[str, None] = {}
+
+    def drawn():
+        for frame, made in scenes(film, controller, shown):
+            refused.update(dict.fromkeys(frame.refused))
+            yield made
+    _draw(drawn(), film.frames, film.title, out, film.size, film.fps, preset, background)
+    for line in refused:
+        say(f"gambol: {line}")
 
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,

@@ -33,7 +33,7 @@ AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 STEP_UP = 0.95
 """The ring climbs onto whatever is no higher than this over the feet [m]."""
 PATIENCE = 0.9
-"""So long a jump that was asked waits for the feet to be ready [s]."""
+"""So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
 
@@ -59,7 +59,8 @@ class Aim:
         if not wish.jump:
             if self.aiming:
                 return replace(self, aiming=False, waiting=PATIENCE)
-            return replace(self, waiting=max(self.waiting - dt, 0.0)) if self.waiting > dt else Aim()
+            given_up = self.waiting <= dt or not self.moving and getattr(state.memory, "refused", "")
+            return Aim() if given_up else replace(self, waiting=self.waiting - dt)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
         moving = speed > MOVING
