@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +28,8 @@ FRESH = 0.06
 """A foot has just struck while the body is no further than this past it [m]."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
+HIGHER = (1.12, 1.26, 1.42, 1.6)
+"""What the airtime is multiplied by until the arc clears what stands in its way."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
 
@@ -100,10 +104,23 @@ class Jump:
         for thing in around:
             if gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0:
                 raise Refused("the target is inside something solid", self._nearest(state, start, place, leap.airtime, around))
-        reason = self._fault(state, start, place, leap.airtime, around)
+        way, reason = self.arc(start, place, float(state.floor), leap.airtime, around)
         if reason:
             raise Refused(reason, self._nearest(state, start, place, leap.airtime, around))
-        return plan(self.physique, start, place, float(state.floor), self.gravity, leap.airtime)
+        return plan(self.physique, start, place, float(state.floor), self.gravity, way.airtime)
+
+    def arc(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
+            around: Sequence[Any] = ()) -> tuple[Path, str]:
+        """The path to a place and why it can't be gone, if so. Without an airtime, an arc that something
+        is in the way of is tried higher."""
+        way = self.path(start, place, floor, airtime)
+        reason = fault(self.physique, way, around, floor)
+        if reason and airtime is None and way.strong:
+            for higher in HIGHER:
+                other = self.path(start, place, floor, way.airtime * higher)
+                if not fault(self.physique, other, around, floor):
+                    return other, ""
+        return way, reason
 
     def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None) -> Path:
         """The path estimate alone: the arc to draw while aiming."""
@@ -184,9 +201,6 @@ class Jump:
         standing = np.asarray(state.contacts).reshape(2, 2).any(1)
         return int(np.argmax(standing)) if standing.sum() == 1 else None
 
-    def _fault(self, state, start, place, airtime, around) -> str:
-        return fault(self.physique, self.path(start, place, float(state.floor), airtime), around, float(state.floor))
-
     def _nearest(self, state, start, place, airtime, around) -> np.ndarray | None:
         """The farthest place on the way to the target that can be reached, by bisection; None if none can."""
         here = np.append(start.feet[:, :3].mean(0)[[0, 2]], 0.0)[[0, 2, 1]]
@@ -196,7 +210,7 @@ class Jump:
             middle = 0.5 * (low + high)
             there = here + middle * (place - here)
             there[1] = floor_at(there[0], there[2], around, max(place[1], here[1]) + 1e-6) if around else there[1]
-            if self._fault(state, start, there, airtime, around):
+            if self.arc(start, there, float(state.floor), airtime, around)[1]:
                 high = middle
             else:
                 low, found = middle, there
