@@ -1,0 +1,145 @@
+"""The jump controller: pure, the same twice, and clear about what it can't do before it winds up."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from controllers.contract import Intent, Leap
+from controllers.jump.controller import Jump, Jumping
+from controllers.jump.dynamics import Physique
+from controllers.jump.reach import Refused
+from game.scene import Box, Goal, Pillar
+
+FPS = 60
+WALL = Box((0.0, 1.5, 0.8), (3.0, 3.0, 0.2))
+ROOF = Box((0.0, 1.85, 0.4), (3.0, 0.1, 3.0))
+
+
+def leap(z, y=0.0, airtime=None, around=()):
+    return Intent(np.zeros(3), Leap(np.array([0.0, y, z]), airtime), around)
+
+
+def bits(state):
+    return b"".join(np.ascontiguousarray(a).tobytes() for a in (
+        state.ground, state.velocity, state.pose.root, state.pose.rotations, state.contacts, np.float64(state.floor)))
+
+
+def played(jump, state, intent=Intent()):
+    """The states of a whole jump."""
+    states = [state]
+    while jump.status(states[-1]).kind == "running" and len(states) < 400:
+        states.append(jump.step(states[-1], intent, 1 / FPS)[0])
+    return states
+
+
+def test_a_jump_replays_to_the_bit_and_leaves_its_states_alone(jump, standing):
+    first = jump.enter(standing, leap(0.7))
+    before = bits(first), first.memory.time
+    states = played(jump, first)
+    assert (bits(first), first.memory.time) == before
+    again = played(jump, jump.enter(standing, leap(0.7)))
+    assert [bits(s) for s in states] == [bits(s) for s in again] and len(states) > 60
+    assert bits(jump.step(states[40], Intent(), 1 / FPS)[0]) == bits(states[41])
+
+
+def test_it_ends_standing_over_the_place_and_says_so(jump, standing):
+    last = played(jump, jump.enter(standing, leap(0.5)))[-1]
+    assert jump.status(last).kind == "done" and last.contacts.all()
+    feet = last.pose.root[[0, 2]] - [0.0, 0.5]
+    assert np.linalg.norm(feet) < 0.15 and np.linalg.norm(last.velocity[[0, 2]]) < 0.2
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(0.004, 0.1))
+def test_any_step_comes_through(jump, standing, dt):
+    state = jump.enter(standing, leap(0.4))
+    for _ in range(30):
+        state, pose = jump.step(state, Intent(), dt)
+    assert np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.1, 0.2, np.nan])
+def test_a_step_must_be_one(jump, standing, dt):
+    with pytest.raises(ValueError, match="dt"):
+        jump.step(jump.enter(standing, leap(0.4)), Intent(), dt)
+
+
+@pytest.mark.parametrize(("physique", "intent", "reason"), [
+    (Physique(), Intent(np.zeros(3)), "nobody asked"),
+    (Physique(), leap(np.nan), "finite"),
+    (Physique(), leap(np.inf), "finite"),
+    (Physique(), Intent(np.zeros(3), Leap(np.array([0.0, 1.0]))), "three"),
+    (Physique(), leap(0.5, airtime=0.0), "airtime"),
+    (Physique(), leap(0.5, airtime=-1.0), "airtime"),
+    (Physique(), leap(0.5, airtime=np.nan), "airtime"),
+    (Physique(), leap(0.5, airtime=1e9), "airtime"),
+    (Physique(), leap(0.8, 1.0, around=(WALL,)), "inside"),
+    (Physique(), leap(1.3, around=(WALL,)), "would hit"),
+    (Physique(), leap(1.3, around=(Pillar((0.0, 0.0, 0.8)),)), "would hit"),
+    (Physique(), leap(1.2, around=(ROOF,)), "head would hit"),
+    (Physique(), leap(8.0), "take off with"),
+    (Physique(), leap(0.8, 2.0), "take off with"),
+    (Physique(strength=0.15), leap(1.0), "take off with"),
+    (Physique(), leap(0.5, airtime=2.0), "take off with"),
+    (Physique(), leap(1.0, -30.0), "land with"),
+], ids=lambda v: v if isinstance(v, str) else "")
+def test_what_can_t_be_is_refused_before_the_wind_up_and_says_why(standing, physique, intent, reason):
+    with pytest.raises(Refused, match=reason):
+        Jump(physique).enter(standing, intent)
+
+
+def test_a_refusal_names_a_place_that_can_be_reached(jump, standing):
+    with pytest.raises(Refused) as refused:
+        jump.enter(standing, leap(5.0))
+    nearest = refused.value.nearest
+    assert 0.8 < nearest[2] < 5.0 and f"{nearest[2]:.2f}" in str(refused.value)
+    jump.enter(standing, Intent(np.zeros(3), Leap(nearest)))
+
+
+def test_a_goal_stops_nobody(jump, standing):
+    assert isinstance(jump.enter(standing, leap(0.8, around=(Goal((0.0, 0.0, 0.8)),))).memory, Jumping)
+
+
+@pytest.mark.parametrize("values", [{"mass": 0.0}, {"mass": np.nan}, {"height": 0.0}, {"strength": -1.0}, {"flexibility": 9.0}])
+def test_no_body_is_like_that(values):
+    with pytest.raises(ValueError, match=next(iter(values))):
+        Physique(**values)
+
+
+@pytest.mark.parametrize("gravity", [(0, 0, 0), (0, 9.81, 0), (1, -9.81, 0), (0, np.nan, 0), (0, -9.81)])
+def test_gravity_pulls_down(gravity):
+    with pytest.raises(ValueError, match="gravity"):
+        Jump(gravity=gravity)
+
+
+def test_stronger_bodies_and_lighter_places_reach_further(standing):
+    def farthest(jump):
+        with pytest.raises(Refused) as refused:
+            jump.enter(standing, leap(30.0))
+        return refused.value.nearest[2]
+    weak, usual = farthest(Jump(Physique(strength=0.8))), farthest(Jump())
+    moon = farthest(Jump(gravity=(0.0, -1.62, 0.0)))
+    assert weak < usual < moon
+
+
+def test_what_comes_in_the_way_in_the_air_ends_the_jump_with_a_reason(jump, standing):
+    state = jump.enter(standing, leap(0.9))
+    made = state.memory.plan
+    while state.memory.time < made.take_off + 0.1:
+        state, _ = jump.step(state, Intent(), 1 / FPS)
+    assert jump.status(state).kind == "running"
+    late = Box((0.0, 1.4, 0.5), (2.0, 1.0, 0.6))
+    state, _ = jump.step(state, Intent(around=(late,)), 1 / FPS)
+    assert jump.status(state).kind == "failed" and "struck" in jump.status(state).reason
+
+
+def test_it_bids_only_for_a_jump_that_can_start_and_holds_on_to_one(jump, standing, running):
+    assert jump.precondition(standing, Intent()) == 0.0
+    assert jump.precondition(standing, leap(0.5)) > 0.5
+    aloft = replace(standing, floor=-1.0)
+    assert jump.precondition(aloft, leap(0.5)) == 0.0
+    inside = jump.enter(standing, leap(0.5))
+    assert jump.precondition(inside, Intent(np.array([1.0, 0.0, 0.0]))) > jump.precondition(standing, leap(0.5))

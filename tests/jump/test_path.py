@@ -1,0 +1,52 @@
+"""The path estimate: one arc from take-off to landing, for every body, place and planet."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from controllers.jump.ballistics import along
+from controllers.jump.controller import Jump
+from controllers.jump.dynamics import Physique
+from controllers.jump.path import landing_feet, measures, soles
+
+law = settings(max_examples=60, deadline=None)
+
+
+@law
+@given(st.floats(0.0, 1.5), st.floats(-1.0, 0.5), st.floats(1.5, 15.0), st.booleans())
+def test_the_arc_ends_where_the_body_lands(jump, standing, running, far, up, g, runs):
+    who, state = Jump(gravity=(0.0, -g, 0.0)), running if runs else standing
+    place = np.array([state.ground[0], up, state.ground[1] + far])
+    way = who.path(who.start_of(state), place, 0.0)
+    np.testing.assert_allclose(along(way.leave, way.velocity, way.airtime, way.gravity), way.land, atol=1e-9)
+    gone, speed = way.push.moved(np.array(way.push.duration), way.passing)
+    np.testing.assert_allclose(way.low + gone, way.leave, atol=1e-9)
+    np.testing.assert_allclose(speed, way.velocity, atol=1e-9)
+    assert way.airtime > 0.0 and way.wind_up > 0.0 and way.push.duration > 0.0
+
+
+def test_a_given_airtime_is_kept(jump, standing):
+    way = jump.path(jump.start_of(standing), np.array([0.0, 0.0, 0.5]), 0.0, 0.62)
+    assert way.airtime == 0.62
+
+
+def test_more_is_asked_for_more(jump, standing):
+    start = jump.start_of(standing)
+    speeds = [np.linalg.norm(jump.path(start, np.array([0.0, up, far]), 0.0).velocity)
+              for far, up in ((0.3, 0.0), (0.7, 0.0), (1.1, 0.0), (1.1, 0.2), (1.1, 0.4))]
+    assert (np.diff(speeds) > 0.0).all()
+
+
+@given(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0), st.floats(-3.1, 3.1))
+def test_soles_land_about_the_place(x, z, heading):
+    body, place = Physique().tables, np.array([x, 0.4, z])
+    np.testing.assert_allclose(soles(landing_feet(place, heading, body), body).mean(0), place, atol=1e-12)
+
+
+@pytest.mark.parametrize("height", [1.1, 1.741, 2.0])
+def test_a_body_s_heights_grow_with_it(height):
+    one, adult = measures(Physique(73.0, height)), measures(Physique())
+    for name in ("stand", "leave", "touch"):
+        assert getattr(one, name) == pytest.approx(getattr(adult, name) * height / 1.741, rel=1e-3)
+    assert adult.leave > adult.stand

@@ -1,0 +1,139 @@
+"""A planned jump from its poses: it begins as the body was, leaves as the arc asks, lands where it should, and nothing pops."""
+
+import numpy as np
+import pytest
+
+from controllers.body import forward_kinematics
+from controllers.body.anatomy import centre_of_mass, joint_limits
+from controllers.body.rotations import log
+from controllers.body.support import hull, margin, sole_corners
+
+NAMES = ("up", "far", "onto", "down", "on the Moon", "at a run")
+every = pytest.mark.parametrize("name", NAMES)
+two_feet = pytest.mark.parametrize("name", NAMES[:-1])
+
+
+def poses(who, made, times=None):
+    """Positions, orientations, local rotations and centre of mass of a plan, at its own times or others."""
+    shown = [made.at(t) for t in (made.times if times is None else times)]
+    local = np.stack([p.rotations for p in shown])
+    positions, turned = forward_kinematics(who.skeleton, np.stack([p.root for p in shown]), local)
+    return positions, turned, local, centre_of_mass(who.physique.anatomy, positions, turned)
+
+
+@every
+def test_it_begins_as_the_body_was(plans, name):
+    """Pose and motion: what the first sixtieth of a second goes on with."""
+    who, state, made = plans[name]
+    begins = forward_kinematics(who.skeleton, *(np.asarray(a, float) for a in (state.pose.root, state.pose.rotations)))[0]
+    positions = poses(who, made, [0.0, 1 / 60])[0]
+    assert np.linalg.norm(positions[0] - begins, axis=-1).max() < 0.03
+    if state.elapsed:
+        before = forward_kinematics(who.skeleton, *(np.asarray(a, float) for a in (state.previous.root, state.previous.rotations)))[0]
+        went, goes = (begins - before) / state.elapsed, (positions[1] - positions[0]) * 60.0
+        assert np.linalg.norm(goes - went, axis=-1)[:6].max() < 1.6  # trunk and head [m/s]
+
+
+@every
+def test_the_centre_of_mass_leaves_and_flies_as_the_arc_asks(plans, name):
+    who, _, made = plans[name]
+    *_, centre = poses(who, made)
+    np.testing.assert_allclose(centre, made.centres, atol=1e-8)
+    off = int(np.searchsorted(made.times, made.take_off - 1e-9))
+    before = (3 * centre[off] - 4 * centre[off - 1] + centre[off - 2]) / (2 * (made.times[off] - made.times[off - 1]))
+    wanted = made.path.velocity
+    assert np.linalg.norm(before - wanted) < 0.01 * np.linalg.norm(wanted)
+    air = (made.times >= made.take_off - 1e-9) & (made.times <= made.touch_down + 1e-9)
+    t = (made.times[air] - made.take_off)[:, None]
+    np.testing.assert_allclose(centre[air], made.path.leave + wanted * t + 0.5 * who.gravity * t**2, atol=1e-8)
+
+
+@every
+def test_feet_that_are_planted_stay(plans, name):
+    """From the poses: balls before take-off once settled, and balls and heels after landing."""
+    who, state, made = plans[name]
+    positions = poses(who, made)[0]
+    single = who.start_of(state).single
+    for side, foot in enumerate(("Left", "Right")):
+        ball = positions[:, who.skeleton.index(foot + "Toe")]
+        if single is None or side == single:
+            here = (made.times > 0.35 * made.take_off) & (made.times <= made.take_off)
+            assert np.ptp(ball[here], axis=0).max() < (1e-3 if single is None else 0.02)
+        on = (made.times >= made.touch_down + 0.02) & (made.times < min(made.through, made.touch_down + 0.5))
+        np.testing.assert_allclose(ball[on], np.broadcast_to(made.feet[side, :3], ball[on].shape), atol=1e-4)
+
+
+@every
+def test_nothing_sinks_into_the_floor(plans, name):
+    who, state, made = plans[name]
+    positions, turned, *_ = poses(who, made)
+    low = sole_corners(who.skeleton, positions, turned)[..., 1].min(-1)
+    before, after = made.times <= made.take_off, (made.times >= made.touch_down) & (made.times < made.through)
+    assert low[before].min() > float(state.floor) - 0.003
+    assert low[after].min() > made.feet[0, 1] - who.physique.tables.sole - 0.003
+
+
+@every
+def test_it_moves_without_a_jerk_everywhere(plans, name):
+    """No joint and no bone is anywhere at once, at take-off, touch-down and between: speeds a human has, or nearly."""
+    who, _, made = plans[name]
+    positions, _, local, _ = poses(who, made)
+    assert np.isfinite(positions).all()
+    shown = made.times < min(made.through, np.inf)
+    step = np.diff(made.times)[:, None]
+    turning = np.linalg.norm(log(np.swapaxes(local[:-1], -1, -2) @ local[1:]), axis=-1) / step
+    moving = np.linalg.norm(np.diff(positions, axis=0), axis=-1) / step
+    assert turning[shown[1:]].max() < 45.0
+    fall = np.linalg.norm(made.path.falling) + np.linalg.norm(made.path.velocity)
+    assert moving[shown[1:]].max() < 14.0 + fall
+
+
+@every
+def test_knees_elbows_and_trunk_stay_within_their_limits(plans, name):
+    """Hinges and what turns about one axis; a box of rotation vectors says little of shoulders."""
+    who, _, made = plans[name]
+    limits, vectors = joint_limits(who.skeleton), log(made.local[made.times < made.through])
+    for part in ("LeftLeg", "RightLeg", "LeftUpLeg", "RightUpLeg", "Spine", "Spine1", "Spine2", "Neck", "Head"):
+        j = who.skeleton.index(part)
+        x = vectors[:, j, 0]
+        assert x.min() > limits.lower[j, 0] - np.radians(8.0), part
+        assert x.max() < limits.upper[j, 0] + np.radians(8.0), part
+    for part in ("LeftFoot", "RightFoot"):
+        x = vectors[:, who.skeleton.index(part), 0]
+        assert x.min() > np.radians(-50.0) and x.max() < np.radians(75.0), part
+
+
+@every
+def test_it_lands_on_both_feet_about_the_place(plans, name):
+    who, _, made = plans[name]
+    positions, turned, *_ = poses(who, made, [min(made.touch_down + 0.3, made.through)])
+    corners = sole_corners(who.skeleton, positions, turned)[0].reshape(2, 6, 3)[:, [0, 1, 4, 5]]
+    landed = made.feet[:, :3].mean(0)
+    assert np.linalg.norm(corners.mean((0, 1)) - landed) < 0.12
+    assert np.ptp(corners[..., 1]) < 0.02
+
+
+@two_feet
+def test_balance_is_kept_while_both_feet_are_flat(plans, name):
+    who, state, made = plans[name]
+    times = np.linspace(0.3 * made.push_off, made.push_off, 12)
+    positions, turned, _, centre = poses(who, made, times)
+    for corners, over in zip(sole_corners(who.skeleton, positions, turned), centre):
+        on = corners[corners[:, 1] < float(state.floor) + 0.012]
+        assert margin(hull(on[:, [0, 2]]), over[[0, 2]]) > 0.0
+
+
+@every
+def test_the_ground_pushes_and_nothing_does_in_the_air(plans, name):
+    _, _, made = plans[name]
+    air = (made.times > made.take_off + 1e-9) & (made.times < made.touch_down)
+    assert not made.forces[air].any() and not made.contacts[air].any()
+    assert made.forces[~air, 1].min() >= -1e-6
+
+
+def test_two_plans_of_one_jump_are_the_same_to_the_bit(plans):
+    from controllers.contract import Intent, Leap
+    who, state, made = plans["far"]
+    again = who.plan(state, Intent(leap=Leap(np.array([state.ground[0] + 0.8 * np.sin(state.ground[2]), 0.0,
+                                                       state.ground[1] + 0.8 * np.cos(state.ground[2])]))))
+    assert again.roots.tobytes() == made.roots.tobytes() and again.local.tobytes() == made.local.tobytes()

@@ -1,0 +1,134 @@
+"""The supervisor picks, keeps and falls back, and nobody sees the hand-over."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from controllers.body import Pose, forward_kinematics, human
+from controllers.contract import CharacterState, Intent, Leap, Status, Unable
+from controllers.jump.controller import Jump
+from controllers.locomotion import Locomotion
+from controllers.supervisor import Supervisor
+
+FPS = 60
+WANTED = Intent(leap=Leap(np.zeros(3)))
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What a stand-in remembers: whose it is, and how many steps it made."""
+
+    name: str
+    count: int = 0
+
+
+@dataclass
+class StandIn:
+    """A controller that bids what it is told and ends when it is told."""
+
+    name: str
+    bid: float
+    hold: float = 0.5
+    refuses: str = ""
+    after: int = 10**9
+    ends: Status = Status("done")
+    skeleton = human()
+
+    def start(self, ground=(0.0, 0.0, 0.0), floor=0.0):
+        return CharacterState(np.asarray(ground, float), np.zeros(3), Pose(np.zeros(3), np.tile(np.eye(3), (22, 1, 1))),
+                              np.ones(4, bool), Steps(self.name), floor)
+
+    def precondition(self, state, intent):
+        return self.hold if state.memory.name == self.name else self.bid if intent.leap is not None or self.name == "walk" else 0.0
+
+    def enter(self, state, intent):
+        if self.refuses:
+            raise Unable(self.refuses)
+        return replace(state, memory=Steps(self.name))
+
+    def step(self, state, intent, dt):
+        return replace(state, memory=Steps(self.name, state.memory.count + 1)), state.pose
+
+    def status(self, state):
+        return self.ends if state.memory.count >= self.after else Status("running")
+
+
+def run(supervisor, intents):
+    state, names = supervisor.start(), []
+    for intent in intents:
+        state, _ = supervisor.step(state, intent, 1 / FPS)
+        names.append(state.memory.active)
+    return state, names
+
+
+def test_the_best_bid_gets_it_and_keeps_it_while_it_holds():
+    supervisor = Supervisor({"walk": StandIn("walk", 0.5), "hop": StandIn("hop", 0.8, hold=1.5), "jump": StandIn("jump", 1.0, hold=1.5)})
+    _, names = run(supervisor, [Intent(), WANTED, WANTED, Intent(), Intent()])
+    assert names == ["walk", "jump", "jump", "jump", "jump"]
+
+
+@pytest.mark.parametrize(("ends", "why", "refused"), [
+    (Status("done"), "jump is done", ""), (Status("failed", "it struck a box"), "it struck a box", "it struck a box")])
+def test_one_that_ends_hands_back_and_says_why(ends, why, refused):
+    supervisor = Supervisor({"walk": StandIn("walk", 0.5), "jump": StandIn("jump", 1.0, hold=1.5, after=3, ends=ends)})
+    state, names = run(supervisor, [WANTED] + [Intent()] * 4)
+    assert names == ["jump"] * 3 + ["walk"] * 2
+    assert run(supervisor, [WANTED] + [Intent()] * 3)[0].memory.why == why
+    assert run(supervisor, [WANTED] + [Intent()] * 3)[0].memory.refused == refused
+
+
+def test_a_refusal_is_shown_as_long_as_it_is_asked_and_the_next_best_is_taken():
+    walk, jump = StandIn("walk", 0.5), StandIn("jump", 1.0, refuses="too far")
+    state, names = run(Supervisor({"walk": walk, "jump": jump}), [Intent(), WANTED])
+    assert names == ["walk", "walk"] and state.memory.refused == "too far"
+    assert run(Supervisor({"walk": walk, "jump": jump}), [WANTED, Intent()])[0].memory.refused == ""
+    _, names = run(Supervisor({"walk": walk, "jump": jump, "hop": StandIn("hop", 0.8)}), [WANTED])
+    assert names == ["hop"]
+
+
+def test_what_moved_is_passed_on():
+    supervisor = Supervisor({"walk": StandIn("walk", 0.5)})
+    first = supervisor.start()
+    state, _ = supervisor.step(first, Intent(), 1 / 30)
+    assert state.previous is first.pose and state.elapsed == 1 / 30
+
+
+@pytest.fixture(scope="module")
+def person():
+    return Supervisor({"locomotion": Locomotion.load(), "jump": Jump()})
+
+
+@pytest.mark.parametrize(("speed", "far"), [(0.0, 0.7), (1.2, 1.1), (2.8, 2.2)])
+def test_walking_jumping_and_walking_on_are_one_motion(person, speed, far):
+    """No joint moves faster at a hand-over than bodies do, and none leaves its way between two frames."""
+    state, wish, places, active = person.start(), np.array([speed, 0.0, 0.0]), [], []
+    asked = False
+    for k in range(420):
+        place = np.array([state.ground[0], 0.0, state.ground[1] + far])
+        leap = None if asked or k < 130 else Leap(place)
+        state, pose = person.step(state, Intent(wish if k < 300 else np.zeros(3), leap), 1 / FPS)
+        asked = asked or state.memory.active == "jump"
+        places.append(forward_kinematics(person.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float))[0])
+        active.append(state.memory.active)
+    changes = np.flatnonzero(np.array(active[1:]) != np.array(active[:-1])) + 1
+    assert [active[k] for k in changes] == ["jump", "locomotion"]
+    speeds = np.linalg.norm(np.diff(places, axis=0), axis=-1) * FPS
+    assert np.isfinite(speeds).all() and speeds.max() < 20.0  # hands that swing
+    trunk = [person.skeleton.index(name) for name in ("Hips", "Spine", "Spine1", "Spine2")]
+    jerk = np.linalg.norm(np.diff(places, 2, axis=0)[:, trunk], axis=-1) * FPS  # change of velocity in a frame [m/s]
+    for k in changes:
+        assert jerk[k - 3:k + 3].max() < 1.5
+
+
+def test_nothing_changes_the_state_that_was_stepped(person):
+    state = person.start()
+    before = state.pose.root.tobytes(), state.memory.memory.tobytes()
+    person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 0.6]))), 1 / FPS)
+    assert (state.pose.root.tobytes(), state.memory.memory.tobytes()) == before
+
+
+def test_what_can_t_be_jumped_is_told_while_walking_goes_on(person):
+    state = person.start()
+    state, pose = person.step(state, Intent(np.array([1.0, 0.0, 0.0]), Leap(np.array([0.0, 0.0, 9.0]))), 1 / FPS)
+    assert state.memory.active == "locomotion" and "take off" in state.memory.refused and np.isfinite(pose.root).all()
