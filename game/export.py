@@ -22,6 +22,7 @@ from .render import skin
 from .render.mesh import Body, mannequin
 from .render.view import scale_of
 from .render.wear import worn
+from .scene import TINT
 from .world import RATE, World, pose_between
 
 SUFFIXES = (".bvh", ".glb")
@@ -36,7 +37,7 @@ class Take:
     skeleton: Skeleton
     poses: tuple[Pose, ...]
     contacts: np.ndarray
-    tint: Sequence[float] = (0.75, 0.42, 0.22)
+    tint: Sequence[float] = TINT
     body: Body | None = None
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 
 from .ink import Ink
 from .sheet import Sheet
+
+
+TINT = (0.75, 0.42, 0.22)
+"""Whoever has no tint of their own has this, linear RGB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +93,7 @@ class Figure:
 
     positions: np.ndarray
     orientations: np.ndarray
-    tint: tuple[float, float, float] = (0.75, 0.42, 0.22)
+    tint: tuple[float, float, float] = TINT
     contacts: np.ndarray = field(default_factory=lambda: np.zeros(4, bool))
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
@@ -99,7 +103,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Box:
-    """A solid box on the stage (walls, pillars, platforms): centre [m], full size [m], heading [rad]."""
+    """A solid box on the stage (walls, platforms): centre [m], full size [m], heading [rad]."""
 
     centre: tuple[float, float, float]
     size: tuple[float, float, float]
@@ -152,12 +156,16 @@ class Overlays:
     forces: bool = False
 
 
+OVERLAYS = tuple(part.name for part in fields(Overlays))
+"""The overlays by name."""
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
-    text: lines for the top-left corner; panel: lines of a centred sheet (pause). sheet: the help
-    sheet, in the middle of the whole picture. ink: panels, over the whole picture.
+    text: lines for the top-left corner. sheet: the help sheet, in the middle of the whole picture.
+    ink: panels, over the whole picture.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
 
@@ -166,7 +174,6 @@ class Scene:
     props: tuple[Prop, ...] = ()
     overlays: Overlays = Overlays()
     text: tuple[str, ...] = ()
-    panel: tuple[str, ...] = ()
     caption: Caption | None = None
     sheet: Sheet | None = None
     ink: Ink | None = None

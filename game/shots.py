@@ -8,9 +8,8 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from .fields import Degrees, Length, Moment, Point3, Table
-from .scene import Overlays
+from .scene import OVERLAYS, Overlays
 
-OVERLAYS = ("mesh", "skeleton", "contacts", "trail", "path", "jump", "balance", "forces")
 Shown = tuple[Literal[OVERLAYS], ...]
 Names = Annotated[tuple[str, ...], BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), Field(min_length=1)]
 Part = tuple[float, float, float, float]

@@ -18,7 +18,7 @@ from controllers.body.rotations import wrap
 from controllers.contract import CharacterState, Intent
 from controllers.navigation import drift
 
-from .scene import Figure, Prop
+from .scene import TINT, Figure, Prop
 
 RATE = 60
 """Simulation steps a second, whatever the display does."""
@@ -44,7 +44,7 @@ class Character:
     name: str
     controller: Any
     state: CharacterState
-    tint: tuple[float, float, float] = (0.75, 0.42, 0.22)
+    tint: tuple[float, float, float] = TINT
     intent: Intent = field(default_factory=Intent)
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 

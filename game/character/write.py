@@ -19,12 +19,12 @@ import numpy as np
 from ..output import output_file, whole
 from ..render import skin
 from ..render.mesh import Body, Mesh
+from ..scene import TINT
 from .twotone import cut
 
 FLOAT, USHORT, UINT, UBYTE = 5126, 5123, 5125, 5121
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _DARK = np.array([0.045, 0.049, 0.058])
-_SUIT = (0.75, 0.42, 0.22)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class Actor:
     body: Body
     joints: np.ndarray
     scale: float = 1.0
-    tint: Sequence[float] = _SUIT
+    tint: Sequence[float] = TINT
     motion: Motion | None = None
 
 

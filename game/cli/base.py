@@ -86,7 +86,7 @@ def pixels_of(text: str) -> tuple[int, int]:
 
 def overlays_of(text: str) -> list[str]:
     """Overlays from their names with commas; bodies too, unless bones take their place. Mistake for others."""
-    from ..shots import OVERLAYS
+    from ..scene import OVERLAYS
 
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:

@@ -40,6 +40,7 @@ class Renderer:
         floor, body = self.preset.floor_taps, self.preset.body_taps
         self.target = gl.Target(ctx, size, self.preset.samples)
         self.figures_map, self.solids_map = (gl.ShadowMap(ctx, n) for n in (self.preset.shadow_size, STAGE_TEXELS))
+        self._pixels = np.empty((0, 0, 4), np.uint8)  # of the last picture read, bottom row first
         self.kept: Any = None  # what the solids' map shows: solids and light box
         self.frame = ctx.buffer(reserve=4 * FLOATS, dynamic=True)
         self.occluders = Occluders(ctx)
@@ -117,7 +118,7 @@ class Renderer:
         if out.shape != (height, width, 4) or out.dtype != np.uint8:
             raise ValueError(f"a picture of {width} × {height} needs ({height}, {width}, 4) uint8, "
                              f"got {out.shape} {out.dtype}")
-        if getattr(self, "_pixels", None) is None or self._pixels.shape != out.shape:
+        if self._pixels.shape != out.shape:
             self._pixels = np.empty_like(out, order="C")
         self.target.resolved.read_into(self._pixels, components=4, alignment=1)
         out[:] = self._pixels[::-1]
@@ -180,5 +181,5 @@ class Renderer:
         self.goals.draw([prop for prop in scene.props if isinstance(prop, Goal)], origin)
         self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)
-        self.text.draw(scene.text, scene.panel, scene.caption, inside[2:])
+        self.text.draw(scene.text, scene.caption, inside[2:])
         ctx.disable(ctx.BLEND)

@@ -1,8 +1,7 @@
-"""Text: lines at the top left, a sheet in the middle and a film's titles, in the font that comes with pillow."""
+"""Text: lines at the top left and a film's titles, in the font that comes with pillow."""
 
 from __future__ import annotations
 
-import re
 import unicodedata
 from dataclasses import dataclass
 from functools import lru_cache
@@ -22,7 +21,6 @@ PLAIN = "".join(map(chr, range(32, 127))) + "°·±…“”’"
 INK = (0.97, 0.97, 0.95, 1.0)
 CAPTION_LEFT = 0.06
 """Captions keep this part of the picture's width free on either side."""
-SHEET = (0.05, 0.06, 0.08, 0.80)
 
 
 def spelled(line: str) -> str:
@@ -97,43 +95,18 @@ def width_of(line: str, font: Atlas) -> float:
     return sum(font.advances[c] for c in line)
 
 
-def columns(lines: tuple[str, ...], font: Atlas) -> list[list[tuple[float, str]]]:
-    """Each line as cells (x [px], text). Two spaces part cells; those that begin at the same
-    character of their lines stand under each other though the letters differ in width."""
-    cells = [[(m.start(), m.group()) for m in re.finditer(r"\S+(?: \S+)*", spelled(line))] for line in lines]
-    starts = sorted({start for row in cells for start, _ in row} | {0})
-    gap, x = 2.0 * font.line / 1.45, {0: 0.0}
-    if starts[0] == 0 and len(starts) > 1:
-        for before, start in zip(starts, starts[1:]):
-            # clear of every cell that begins to the left of it and not merely of its neighbour
-            ends = [x[s] + width_of(text, font) for row in cells for i, (s, text) in enumerate(row)
-                    if s <= before and i + 1 < len(row) and row[i + 1][0] == start]
-            indent = x[before] + (start - before) * font.advances[" "]
-            x[start] = max([end + gap for end in ends] + ([indent] if not ends else []))
-    return [[(x[start], text) for start, text in row] for row in cells]
-
-
-def glyphs(text: tuple[str, ...], panel: tuple[str, ...], size: tuple[int, int], font: Atlas) -> np.ndarray:
-    """Rows (N, 12): place and cell, left, top, width, height [px], then display RGB and opacity."""
+def corner_rows(text: tuple[str, ...], font: Atlas) -> np.ndarray:
+    """Rows (N, 12) of lines at the top left: place and cell, left, top, width, height [px], then display RGB
+    and opacity."""
     rows: list[tuple] = []
     inset = round(0.8 * font.line)
     for i, line in enumerate(text):
         _write(rows, spelled(line), inset, inset + i * font.line, font)
-    if panel:
-        laid = columns(panel, font)
-        wide = max((x + width_of(word, font) for row in laid for x, word in row), default=0.0)
-        tall = len(panel) * font.line
-        left, top = round(0.5 * (size[0] - wide)), round(0.5 * (size[1] - tall))
-        pad = font.line
-        rows.append((left - pad, top - pad, wide + 2 * pad, tall + 2 * pad, 0, 0, -1, 0, *SHEET))
-        for i, row in enumerate(laid):
-            for x, word in row:
-                _write(rows, word, left + round(x), top + i * font.line, font)
     return np.array(rows, np.float32).reshape(-1, 12)
 
 
 def caption_rows(line: str, size: tuple[int, int], base: float, font: Atlas, opacity: float) -> np.ndarray:
-    """Rows as of `glyphs` for one line of a caption whose letters end at the height `base`, 0 … 1 from the top."""
+    """Rows as of `corner_rows` for one line of a caption whose letters end at the height `base`, 0 … 1 from the top."""
     rows: list[tuple] = []
     _write(rows, line, round(CAPTION_LEFT * size[0]), round(base * size[1]) - font.line, font)
     made = np.array(rows, np.float32).reshape(-1, 12)
@@ -158,16 +131,16 @@ def _write(rows: list, line: str, x: float, y: float, font: Atlas) -> None:
 
 
 @lru_cache(maxsize=16)
-def layout(text: tuple[str, ...], panel: tuple[str, ...], caption: Caption | None, size: tuple[int, int]
+def layout(text: tuple[str, ...], caption: Caption | None, size: tuple[int, int]
            ) -> tuple[tuple[int, np.ndarray], ...]:
-    """All text of a scene on `size` pixels: letter sizes [px], each with its rows of `glyphs`.
+    """All text of a scene on `size` pixels: letter sizes [px], each with its rows as of `corner_rows`.
 
-    Letters of text and panel measure a fortieth of the shorter side or so.
+    Letters of the corner measure a fortieth of the shorter side or so.
     """
     made = []
-    if text or panel:
+    if text:
         letters = int(np.clip(round(min(size) / 40), 11, 96))
-        made.append((letters, glyphs(text, panel, size, atlas(letters))))
+        made.append((letters, corner_rows(text, atlas(letters))))
     if caption is not None and caption.opacity > 0.0:
         for line, share, base in ((caption.text, 1 / 13, 0.855), (caption.under, 1 / 30, 0.90)):
             line = spelled(line)
@@ -184,9 +157,9 @@ class TextPass:
         self.stream, self.textures = gl.Stream(ctx), {}
         self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f/i", "place", "cell", "tint")])
 
-    def draw(self, text: tuple[str, ...], panel: tuple[str, ...], caption: Caption | None, size: tuple[int, int]) -> None:
+    def draw(self, text: tuple[str, ...], caption: Caption | None, size: tuple[int, int]) -> None:
         """Draw over a viewport of `size` pixels."""
-        for letters, rows in layout(tuple(text), tuple(panel), caption, size):
+        for letters, rows in layout(tuple(text), caption, size):
             texture = self._texture(letters)
             rows = rows.copy()
             rows[:, 4:8] /= np.tile(texture.size, 2)

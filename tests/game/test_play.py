@@ -141,7 +141,8 @@ def test_help_holds_everything_and_escape_closes_it_first(game):
 
 
 def test_overlays_and_panels_are_toggled(game):
-    for key, name in (("1", "mesh"), ("2", "skeleton"), ("3", "contacts"), ("4", "trail"), ("5", "path")):
+    for key, name in (("1", "mesh"), ("2", "skeleton"), ("3", "contacts"), ("4", "trail"), ("5", "path"),
+                      ("6", "jump"), ("7", "balance"), ("8", "forces")):
         before = getattr(game.overlays, name)
         tap(game, key)
         assert getattr(game.scene((10, 10)).overlays, name) is not before

@@ -20,20 +20,8 @@ def test_the_atlas_has_ink_for_every_glyph():
                                 (atlas.cells["↑"], atlas.cells["↓"])])
 
 
-def test_columns_stand_under_each_other():
-    lines = ("        keyboard  gamepad", "walk    W         left stick", "run     Shift     right trigger",
-             "look              right stick")
-    laid = text.columns(lines, text.atlas(18))
-    xs = [[x for x, _ in row] for row in laid]
-    assert xs[0] == [xs[1][1], xs[1][2]] and xs[2] == xs[1] and xs[3] == [xs[1][0], xs[1][2]]
-    atlas = text.atlas(18)
-    for row in laid:
-        for (x, word), (after, _) in zip(row, row[1:]):
-            assert x + text.width_of(word, atlas) < after
-
-
-def test_a_sheet_lies_in_the_middle_and_no_text_draws_nothing():
-    assert text.glyphs((), (), (640, 360), text.atlas(12)).shape == (0, 12)
-    rows = text.glyphs((), ("Paused", "", "Esc  leave"), (640, 360), text.atlas(12))
-    left, top, width, height = rows[0, :4]
-    assert abs(left + width / 2 - 320) <= 1 and abs(top + height / 2 - 180) <= 1 and rows[0, 6] < 0
+def test_lines_stand_under_each_other_and_no_text_draws_nothing():
+    atlas = text.atlas(12)
+    assert text.corner_rows((), atlas).shape == (0, 12)
+    rows = text.corner_rows(("ab", "", "c"), atlas)
+    assert len(rows) == 3 and rows[0, 0] == rows[2, 0] and rows[2, 1] - rows[0, 1] == 2 * atlas.line
