@@ -106,7 +106,7 @@ class Database:
         if about.get("chart") != _CHART or about.get("frames") != count:
             raise DatabaseError(f"{path}: was built by another version of Gambol; build it anew")
         takes = tuple(Take(**take) for take in about["takes"])
-        frames = np.memmap(path, np.float32, "r", HEAD, (count, WIDTH))
+        frames = np.asarray(np.memmap(path, np.float32, "r", HEAD, (count, WIDTH)))
         sound = np.memmap(path, np.uint8, "r", HEAD + 4 * WIDTH * count, (count,)) == 1
         return Database(frames, sound, takes, float(about["fps"]), path)
 
