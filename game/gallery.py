@@ -88,7 +88,7 @@ def plan(names: Sequence[str], folder: str | Path, controller: Any, preset: str,
     ScenarioError for a scenario that cannot be used or two of one name, OutputError for a folder that
     can't be written.
     """
-    folder = output_folder(folder)
+    folder = Path(folder)
     made, files = [], {}
     for given in dict.fromkeys(names):
         film, file = load(given), locate(given)
@@ -101,6 +101,7 @@ def plan(names: Sequence[str], folder: str | Path, controller: Any, preset: str,
         fresh = not force and old is not None and old.key == key and all(
             (folder / f"{file.stem}{suffix}").is_file() for suffix in (".mp4", ".png"))
         made.append(Plan(file.stem, film, key, fresh))
+    output_folder(folder)  # made only now: a name mistyped leaves nothing behind
     return tuple(made)
 
 

@@ -112,7 +112,9 @@ class Library:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
                 RuntimeError, tokenize.TokenError, zipfile.BadZipFile, zlib.error) as error:  # all a damaged zip has in store
-            raise LibraryError(f"{path}: not a gait library ({error})") from None
+            # numpy takes a file of any other kind for its own and speaks of that
+            reason = error if isinstance(error, OSError) or zipfile.is_zipfile(path) else "no .npz file at all"
+            raise LibraryError(f"{path}: not a gait library ({reason})") from None
         library._check(path)
         return library
 

@@ -53,7 +53,7 @@ def write_motion(film: Any, out: str | Path, controller: Any) -> None:
 @plainly
 def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb file to write.")],
               height: Annotated[float, typer.Option(help="Height in metres.")] = 1.741,
-              build: Annotated[float, typer.Option(help="From -1, slim, over 0 to 1, heavy.")] = 0.0,
+              weight: Annotated[float, typer.Option(help="From -1, slim, over 0 to 1, heavy.")] = 0.0,
               child: Annotated[float, typer.Option(help="From 0, grown up, to 1, the proportions of a child of six.")] = 0.0,
               shoulders: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
               hips: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
@@ -68,6 +68,6 @@ def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb fi
         from controllers.mocap import load
 
         bones = load(skeleton).skeleton
-    body = tailored(Build(height, build, child, shoulders, hips), bones, out.stem)
+    body = tailored(Build(height, weight, child, shoulders, hips), bones, out.stem)
     write(out, [Actor(out.stem, body, joints_of(body))])
     say(f"{out}: {height:g} m, {len(body.levels[0].triangles)} triangles; `gambol play --character {out}` wears it")

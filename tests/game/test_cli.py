@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import fields
 
 import av
 import numpy as np
@@ -10,6 +11,7 @@ from typer.testing import CliRunner
 
 import game.hosts
 from game import cli
+from game.character import Build
 from stand_in import Glide
 
 SHORT = """
@@ -198,3 +200,9 @@ def test_help_comes_without_loading_the_rest():
     assert done.stdout.strip() == ""
     done = subprocess.run([sys.executable, "-m", "game.cli", "--help"], capture_output=True, text=True)
     assert done.returncode == 0 and "render" in done.stdout
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(Build)])
+def test_a_build_is_refused_in_the_words_that_were_typed(name, tmp_path):
+    done = CliRunner().invoke(cli.app, ["character", "-o", str(tmp_path / "a.glb"), f"--{name}", "nan"])
+    assert done.exit_code == 2 and done.stderr.startswith(f"gambol: {name} nan: needs a number from")

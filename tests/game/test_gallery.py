@@ -108,7 +108,8 @@ def test_the_figures_of_a_glide(tmp_path):
 
 def test_names_that_are_none(tmp_path):
     with pytest.raises(ScenarioError, match="no scenario is called 'nowhere'"):
-        gallery.plan(["nowhere"], tmp_path, Glide(), "fast")
+        gallery.plan(["nowhere"], tmp_path / "out", Glide(), "fast")
+    assert not (tmp_path / "out").exists()
     assert locate("demo").is_file()
 
 

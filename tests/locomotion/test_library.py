@@ -97,6 +97,12 @@ def test_a_missing_file_says_how_to_build_one(tmp_path):
         Locomotion.load(tmp_path / "none.npz")
 
 
+def test_a_file_of_another_kind_is_called_so(tmp_path):
+    (tmp_path / "body.glb").write_bytes(bytes(range(1, 200)))
+    with pytest.raises(LibraryError, match=r"body\.glb: not a gait library \(no \.npz file at all\)"):
+        Library.load(tmp_path / "body.glb")
+
+
 def test_a_folder_is_no_library(tmp_path):
     with pytest.raises(LibraryError, match=str(tmp_path.name)):
         Library.load(tmp_path)
