@@ -74,7 +74,7 @@ def places(frames: np.ndarray, joints: tuple[int, ...]) -> np.ndarray:
 
     frames: (N, WIDTH). joints: n numbers of joints of `SKELETON`. x is leftward, y up, z forward.
     """
-    needed = set()
+    needed = {0}
     for joint in joints:
         while joint >= 0:
             needed.add(int(joint))
