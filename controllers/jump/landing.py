@@ -14,6 +14,8 @@ TIME = 1.15
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 3.6, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
+DEEPEST, STIFFEST = 0.46, 14.0
+"""How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
 OVER = 0.04
@@ -66,4 +68,13 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         capture = (land - goal) @ ahead + pace * np.sqrt((goal[1] - support[0, 1]) / gravity) * CATCH
         passes = bool(capture > ((support - goal) @ ahead).max())
     rate, sink = (PASS if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), 2.0)
+    while sink < STIFFEST and _lowest(land[1] - goal[1], velocity[1], sink) < -DEEPEST * (goal[1] - support[0, 1]):
+        sink *= 1.1
     return Landing(np.array([rate, sink, rate]), land - goal, velocity, goal, passes)
+
+
+def _lowest(offset: float, velocity: float, rate: float) -> float:
+    """The lowest that the critically damped spring comes, from an offset [m] and a velocity [m/s]."""
+    pull = velocity + offset * rate
+    time = max(velocity / (rate * pull), 0.0) if pull < 0.0 else 0.0
+    return float(np.exp(-rate * time) * (offset + pull * time))
