@@ -26,7 +26,6 @@ from .log import Log, LogWriter, strayed
 from .rewind import Look
 from .scene import OVERLAYS, Camera, Overlays, Scene
 from .session import Moment, Timeline, refused
-from .shots import OVERLAYS
 from .studio import Studio
 from .views import scenes
 from .world import DT, FixedStep, World

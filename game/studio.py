@@ -59,12 +59,14 @@ class Film:
 
     def __init__(self, path: Path, arguments: Sequence[str]):
         self.path, self.done, self.total, self.said = path, 0, 0, ""
-        command = [sys.executable, "-m", "game.cli", "render", *arguments, "-o", str(path), "--background"]
+        command = [sys.executable, "-P", "-m", "game.cli", "render", *arguments, "-o", str(path), "--background"]
         # one thread of software drawing leaves the game a core of its own
         self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                         stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                         stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
+                                         start_new_session=True,
                                          creationflags=getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0),
-                                         env=os.environ | {"LP_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"})
+                                         env=os.environ | {"LP_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
+                                                           "PYTHONIOENCODING": "utf-8"})
         self._reader = threading.Thread(target=self._listen, daemon=True)
         self._reader.start()
 

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 import game.hosts
-from game import cli
 from game.hosts import DisplayError
 from game.hosts.events import KeyEvent
 from game.log import LogWriter, fingerprint, read, replay

@@ -11,7 +11,7 @@ from game.log import LogWriter, fingerprint, read, replay
 from game.output import OutputError
 from game.play import Play
 from game.session import KEPT
-from game.studio import Studio, log_file
+from game.studio import Film, Studio, log_file
 from stand_in import Glide
 
 FRAME = 1 / 60
@@ -402,6 +402,15 @@ def test_a_screenshot_is_clean_has_a_name_of_its_own_and_is_said(tmp_path):
     game.kept.studio.finish(print)
     files = list(tmp_path.glob("*.png"))
     assert len(files) == 2 and all(np.array_equal(np.asarray(Image.open(file)), pixels[..., :3]) for file in files)
+
+
+def test_what_a_film_made_beside_the_game_says_is_heard(tmp_path, monkeypatch):
+    """Whatever lies where the game was started, and whatever letters are said."""
+    (tmp_path / "game.py").write_text("raise RuntimeError('not ours')")
+    monkeypatch.chdir(tmp_path)
+    film = Film(tmp_path / "a.mp4", ["“☃”"])
+    film.wait()
+    assert film.status().startswith("no scenario is called '“☃”': name a .toml file or one of ") and not film.running
 
 
 def test_a_film_is_made_of_what_was_played_meanwhile(tmp_path, monkeypatch):

@@ -67,12 +67,6 @@ def test_without_a_display_the_error_says_what_to_do(environment):
     assert ran.returncode == 0 and "refused: no display" in ran.stdout and "gambol render" in ran.stdout, ran.stderr
 
 
-def test_importing_touches_no_gl_and_no_window():
-    ran = run("import sys, game.render, game.hosts\n"
-              "print([m for m in ('moderngl', 'glfw') if m in sys.modules])")
-    assert ran.stdout.strip() == "[]", ran.stdout + ran.stderr
-
-
 def test_a_missing_library_is_named_with_its_package(monkeypatch):
     from game.hosts import offscreen
 
