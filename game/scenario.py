@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path as File
 from typing import Annotated, Literal
 
@@ -19,6 +18,7 @@ from controllers.jump.ballistics import apex_airtime
 from controllers.jump.path import measures
 from controllers.navigation import floor_at
 
+from . import toml
 from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, Length, Mass, Metres, Moment, Pace, Point,
                      Point3, Seconds, Stature, Strength, Table, Velocity, short)
 from .input.script import Jump, Move, Script
@@ -289,16 +289,9 @@ def locate(name: str | File) -> File:
 def load(name: str | File) -> Scenario:
     """A scenario by the name of a shipped one, or from a file. ScenarioError says what is wrong."""
     file = locate(name)
+    tables = toml.read(file, ScenarioError)
     try:
-        text = file.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise ScenarioError(f"{file}: not UTF-8 text (byte {error.start})") from None
-    except OSError as error:
-        raise ScenarioError(f"{file}: {error.strerror or error}") from None
-    try:
-        return Scenario.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
-        raise ScenarioError(f"{file}: not TOML: {error}") from None
+        return Scenario.model_validate(tables)
     except ValidationError as error:
         faults = error.errors()
         # a list whose items are faulty also counts as too short: that line would only mislead

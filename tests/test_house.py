@@ -5,6 +5,7 @@ import importlib
 import re
 import subprocess
 import sys
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -15,6 +16,12 @@ SOURCES = sorted(p for wing in ("controllers", "game", "assets", "scripts", "tes
                  if "__pycache__" not in p.parts)
 WINGS = ("controllers", "game")
 MODULES = [p for p in SOURCES if p.relative_to(ROOT).parts[0] in WINGS]
+
+
+@cache
+def parsed(path):
+    """The source of a module as a tree."""
+    return ast.parse(path.read_text("utf-8"))
 
 
 def dotted(path):
@@ -54,7 +61,7 @@ def test_imports_run_one_way():
     """Game → controllers, never back; told from the sources, whatever is imported when."""
     for path in MODULES:
         if dotted(path).startswith("controllers"):
-            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            for node in ast.walk(parsed(path)):
                 names = [a.name for a in node.names] if isinstance(node, ast.Import) else \
                     [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
                 assert not any(n.split(".")[0] in ("game", "moderngl", "glfw") for n in names), path
@@ -64,7 +71,7 @@ def imported(path):
     """Those of our modules that a module imports, whenever it does."""
     own, names = dotted(path), {dotted(p) for p in MODULES}
     room = own if path.name == "__init__.py" else own.rpartition(".")[0]
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in ast.walk(parsed(path)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in names)
         elif isinstance(node, ast.ImportFrom):
@@ -113,13 +120,13 @@ def test_a_machines_path_would_be_seen():
 
 @pytest.mark.parametrize("path", MODULES, ids=dotted)
 def test_every_module_says_what_it_is_for(path):
-    tree = ast.parse(path.read_text("utf-8"))
+    tree = parsed(path)
     assert ast.get_docstring(tree), "no docstring"
 
 
 @pytest.mark.parametrize("path", MODULES, ids=dotted)
 def test_public_functions_and_classes_say_what_they_do(path):
-    tree = ast.parse(path.read_text("utf-8"))
+    tree = parsed(path)
     silent = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
               and not node.name.startswith("_") and not ast.get_docstring(node)]
     assert not silent
@@ -139,6 +146,6 @@ def test_rooms_hand_out_what_they_promise(path):
 @pytest.mark.parametrize("path", ROOMS, ids=dotted)
 def test_rooms_promise_what_they_import(path):
     """Whatever an `__init__` imports from its own files is in `__all__`: nothing is handed out by accident."""
-    names = [alias.asname or alias.name for node in ast.parse(path.read_text("utf-8")).body
+    names = [alias.asname or alias.name for node in parsed(path).body
              if isinstance(node, ast.ImportFrom) and node.level for alias in node.names]
     assert set(names) <= set(getattr(importlib.import_module(dotted(path)), "__all__", ()))

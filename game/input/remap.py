@@ -9,7 +9,6 @@ from __future__ import annotations
 import difflib
 import os
 import sys
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
+from .. import toml
 from .bindings import DEFAULT, Binding, Bindings, Mouse, Sticks
 from .names import BUTTONS, KEYS
 
@@ -111,16 +111,9 @@ def load(file: str | Path | None = None) -> Bindings:
         file = user_file()
         if not file.exists():
             return DEFAULT
+    tables = toml.read(file, BindingsError)
     try:
-        text = Path(file).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise BindingsError(f"{file}: not UTF-8 text (byte {error.start})") from None
-    except OSError as error:
-        raise BindingsError(f"{file}: {error.strerror or error}") from None
-    try:
-        table = _File.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
-        raise BindingsError(f"{file}: not TOML: {error}") from None
+        table = _File.model_validate(tables)
     except ValidationError as error:
         raise BindingsError("\n".join(_fault(file, fault) for fault in error.errors())) from None
     faults = [*_unknown("keys", table.keys), *_unknown("buttons", table.buttons)]

@@ -143,6 +143,7 @@ def test_files_that_are_none(tmp_path):
         load(tmp_path / "missing.toml")
     with pytest.raises(ScenarioError, match="not UTF-8 text .byte 9"):
         load(written(tmp_path, b'title = "\xff"'))
+    assert load(written(tmp_path, b"\xef\xbb\xbf" + GOOD.encode())), "editors on Windows begin files with a mark"
     with pytest.raises(ScenarioError, match=tmp_path.name):
         load(tmp_path)
 
