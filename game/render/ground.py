@@ -68,9 +68,16 @@ def covered(rims: Sequence[np.ndarray]) -> np.ndarray:
         # of a square's corners, the innermost for each side decides
         depth = (cells @ inward.T + np.maximum(inward, 0.0).sum(1)) * SQUARE - np.sum(flat * inward, 1)
         squares.append(cells[(depth >= 0.0).all(1)].astype(int))
-    squares = np.unique(np.concatenate(squares), axis=0)
+    squares = _different(np.concatenate(squares))
     corner = SQUARE * (squares[:, None] + [[0, 0], [0, 1], [1, 1], [0, 0], [1, 1], [1, 0]])
     return np.stack([corner[..., 0], np.zeros(corner.shape[:2]), corner[..., 1]], -1).reshape(-1, 3)
+
+
+def _different(pairs: np.ndarray) -> np.ndarray:
+    """The different pairs (N, 2) of whole numbers below 2³⁰, in order; numpy takes six times as long over rows."""
+    numbers = np.unique((pairs[:, 0] << 31) + pairs[:, 1])
+    high = (numbers + (1 << 30)) >> 31
+    return np.stack([high, numbers - (high << 31)], 1)
 
 
 class Ground:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -117,12 +118,16 @@ def outlines(points: np.ndarray, radii: np.ndarray, sides: int = 12) -> np.ndarr
     return _counter_clockwise(rim @ AXES[:2] + along[..., None] * AXES[2])
 
 
+@lru_cache(maxsize=256)
 def corners(solid: Box | Pillar) -> np.ndarray:
     """The corners (8, 3) [m] of a box, or of the box around a pillar: x slowest and z fastest."""
     half = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     if isinstance(solid, Pillar):
-        return (half + [0.0, 0.5, 0.0]) * [2 * solid.radius, solid.height, 2 * solid.radius] + solid.foot
-    return (half * solid.size) @ yaw(solid.heading).T + solid.centre
+        placed = (half + [0.0, 0.5, 0.0]) * [2 * solid.radius, solid.height, 2 * solid.radius] + solid.foot
+    else:
+        placed = (half * solid.size) @ yaw(solid.heading).T + solid.centre
+    placed.setflags(write=False)
+    return placed
 
 
 def _counter_clockwise(rim: np.ndarray) -> np.ndarray:
