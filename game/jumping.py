@@ -32,7 +32,7 @@ from .world import Character, World
 LAYERS = ("jump", "balance", "forces")
 CAN, CANNOT, SEEN = (0.02, 0.52, 0.16), (0.80, 0.05, 0.02), (0.02, 0.24, 0.80)
 """Colours of a jump that can be made, of one that can't, of one that is being made."""
-GROUND, WEIGHT, PALE = (1.0, 0.72, 0.08), (0.55, 0.58, 0.62), (0.92, 0.92, 0.88)
+GROUND, WEIGHT, PALE = (0.02, 0.42, 0.10), (0.10, 0.11, 0.13), (0.92, 0.92, 0.88)
 NEWTON = 0.42 / (73.0 * 9.81)
 """How long forces are drawn [m/N]: an adult's weight on Earth is 0.42 m."""
 LIFT = 0.012
@@ -275,7 +275,7 @@ def muscles(body: _Body) -> list[Sketch]:
 
 def heat(part: float) -> tuple[float, float, float]:
     """A colour from calm blue over yellow to red as `part` goes from 0 to 1."""
-    stops = np.array([(0.10, 0.42, 0.85), (0.55, 0.62, 0.35), (1.0, 0.62, 0.05), (0.95, 0.12, 0.03)])
+    stops = np.array([(0.02, 0.10, 0.50), (0.28, 0.26, 0.20), (0.85, 0.36, 0.01), (0.75, 0.02, 0.01)])
     return tuple(float(np.interp(part, np.linspace(0.0, 0.75, 4), stops[:, k])) for k in range(3))
 
 

@@ -110,6 +110,38 @@ def _draw(scenes, frames: int, title: str, out: str, size: tuple[int, int], fps:
     say(f"{target.path}: {frames} frames, {frames / fps:g} s, {size[0]} × {size[1]}")
 
 
+@app.command()
+@plainly
+def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a .toml file.")],
+          out: Annotated[Path, typer.Option("-o", "--out", help="The .png picture.")],
+          count: Annotated[int, typer.Option("-n", min=2, max=60, help="How many poses.")] = 12,
+          start: Annotated[float | None, typer.Option("--from", min=0.0, help="The first one, in seconds; the first jump by default.")] = None,
+          end: Annotated[float | None, typer.Option("--to", min=0.0, help="The last one, in seconds.")] = None,
+          actor: Annotated[str | None, typer.Option(help="Whose; the first actor's by default.")] = None,
+          size: Annotated[str, typer.Option(help="Width x height in pixels.")] = "2400x480",
+          overlay: Annotated[str, typer.Option(help="What to draw, with commas.")] = "mesh,jump,balance",
+          library: Library = None, character: Wearing = None) -> None:
+    """Draw a motion as a strip of poses, one picture beside the other."""
+    from PIL import Image
+
+    from .. import scenario as scenarios
+    from ..hosts import GraphicsError, Offscreen
+    from ..output import named, output_file
+    from ..shots import overlays
+    from ..strip import strip as poses
+
+    output_file(out, ".png")
+    pixels = pixels_of(size)
+    made = poses(scenarios.load(scenario), person_of(library, character), count, overlays(overlays_of(overlay)), pixels,
+                 start, end, actor)
+    try:
+        with Offscreen(pixels, Preset.full.value) as stage, named(out):
+            Image.fromarray(stage.frame(made)[..., :3]).save(out)
+    except GraphicsError as error:
+        raise Mistake(str(error)) from None
+    say(f"{out}: {count} poses, {pixels[0]} × {pixels[1]}")
+
+
 def _told(scenes, frames: int):
     """The scenes, with a line of progress for each: whoever began this in the background reads them."""
     for number, scene in enumerate(scenes, 1):

@@ -109,12 +109,13 @@ class Script:
 
     def _over(self, state: CharacterState, dt: float) -> bool:
         move = self.moves[self.index]
+        now = jumping(state)
         if move.jump is not None and self.jumped:
-            return jumping(state) is None or jumping(state).landed
+            return now is None or now.landed
         if self.steps * dt >= move.seconds - 0.5 * dt:
             return True
         if move.jump is not None and not move.runs:
-            return self.asked * dt > PATIENCE and jumping(state) is None
+            return self.asked * dt > PATIENCE and (now is None or now.landed)
         if move.points:
             return self.steps > 0 and (self.path is None or self.progress >= self.path.length - ARRIVED)
         return False
@@ -135,7 +136,8 @@ class Script:
 
     def _ask_jump(self, move: Move, jump: Jump, state: CharacterState, intent: Intent) -> tuple[Script, Intent]:
         """The same with the jump, once it is time for it: near enough at a run, turned to it at rest."""
-        if self.jumped or jumping(state) is not None:
+        now = jumping(state)
+        if self.jumped or now is not None and not now.landed:  # one that has landed gets up for the next
             return replace(self, jumped=True), Intent()
         place = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place)
         way = place[[0, 2]] - state.ground[:2]
