@@ -30,7 +30,7 @@ MOST_LEAD = 0.60
 """How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
 YIELD = (0.05, 0.13)
 """How long a runner's foot gives before it pushes, at least and at most [s]."""
-OVER_BALLS = 0.05
+OVER_BALLS = 0.058
 """A standing jumper's centre of mass leaves so far ahead of the balls of the feet [m], at standard height."""
 SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
@@ -104,7 +104,7 @@ def measures(physique: Physique) -> Measures:
     for angles, pitch, share in ((style.STAND, 0.0, STAND_REACH), (style.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH),
                                  (style.TOUCH, TOES_DOWN, TOUCH_REACH)):
         found.append(_height(physique, angles, pitch, share, feet))
-    return Measures(*found, 1.035 * found[1])
+    return Measures(*found, 1.022 * found[1])
 
 
 def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray) -> float:
@@ -205,9 +205,9 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             need = 0.45 * push(np.array([0.0, deep + rise, 0.0]), np.zeros(3), velocity, gravity).duration * speed
             lead = min(ahead, 0.5 * need + 0.5 * max(ahead - behind, 0.0))
             # heels rise before the body leaves: it must be over the balls by then
-            more = max(balls - lead * float(towards @ facing), 0.0) * facing * (towards @ facing > -0.1)
+            more = max(balls - lead * float(towards @ facing), 0.0) * facing * (far * (towards @ facing) > -0.15)
             leave = middle * [1, 0, 1] + lead * towards + more
-            low = leave - towards * min(need, lead + 0.3 * behind) - 0.4 * more + [0.0, floor + heights.stand - deep, 0.0]
+            low = leave - towards * min(need, lead + 0.1 * behind) - 0.4 * more + [0.0, floor + heights.stand - deep, 0.0]
             leave[1] = floor + _over(heights.leave, np.linalg.norm(lead * towards + more))
             wind_up = 0.34 + 0.9 * np.sqrt(max(start.centre[1] - low[1], 0.0) / max(g, 3.0))
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end

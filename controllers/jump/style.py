@@ -22,6 +22,8 @@ CROUCH = np.radians([44.0, 26.0, -30.0, 52.0, 16.0, 22.0])
 TAKE_OFF = np.radians([10.0, -6.0, -4.0, -138.0, 18.0, 34.0])
 AIR = np.radians([14.0, 10.0, -6.0, -96.0, 24.0, 44.0])
 TOUCH = np.radians([20.0, 14.0, -8.0, -62.0, 26.0, 36.0])
+RUNNER_ARMS = np.radians([-84.0, -80.0])
+"""How far a runner's arms are swung at take-off and in the middle of the flight."""
 ABSORB = np.radians([46.0, 26.0, -26.0, -34.0, 30.0, 40.0])
 
 
@@ -59,7 +61,10 @@ def shapes(effort: float, fall: float, running: bool) -> np.ndarray:
     """
     crouch = min(max(effort / 2.8, 0.25), 1.15) * (0.35 if running else 1.0)
     absorb = min(max(fall / 3.2, 0.25), 1.3)
-    return np.array([STAND, STAND + crouch * (CROUCH - STAND), TAKE_OFF, AIR, TOUCH,
+    leave, air = TAKE_OFF.copy(), AIR.copy()
+    if running:  # arms that swing against the legs have no time to rise above the head
+        leave[3], air[3] = RUNNER_ARMS
+    return np.array([STAND, STAND + crouch * (CROUCH - STAND), leave, air, TOUCH,
                      STAND + absorb * (ABSORB - STAND), STAND])
 
 
