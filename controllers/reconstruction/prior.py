@@ -99,7 +99,7 @@ class Regression:
                 raise ValueError(f"{name} must be above zero, not {getattr(self, name)}")
 
 
-PAPER = Regression(bandwidth="paper", ridge=1e-6, loosening=1.0, form="projection")
+PAPER = Regression(bandwidth="paper", ridge=1e-4, loosening=1.0, form="projection")
 """As near to the letter as runs: without any ridge XᵀDX is singular, since there are fewer neighbours than regressors."""
 
 

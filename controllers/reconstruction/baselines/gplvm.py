@@ -1,0 +1,172 @@
+"""Style-based inverse kinematics (Grochow, Martin, Hertzmann & Popović 2004): a scaled Gaussian process latent variable model.
+
+Features y of a frame are its columns and how much each has changed since the frame before. A Gaussian process maps
+a latent place x to all of them: f(x) with one variance σ²(x), scaled by w_k for each feature. Learning finds x, w and
+the kernel of an active set; reconstruction finds the frame and its x together (their sections 5 and 6).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ..chart import WIDTH
+from ..database import Database
+from ..method import Memory
+from ..prior import FLOOR, Gaussian, fuse
+from ..solver import Solver
+
+_CANDIDATES = 4000
+
+
+@dataclass(frozen=True, eq=False)
+class Process:
+    """A learnt process. latent: (N, q). features: (N, F), less their mean. mean: (F,). scales: (F,) w.
+
+    kernel: (α, β, γ) of α exp(−γ|x − x'|² / 2) + δ / β. energy: its negative log posterior.
+    """
+
+    latent: np.ndarray
+    features: np.ndarray
+    mean: np.ndarray
+    scales: np.ndarray
+    kernel: tuple[float, float, float]
+    energy: float
+
+    def __post_init__(self):
+        alpha, beta, gamma = self.kernel
+        away = np.sum((self.latent[:, None] - self.latent) ** 2, -1)
+        inverse = np.linalg.inv(alpha * np.exp(-gamma / 2 * away) + np.eye(len(away)) / beta)
+        object.__setattr__(self, "_inverse", inverse)
+        object.__setattr__(self, "_map", inverse @ self.features)
+
+    def predict(self, x: np.ndarray) -> tuple[np.ndarray, float, np.ndarray, np.ndarray]:
+        """At a latent place (q,): features (F,), variance σ², and their derivatives by x, (F, q) and (q,)."""
+        alpha, beta, gamma = self.kernel
+        away = x - self.latent
+        k = alpha * np.exp(-gamma / 2 * np.sum(away ** 2, 1))
+        slope = -gamma * k[:, None] * away
+        drawn = self._inverse @ k
+        variance = max(alpha + 1 / beta - k @ drawn, 1e-9)
+        return self.mean + k @ self._map, variance, self._map.T @ slope, -2.0 * drawn @ slope
+
+    def misfit(self, x: np.ndarray, y: np.ndarray) -> float:
+        """|W(y − f(x))|² / 2σ² + (F/2) ln σ² + |x|² / 2 of features (F,) at a latent place."""
+        mean, variance, _, _ = self.predict(x)
+        return float(np.sum((self.scales * (y - mean)) ** 2) / (2 * variance) + len(y) / 2 * np.log(variance) + x @ x / 2)
+
+    def place(self, y: np.ndarray, x: np.ndarray, steps: int = 4) -> np.ndarray:
+        """The latent place (q,) of features (F,): damped Gauss-Newton of `misfit` from x."""
+        best, damping = self.misfit(x, y), 1e-3
+        for _ in range(steps):
+            mean, variance, slope, thinning = self.predict(x)
+            error, slope = self.scales * (y - mean), self.scales[:, None] * slope
+            total = error @ error
+            gradient = -slope.T @ error / variance + (len(y) - total / variance) / (2 * variance) * thinning + x
+            curve = (slope.T @ slope / variance + len(y) / (2 * variance ** 2) * np.outer(thinning, thinning) + np.eye(len(x)))
+            step = np.linalg.solve(curve + damping * np.diag(np.diag(curve)), -gradient)
+            reached = self.misfit(x + step, y)
+            if reached < best:
+                x, best, damping = x + step, reached, damping / 4
+            else:
+                damping = max(10 * damping, 0.1)
+        return x
+
+
+def learn(features: np.ndarray, dimensions: int = 3, iterations: int = 150) -> Process:
+    """The process of an active set's features (N, F), by L-BFGS from their principal components.
+
+    Minimises (F/2) ln|K| + ½ Σ w_k² y_kᵀK⁻¹y_k + ½ Σ|x|² + ln αβγ − N Σ ln w_k; w has a closed form.
+    """
+    mean = features.mean(0)
+    y = features - mean
+    count, width = y.shape
+    u, size, _ = np.linalg.svd(y / np.maximum(y.std(0), 1e-6), full_matrices=False)
+    start = np.zeros((count, dimensions))
+    start[:, :min(dimensions, len(size))] = u[:, :dimensions] * np.sqrt(count)
+    upper = np.triu_indices(count, 1)
+
+    def unpack(z):
+        return z[:-3].reshape(count, dimensions), np.exp(z[-3:])
+
+    def scales(solved):
+        return np.sqrt(count / np.maximum(np.sum(y * solved, 0), 1e-9))
+
+    def energy(z):
+        x, (alpha, noise, gamma) = unpack(z)
+        difference = x[:, None] - x
+        away = np.sum(difference ** 2, -1)
+        k = alpha * np.exp(-gamma / 2 * away)
+        lower = np.linalg.cholesky(k + noise * np.eye(count))
+        inverse = np.linalg.inv(lower)
+        inverse = inverse.T @ inverse
+        solved = inverse @ y
+        w = scales(solved)
+        value = (width * np.sum(np.log(np.diag(lower))) + 0.5 * np.sum(w ** 2 * np.sum(y * solved, 0))
+                 + 0.5 * np.sum(x ** 2) + np.log(alpha / noise * gamma) - count * np.sum(np.log(w)))
+        by_kernel = 0.5 * (width * inverse - (solved * w ** 2) @ solved.T)
+        pulled = by_kernel * k
+        by_x = -2 * gamma * np.einsum("ij,ijq->iq", pulled, difference) + x
+        by_log = np.array([pulled.sum(), noise * np.trace(by_kernel), -gamma / 2 * np.sum(pulled * away)]) + [1.0, -1.0, 1.0]
+        return value, np.concatenate([by_x.ravel(), by_log])
+
+    gamma = 1.0 / max(np.median(np.sum((start[:, None] - start) ** 2, -1)[upper]), 1e-6)
+    begin = np.concatenate([start.ravel(), np.log([1.0, 0.05, gamma])])
+    found = minimize(energy, begin, jac=True, method="L-BFGS-B", options={"maxiter": iterations},
+                     bounds=[(None, None)] * start.size + [(-6.0, 6.0), (-9.0, 3.0), (-6.0, 6.0)])
+    x, (alpha, noise, gamma) = unpack(found.x)
+    kernel = alpha * np.exp(-gamma / 2 * np.sum((x[:, None] - x) ** 2, -1)) + noise * np.eye(count)
+    return Process(x, y, mean, scales(np.linalg.solve(kernel, y)), (alpha, 1 / noise, gamma), float(found.fun))
+
+
+def active_set(features: np.ndarray, count: int) -> np.ndarray:
+    """Numbers (count,) of features (N, F) that lie far from each other, the first nearest to the mean."""
+    chosen = [int(np.argmin(np.sum((features - features.mean(0)) ** 2, 1)))]
+    least = np.full(len(features), np.inf)
+    while len(chosen) < min(count, len(features)):
+        least = np.minimum(least, np.sum((features - features[chosen[-1]]) ** 2, 1))
+        chosen.append(int(np.argmax(least)))
+    return np.array(chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class SGPLVM:
+    """The prior of a process. rounds: how often frame and latent place take turns. loosening: of its variance."""
+
+    process: Process
+    solver: Solver
+    rounds: int = 3
+    loosening: float = 1.0
+
+    @staticmethod
+    def of(database: Database, solver: Solver, active: int = 150, dimensions: int = 3, seed: int = 0) -> SGPLVM:
+        """Learnt from `active` frames of a database, chosen to be diverse: a kernel matrix of more is too slow."""
+        last = database.segments(1)
+        some = np.random.default_rng(seed).permutation(last)[:_CANDIDATES]
+        frames = database.frames[some + 1].astype(float)
+        features = np.concatenate([frames, frames - database.frames[some]], -1)
+        return SGPLVM(learn(features[active_set(features / np.maximum(features.std(0), 1e-6), active)], dimensions), solver)
+
+    def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
+        """See `method.Prior`. The hint is the latent place."""
+        before = memory.frames[0]
+        x = memory.hint
+        if x is None:
+            y = np.concatenate([before, before - memory.frames[1]]) - self.process.mean
+            nearest = np.argmin(np.sum((self.process.scales * (self.process.features - y)) ** 2, 1))
+            x = self.process.place(y + self.process.mean, self.process.latent[nearest], 10)
+        for _ in range(self.rounds - 1):
+            frame = self.solver.solve(self._at(x, before), goals).frame
+            x = self.process.place(np.concatenate([frame, frame - before]), x)
+        return self._at(x, before), x
+
+    def _at(self, x, before):
+        """What a latent place believes of the frame: its columns, and how they change."""
+        mean, variance, _, _ = self.process.predict(x)
+        spread = variance * self.loosening / self.process.scales ** 2
+        least = FLOOR ** 2
+        return fuse(Gaussian(mean[:WIDTH], np.maximum(spread[:WIDTH], least)),
+                    Gaussian(before + mean[WIDTH:], np.maximum(spread[WIDTH:], least)))

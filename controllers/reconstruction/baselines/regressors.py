@@ -1,0 +1,152 @@
+"""Global regressors from the points' last half second to the frame: a ridge regression, and a small network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..method import Memory
+from ..prior import FLOOR, Gaussian
+from .windows import Samples, window
+
+_CHUNK = 8192
+
+
+@dataclass(frozen=True, eq=False)
+class Layers:
+    """A network of fully connected layers, ReLU between them; one layer alone is a linear map.
+
+    weights, biases: of the layers, (inputs, outputs) and (outputs,). ins, outs: (2, …) mean and deviation of inputs
+    and outputs. deviation: (D,) its error's standard deviation on samples that it did not see. loosening: of that
+    error's variance.
+    """
+
+    weights: tuple[np.ndarray, ...]
+    biases: tuple[np.ndarray, ...]
+    ins: np.ndarray
+    outs: np.ndarray
+    deviation: np.ndarray
+    loosening: float = 10.0
+
+    def predict(self, inputs: np.ndarray) -> np.ndarray:
+        """Frames (..., D) for inputs (..., P)."""
+        return _forward(self.weights, self.biases, (inputs - self.ins[0]) / self.ins[1])[-1] * self.outs[1] + self.outs[0]
+
+    def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
+        """See `method.Prior`."""
+        mean = self.predict(window(memory, seen).astype(np.float32)).astype(float)
+        return Gaussian(mean, np.maximum(self.deviation, FLOOR) ** 2).loosened(self.loosening), None
+
+    def save(self, path: str | Path) -> None:
+        """Write it as an .npz file."""
+        arrays = {f"weights{i}": w for i, w in enumerate(self.weights)} | {f"biases{i}": b for i, b in enumerate(self.biases)}
+        with Path(path).open("wb") as file:
+            np.savez(file, ins=self.ins, outs=self.outs, deviation=self.deviation, loosening=self.loosening, **arrays)
+
+    @staticmethod
+    def load(path: str | Path) -> Layers:
+        """Read what `save` wrote. OSError or ValueError for anything else."""
+        with np.load(path) as file:
+            if "outs" not in file:
+                raise ValueError(f"{path}: is no regressor")
+            count = sum(name.startswith("weights") for name in file)
+            return Layers(tuple(file[f"weights{i}"] for i in range(count)), tuple(file[f"biases{i}"] for i in range(count)),
+                          file["ins"], file["outs"], file["deviation"], float(file["loosening"]))
+
+
+def ridge(samples: Samples, strength: float = 1e-3, held_out: float = 0.05, seed: int = 0) -> Layers:
+    """Ridge regression on all samples once straight and astray; λ is `strength` times the number of samples.
+
+    held_out: the share of frames, in one piece, that its error is told from.
+    """
+    learnt, rest = _split(samples, held_out)
+    rng = np.random.default_rng(seed)
+    ins, outs = _standard(samples, learnt, rng)
+    size = len(ins[0])
+    gram, across = np.zeros((size, size)), np.zeros((size, len(outs[0])))
+    for chosen in _chunks(learnt):
+        x, y = samples.draw(chosen, rng)
+        x, y = (x - ins[0]) / ins[1], (y - outs[0]) / outs[1]
+        gram += x.T @ x
+        across += x.T @ y
+    slope = np.linalg.solve(gram + strength * len(learnt) * np.eye(size), across)
+    return _judged(samples, rest, Layers((slope,), (np.zeros(len(outs[0])),), ins, outs, np.ones(len(outs[0]))))
+
+
+def network(samples: Samples, hidden: tuple[int, ...] = (384, 384), batches: int = 10_000, size: int = 256,
+            rate: float = 1e-3, held_out: float = 0.05, seed: int = 0,
+            progress: Callable[[int, float], None] | None = None) -> Layers:
+    """A small network, learnt by Adam (Kingma & Ba 2015) whose rate falls along a cosine; the same from the same seed.
+
+    progress: called with each batch's number and mean squared error.
+    """
+    learnt, rest = _split(samples, held_out)
+    rng = np.random.default_rng(seed)
+    ins, outs = (a.astype(np.float32) for a in _standard(samples, learnt, rng))
+    widths = (len(ins[0]), *hidden, len(outs[0]))
+    weights = [rng.normal(0, np.sqrt(2 / a), (a, b)).astype(np.float32) for a, b in zip(widths, widths[1:], strict=False)]
+    weights[-1] *= 0.1
+    values = [*weights, *(np.zeros(b, np.float32) for b in widths[1:])]
+    first, second = ([np.zeros_like(v) for v in values] for _ in range(2))
+    count = len(weights)
+    for batch in range(batches):
+        x, y = samples.draw(rng.choice(learnt, size), rng)
+        x, y = ((x - ins[0]) / ins[1]).astype(np.float32), ((y - outs[0]) / outs[1]).astype(np.float32)
+        found = _forward(values[:count], values[count:], x)
+        error = found[-1] - y
+        now = rate * 0.5 * (1 + np.cos(np.pi * batch / batches))
+        for i, slope in enumerate(_backward(values[:count], found, error * (2 / error.size))):
+            first[i] += 0.1 * (slope - first[i])
+            second[i] += 0.001 * (slope * slope - second[i])
+            values[i] -= (now / (1 - 0.9 ** (batch + 1))) * first[i] / (np.sqrt(second[i] / (1 - 0.999 ** (batch + 1))) + 1e-8)
+        if progress is not None:
+            progress(batch, float(np.mean(error ** 2)))
+    return _judged(samples, rest, Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.ones(widths[-1])))
+
+
+def _forward(weights, biases, x):
+    """What each layer gives out, the input first."""
+    found = [x]
+    for i, (w, b) in enumerate(zip(weights, biases, strict=True)):
+        x = x @ w + b
+        found.append(np.maximum(x, 0, out=x) if i + 1 < len(weights) else x)
+    return found
+
+
+def _backward(weights, found, slope):
+    """Derivatives of the loss by all weights, then all biases, from that by the output (B, D)."""
+    by_weights, by_biases = [], []
+    for i in range(len(weights) - 1, -1, -1):
+        by_weights.insert(0, found[i].T @ slope)
+        by_biases.insert(0, slope.sum(0))
+        slope = (slope @ weights[i].T) * (found[i] > 0)
+    return by_weights + by_biases
+
+
+def _split(samples, held_out):
+    """Samples to learn from, and those in one piece at the end to judge by."""
+    at = len(samples) - max(1, int(held_out * len(samples)))
+    return np.arange(at), np.arange(at, len(samples))
+
+
+def _chunks(chosen):
+    return np.array_split(chosen, max(1, len(chosen) // _CHUNK))
+
+
+def _standard(samples, learnt, rng):
+    """Mean and deviation (2, …) of inputs and outputs, from some samples."""
+    drawn = samples.draw(rng.choice(learnt, min(len(learnt), _CHUNK), replace=False), rng)
+    return tuple(np.stack([a.mean(0), np.maximum(a.std(0), 1e-3)]) for a in drawn)
+
+
+def _judged(samples, rest, layers):
+    """The same layers with their error on the samples held out."""
+    square, rng = 0.0, np.random.default_rng(1)
+    for chosen in _chunks(rest):
+        x, y = samples.draw(chosen, rng)
+        square = square + np.sum((layers.predict(x) - y) ** 2, 0)
+    return Layers(layers.weights, layers.biases, layers.ins, layers.outs, np.sqrt(square / len(rest)))
