@@ -12,6 +12,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from controllers.navigation import gap
+
 from .scene import Box, Pillar, Prop
 
 MARGIN = 0.18
@@ -106,11 +108,9 @@ def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) 
 
 
 def blocked(point: np.ndarray, props: tuple[Prop, ...], margin: float = 0.1) -> int | None:
-    """The number of a prop that a point (3,) lies inside of, if there is one."""
-    for i, prop in enumerate(props):
-        if (solids := _solids((prop,), margin)) is not None and _top_around(point, solids) is not None:
-            return i
-    return None
+    """The number of a prop that a point (3,) lies inside of, or nearer to than `margin` [m], if there is one."""
+    at = np.asarray(point, float)[None]
+    return next((i for i, prop in enumerate(props) if gap(at, prop)[0] < margin), None)
 
 
 def _no_zeros(x: np.ndarray) -> np.ndarray:
