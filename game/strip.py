@@ -15,7 +15,7 @@ from .world import figures
 
 FOV = 0.42
 """Of the camera, which stands far off so that all poses are seen alike [rad]."""
-AROUND = 0.14
+AROUND = 0.24
 """What is left free around a body [m]."""
 AFTER = 0.35
 """A jump is shown until so long after its landing [s]."""

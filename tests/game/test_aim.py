@@ -1,0 +1,94 @@
+"""Aiming: where the ring goes, what is asked for when the button is let go. No window, no library."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, Aim
+from game.input.wish import Wish
+from game.scene import Box
+from game.world import DT
+from stand_in import Glide
+
+HELD, FREE = Wish(jump=True), Wish()
+
+
+@dataclass(frozen=True)
+class Refusing:
+    """What a supervisor remembers, as far as aiming reads it."""
+
+    refused: str = ""
+
+
+def standing(velocity=(0.0, 0.0, 0.0), heading=0.0, refused=""):
+    state = Glide().start((1.0, 2.0, heading))
+    return replace(state, velocity=np.array(velocity), memory=Refusing(refused))
+
+
+def aimed(wish, seconds, state, aim=Aim(), yaw=0.0):
+    for _ in range(round(seconds / DT)):
+        aim = aim.step(wish, yaw, state, False, DT)
+    return aim
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi), st.floats(0.2, 5.0))
+def test_the_stick_pushes_the_ring_as_the_camera_looks_and_not_too_far(yaw, stick, seconds):
+    push = Wish(jump=True, move=(math.sin(stick), math.cos(stick)))
+    aim = aimed(push, seconds, standing(), yaw=yaw)
+    away = math.hypot(*aim.offset)
+    assert away <= FARTHEST + 1e-9
+    # right on the stick is to the right of where the camera looks, which is less heading
+    assert math.remainder(math.atan2(*aim.offset) - (yaw - stick), math.tau) == pytest.approx(0.0, abs=1e-6)
+    assert aim.stands and aim.facing == pytest.approx(math.atan2(*aim.offset))
+
+
+def test_nothing_is_asked_for_while_the_button_is_held():
+    aim = aimed(HELD, 0.5, standing())
+    assert aim.aiming and aim.asked(standing(), (), 9.81) is None
+    asked = aim.step(FREE, 0.0, standing(), False, DT).asked(standing(), (), 9.81)
+    assert np.allclose(asked.place, [1.0, 0.0, 2.0]), "no push: straight up"
+
+
+def test_holding_longer_jumps_higher_up_to_a_limit_and_slower_where_gravity_is_less():
+    def airtime(seconds, gravity=9.81):
+        return aimed(HELD, seconds, standing()).target(standing(), (), gravity).airtime
+    assert AIRTIME <= airtime(0.1) < airtime(0.6) < airtime(5.0) == LONGEST
+    assert airtime(5.0, 1.62) == pytest.approx(LONGEST * math.sqrt(9.81 / 1.62))
+
+
+def test_a_body_turns_before_it_jumps():
+    aim = aimed(Wish(jump=True, move=(1.0, 0.0)), 0.5, standing())
+    let_go = aim.step(FREE, 0.0, standing(), False, DT)
+    assert let_go.asked(standing(), (), 9.81) is None
+    assert let_go.asked(standing(heading=let_go.facing), (), 9.81) is not None
+
+
+def test_a_walker_jumps_ahead_and_further_the_faster():
+    far = []
+    for speed in (1.2, 3.0):
+        state = standing((speed, 0.0, 0.0), heading=0.7)
+        aim = aimed(HELD, 0.2, state)
+        assert aim.moving and not aim.stands and aim.facing is None
+        assert math.atan2(*aim.offset) == pytest.approx(0.7)
+        far.append(math.hypot(*aim.offset))
+    assert far[1] > far[0] + 0.5
+
+
+def test_the_ring_climbs_onto_what_is_low_enough():
+    props = (Box((1.0, 0.25, 3.0), (1.0, 0.5, 1.0)), Box((1.0, 2.0, 2.0), (0.4, 0.2, 0.4)))
+    aim = replace(aimed(HELD, 0.2, standing()), offset=(0.0, 1.0))
+    assert aim.target(standing(), props, 9.81).place[1] == 0.5
+    assert replace(aim, offset=(0.0, 0.3)).target(standing(), (props[1],), 9.81).place[1] == 0.0
+
+
+def test_a_wish_is_given_up_when_refused_at_rest_or_after_a_while():
+    let_go = aimed(HELD, 0.2, standing()).step(FREE, 0.0, standing(), False, DT)
+    assert let_go.waiting == PATIENCE
+    assert let_go.step(FREE, 0.0, standing(refused="too far"), False, DT) == Aim()
+    assert aimed(FREE, PATIENCE - 0.1, standing(), let_go).waiting > 0.0
+    assert aimed(FREE, PATIENCE + 0.1, standing(), let_go) == Aim()
+    assert let_go.step(HELD, 0.0, standing(), True, DT) == Aim(), "who jumps aims at nothing"
