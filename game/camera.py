@@ -200,7 +200,8 @@ def cycled(camera: PlayerCamera, ground, level: float = 0.0) -> PlayerCamera:
         return Orbit(pivot=here, target=view.target, distance=camera.distance, arm=arm, wanted_pitch=pitch, **turned)
     arm = min(max(float(np.linalg.norm(here - view.eye)), s.nearest), s.farthest)
     target = view.eye + arm * forward(yaw, pitch)
-    return Follow(focus=here, slack=target - here, target=target, distance=arm, arm=arm, still=0.0,
+    # however near or far one flew, the arm goes back to its usual length
+    return Follow(focus=here, slack=target - here, target=target, arm=arm, still=0.0,
                   wanted_pitch=min(max(pitch, s.lowest), s.highest), **turned)
 
 

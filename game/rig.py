@@ -25,6 +25,8 @@ SHORTEN = 0.025
 """Half-life [s] of an arm that gives way to what is beside it."""
 WHISKER = 0.5
 """A prop this far beside the arm [rad] begins to shorten it, so that it is short when the prop arrives."""
+MET = 0.01
+"""An eye nearer than this to what it looks at [m] sees nothing that way."""
 _YAWS, _PITCHES = 0.025 * np.arange(1, 11), 0.05 * np.arange(1, 5)
 _FAN = np.concatenate([[(0.0, 0.0)], [(side * a, 0.0) for side in (-1, 1) for a in _YAWS],
                        [(0.0, side * a) for side in (-1, 1) for a in _PITCHES]])
@@ -147,8 +149,10 @@ class Armed(Turned):
         return replace(self, distance=min(max(self.distance * factor, s.nearest), s.farthest))
 
     def view(self) -> Camera:
-        """What to draw with."""
-        return Camera(self.eye, self.target, fov=self.settings.fov)
+        """What to draw with: along the arm, too, where props have pushed the eye onto what it looks at."""
+        met = np.linalg.norm(self.target - self.eye) < MET
+        target = self.eye + forward(self.yaw, self.pitch) if met else self.target
+        return Camera(self.eye, target, fov=self.settings.fov)
 
     def placed(self, ground, props: Sequence[Prop]):
         """The camera at rest, as far from its target as props let it; ground: (3,) of whom it spares."""

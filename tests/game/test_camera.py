@@ -12,6 +12,7 @@ from game.camera import CUT, CameraSettings, Follow, Free, between, cycled
 from game.input import Wish
 from game.obstacles import FLOOR, MARGIN, above_floor, free_way, outside
 from game.rail import dolly, fixed, on_rail
+from game.rig import forward
 from game.scene import Box, Goal, Pillar
 
 STILL = Wish()
@@ -155,8 +156,12 @@ def test_changing_cameras_leaves_the_eye_where_it_is(start, times, hands, headin
 
 def test_it_comes_back_to_the_character_after_a_flight():
     away = settle(flying(), HERE, 3.0, 180, wish=Wish(move=(0.5, -1.0), turn=-0.5))
-    back = settle(cycled(away, HERE), HERE, 4.0, 240)
-    assert isinstance(back, Follow) and np.allclose(back.view().target, [0, 1, 0], atol=0.01)
+    near = settle(flying(), HERE, 3.0, 180, wish=Wish(move=(0.0, 1.0)))
+    assert np.linalg.norm(near.view().eye - [0, 1, 0]) < 1.5
+    for flown in (away, near):
+        back = settle(cycled(flown, HERE), HERE, 4.0, 240)
+        assert isinstance(back, Follow) and np.allclose(back.view().target, [0, 1, 0], atol=0.01)
+        assert np.linalg.norm(back.view().eye - back.view().target) == pytest.approx(Follow.distance, abs=0.01)
 
 
 @given(stage, st.lists(st.tuples(pair, unit), min_size=5, max_size=40))
@@ -287,3 +292,9 @@ def test_a_rail_goes_through_its_points_at_one_speed(points):
         assert np.linalg.norm(along - point, axis=-1).min() < 0.05
     steps = np.linalg.norm(np.diff(along, axis=0), axis=-1)
     assert np.median(steps) >= 0.9 * steps.max()
+
+
+def test_an_eye_that_props_push_onto_its_target_looks_along_its_arm():
+    camera = Follow.behind(HERE, yaw=0.5)
+    met = replace(camera, eye=camera.target.copy()).view()
+    assert np.allclose(met.target - met.eye, forward(0.5, 0.25))
