@@ -102,8 +102,8 @@ def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:
 
 def run(scenario: Scenario, controller: Any) -> Iterator[Frame]:
     """Every frame of a scenario, in order."""
-    for number, before, after, alpha in _sampled(worlds(scenario, controller), scenario):
-        yield Frame(number, number / scenario.fps, before, after, alpha)
+    for number, before, after, alpha in _sampled(acts(scenario, controller), scenario):
+        yield Frame(number, number / scenario.fps, before.world, after.world, alpha, before.refused)
 
 
 def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None

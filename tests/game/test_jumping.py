@@ -1,0 +1,197 @@
+"""Jumps from end to end: scripts that jump, refusals, logs with jumps, what is drawn of them. One library, one run each."""
+
+import numpy as np
+import pytest
+
+from controllers.person import person
+from game import film
+from game.input.script import jumping
+from game.input.wish import Wish
+from game.jumping import LAYERS, explained
+from game.scenario import ScenarioError, load
+from game.scene import Camera, Line, Overlays
+from game.render.sketches import sketched
+from game.session import Timeline, opening
+from game.strip import strip
+from game.world import figures
+from test_scenario import written
+
+TEXT = """
+title = "Jumps"
+duration = 16
+props = [{ centre = [0, 0.15, 2.0], size = [2, 0.3, 2] }]
+[[actors]]
+name = "A"
+moves = [
+    { for = 0.3, stop = true },
+    { jump_to = [0, 1.4] },
+    { jump = 0.2 },
+    { for = 1.6, stop = true },
+    { jump_to = [0, 0, 40] },
+    { for = 0.2, stop = true },
+]
+[[actors]]
+name = "B"
+start = [3, 0, 0]
+body = { height = 1.2, mass = 24 }
+moves = [{ for = 0.4, stop = true }, { jump_to = [3.4, 0.3] }]
+[[actors]]
+name = "C"
+start = [-3, 0, 0]
+gravity = 1.62
+moves = [{ velocity = [2.6, 0, 0], jump_to = [-3, 6], for = 6 }, { for = 1, stop = true }]
+"""
+
+
+@pytest.fixture(scope="module")
+def somebody():
+    return person()
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory, somebody):
+    scenario = load(written(tmp_path_factory.mktemp("jumps"), TEXT))
+    return scenario, list(film.run(scenario, somebody))
+
+
+def jumps_of(frames, who):
+    """The plans that an actor carried out, in order."""
+    plans = []
+    for frame in frames:
+        now = jumping(frame.after.characters[who].state)
+        if now is not None and all(now.plan is not plan for plan in plans):
+            plans.append(now.plan)
+    return plans
+
+
+def soles_at(plan, someone):
+    """The middle of both soles as they come to stand (3,)."""
+    from controllers.body import forward_kinematics
+    from controllers.body.support import sole_corners
+    skeleton = someone.controller.skeleton
+    pose = plan.at(plan.lowest)
+    return sole_corners(skeleton, *forward_kinematics(skeleton, pose.root, pose.rotations)).mean(0)
+
+
+def test_everybody_lands_where_the_script_says(played):
+    _, frames = played
+    first, up = jumps_of(frames, 0)
+    people = frames[-1].after.characters
+    assert np.linalg.norm(soles_at(first, people[0]) - [0, 0.3, 1.4]) < 0.02, "on the platform, whose height it finds"
+    assert np.ptp(np.array([plan.feet[:, 1].min() for plan in (first, up)])) < 1e-6, "and up from there"
+    risen = up.centres[:, 1].max() - up.path.leave[1]
+    assert risen == pytest.approx(0.2, abs=0.005)
+    child, = jumps_of(frames, 1)
+    assert np.linalg.norm(soles_at(child, people[1]) - [3.4, 0, 0.3]) < 0.02
+    runner, = jumps_of(frames, 2)
+    assert np.abs(runner.feet[:, [0, 2]].mean(0) - [-3, 6]).max() < 0.06 and runner.path.passing[2] > 1.2
+    assert runner.path.gravity[1] == -1.62 and child.path.gravity[1] == -9.81
+
+
+def test_a_child_is_as_large_as_it_is(played):
+    _, frames = played
+    adult, child, _ = frames[0].before.characters
+    assert child.state.pose.root[1] / adult.state.pose.root[1] == pytest.approx(1.2 / 1.741, abs=0.02)
+    assert child.controller.controllers["jump"].physique.mass == 24
+
+
+def test_a_jump_that_nobody_can_make_is_told_and_the_run_goes_on(played):
+    _, frames = played
+    line, = frames[-1].refused
+    assert line.startswith("A: no jump to (0, 0, 40): ") and "reach" in line
+    assert not frames[200].refused
+
+
+def test_a_run_with_jumps_is_the_same_to_the_bit(played, somebody):
+    scenario, frames = played
+    for frame, again in zip(frames[::20], list(film.run(scenario, person()))[::20], strict=True):
+        for a, b in zip(frame.after.characters, again.after.characters):
+            assert np.array_equal(a.state.pose.root, b.state.pose.root)
+            assert np.array_equal(a.state.pose.rotations, b.state.pose.rotations)
+
+
+FAULTS = [
+    ("{ jump = 0.2 }", "{ jump = -1 }", "actors[0].moves[2].jump: input should be greater than 0, got -1"),
+    ("{ jump = 0.2 }", "{ jump = 0.2, airtime = 0.5 }", "actors[0].moves[2]: `airtime` goes with jump_to"),
+    ("{ jump = 0.2 }", "{ jump = 0.2, velocity = [1, 0, 0], for = 1 }", "actors[0].moves[2]: needs exactly one of"),
+    ("{ jump_to = [0, 1.4] }", "{ jump_to = [0, 1.4], within = 1 }", "actors[0].moves[1]: `within` goes with jump_to and a run-up"),
+    ("{ jump_to = [0, 1.4] }", "{ jump_to = [0, 1.4], facing = 3 }", "actors[0].moves[1]: `facing` goes with"),
+    ("jump_to = [-3, 6], for = 6", "jump_to = [-3, 6]", "actors[2].moves[0]: velocity needs `for`"),
+    ("mass = 24", "mass = 0", "actors[1].body.mass: input should be greater than or equal to 5, got 0"),
+    ("height = 1.2", "height = nan", "actors[1].body.height:"),
+    ("gravity = 1.62", "gravity = -9.81", "actors[2].gravity: input should be greater than or equal to 0.2, got -9.81"),
+    ("duration = 16", 'duration = 16\nstage = "moon"', "stage: input should be 'course', got 'moon'"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "says"), FAULTS)
+def test_a_fault_is_one_line_that_names_the_field(tmp_path, old, new, says):
+    assert old in TEXT
+    with pytest.raises(ScenarioError) as error:
+        load(written(tmp_path, TEXT.replace(old, new, 1)))
+    assert says in str(error.value) and "\n" not in str(error.value)
+
+
+def hands(seconds):
+    """Up, ahead, and at a run."""
+    held, still = Wish(jump=True), Wish()
+    ahead, run = Wish(jump=True, move=(0.0, 1.0)), Wish(move=(0.0, 1.0), run=1.0)
+    plan = [(held, 20), (still, 150), (ahead, 40), (still, 150), (run, 90), (Wish(move=(0.0, 1.0), run=1.0, jump=True), 10), (run, 140)]
+    return [wish.rounded() for wish, ticks in plan for _ in range(ticks)][:seconds * 60]
+
+
+def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
+    ends, jumped = [], 0
+    for _ in range(2):
+        timeline, before = Timeline(opening(somebody)), None
+        for wish in hands(10):
+            timeline.advance((wish,))
+            now = jumping(timeline.now.after.characters[0].state)
+            jumped += now is not None and before is None
+            before = now
+        ends.append(timeline.now.after.characters[0].state)
+    assert jumped == 6, "three jumps, twice"
+    assert np.array_equal(ends[0].pose.rotations, ends[1].pose.rotations) and np.array_equal(ends[0].ground, ends[1].ground)
+    assert ends[0].floor == 0.0 and np.isfinite(ends[0].pose.root).all()
+
+
+def test_cameras_follow_a_jumper_without_a_jerk(somebody):
+    timeline, eyes = Timeline(opening(somebody)), []
+    for wish in hands(10):
+        timeline.advance((wish,))
+        eyes.append(timeline.now.players[0].camera.target[1])
+    assert np.abs(np.diff(eyes)).max() < 0.03 and np.ptp(eyes) > 0.05
+    assert np.ptp(eyes[-45:]) < 0.05
+
+
+def test_what_is_drawn_is_drawn_for_the_overlays_that_show_it(played):
+    _, frames = played
+    frame = next(f for f in frames if jumping(f.after.characters[0].state) is not None)
+    people = figures(frame.before, frame.after, frame.alpha)
+    assert explained(people, frame.before, frame.after, frame.alpha, Overlays()) == people
+    drawn = explained(people, frame.before, frame.after, frame.alpha, Overlays(jump=True, balance=True, forces=True))
+    assert {sketch.layer for sketch in drawn[0].sketches} == set(LAYERS)
+    plan = jumping(frame.after.characters[0].state).plan
+    arc = next(s for s in drawn[0].sketches if isinstance(s, Line) and s.layer == "jump")
+    assert np.allclose(arc.points[0], plan.path.leave) and np.allclose(arc.points[-1], plan.path.land)
+    camera = Camera(np.array([-4.0, 1.0, 1.0]), np.array([0.0, 1.0, 0.0]))
+    for layer in LAYERS:
+        within, through = sketched(drawn, Overlays(**{layer: True}), camera, 700.0)
+        rows = np.concatenate([within, through])
+        assert len(rows) and np.isfinite(rows).all() and (rows[:, 6] >= 0).all() and (rows[:, 6] <= 1).all()
+    assert not any(map(len, sketched(drawn, Overlays(), camera, 700.0)))
+
+
+def test_a_strip_shows_the_first_jump_from_its_side(played, somebody):
+    scenario, _ = played
+    scenes = strip(scenario, somebody, 6, Overlays(), (1200, 400))
+    assert [scene.part[0] for scene in scenes] == pytest.approx([n / 6 for n in range(6)])
+    heights = [scene.figures[0].positions[:, 1].max() for scene in scenes]
+    assert max(heights) > heights[0] + 0.1
+    for scene in scenes:
+        sight = scene.camera.target - scene.camera.eye
+        assert abs(sight[2]) < 0.01 * abs(sight[0]) and np.linalg.norm(sight) > 3
+    with pytest.raises(ScenarioError, match="no actor is called 'Z'; there are A, B, C"):
+        strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="Z")
+    with pytest.raises(ScenarioError, match="nothing lies from 9 to 5 s"):
+        strip(scenario, somebody, 6, Overlays(), (1200, 400), 9.0, 5.0)
