@@ -74,6 +74,8 @@ FAULTS = [
     ("duration = 2", 'duration = 2\nprops = [{ centre = [0, 1, 0] }]', "props[0].size: is missing, and needed"),
     ("duration = 2", 'duration = 2\nprops = [{ centre = [0, 1, 5], size = [1, 2, 1] }]\n[[shots]]\nkind = "dolly"\npath = [[-3, 1, 5], [3, 1, 5]]\ntarget = [0, 1, 0]',
      "shots[0].path: the camera would be inside of props[0]"),
+    ("duration = 2", 'duration = 2\nstage = "course"\nprops = [{ centre = [0, 1, -5], size = [1, 2, 1] }]\n[[shots]]\nkind = "fixed"\neye = [0, 1, -5]\ntarget = [0, 1, 0]',
+     "shots[0].eye: the camera would be inside of props[0]"),
 ]
 
 
