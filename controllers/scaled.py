@@ -74,6 +74,10 @@ class Scaled:
         """Whether it goes on."""
         return self.controller.status(self._shrunk(state))
 
+    def within(self, state: CharacterState, intent: Intent) -> tuple[CharacterState, Intent]:
+        """State and intent as the controller within has them, in the size that it is made for."""
+        return self._shrunk(state), self._asked(intent)
+
     @property
     def _speeds(self) -> np.ndarray:
         """What v_f, ω and v_l grow by."""

@@ -1,21 +1,28 @@
-"""Who is at work in a character: panels look through the supervisor at the controller on duty."""
+"""Who is at work in a character: panels look through supervisor and size at the controller on duty."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from controllers.scaled import Scaled
 from controllers.supervisor import Duty
 
 from ..world import Character
 
 
 def acting(character: Character) -> Character:
-    """The character as the controller on duty has it, with that one's memory; itself without a supervisor."""
-    duty = character.state.memory
-    if not isinstance(duty, Duty):
-        return character
-    return replace(character, controller=character.controller.controllers[duty.active],
-                   state=replace(character.state, memory=duty.memory))
+    """The character as the controller on duty has it: with that one's memory, in the size of its library.
+
+    Itself where one controller alone moves it in its own size.
+    """
+    controller, state, intent = character.controller, character.state, character.intent
+    if isinstance(state.memory, Duty):
+        controller = controller.controllers[state.memory.active]
+        state = replace(state, memory=state.memory.memory)
+    if isinstance(controller, Scaled):
+        state, intent = controller.within(state, intent)
+        controller = controller.controller
+    return replace(character, controller=controller, state=state, intent=intent)
 
 
 def why(character: Character) -> str:

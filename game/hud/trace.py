@@ -17,7 +17,7 @@ STEPS = 10 * RATE
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """N steps of one character, oldest first; the last is the moment looked at.
+    """N steps of one character, oldest first; the last is the moment looked at. All in the size of its library.
 
     numbers: (N,) of the steps. asked, blended, achieved: (N, 3) v_f, ω, v_l [m/s, rad/s, m/s]; what
     the hands ask for, what the blended primitives have, how the root moves. phase: (N,) of the gait.

@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from controllers.body.rotations import yaw
 from controllers.locomotion import Locomotion
 from controllers.person import person
+from game.character import Build, tailored
+from game.embodied import Embodied
 from game.hosts.events import Focus, KeyEvent, MouseMove, Scroll
 from game.hud import Hud, reason
 from game.hud.duty import acting, why
@@ -240,8 +242,22 @@ def test_panels_look_through_a_supervisor(locomotion):
     seen, told = (Trace().read([*timeline.past, timeline.now]) for timeline in (alone, led))
     assert np.isfinite(told.blended).all() and np.array_equal(seen.blended, told.blended)
     walker, character = (timeline.now.after.characters[0] for timeline in (alone, led))
-    assert acting(walker) is walker and why(walker) == ""
+    assert acting(walker).controller is locomotion and why(walker) == ""
     assert reason(acting(character)) == reason(walker) and why(character)
+
+
+def test_panels_look_through_another_size(locomotion):
+    """A child under the panels: what it is asked lies in its library's space, and its feet blend there."""
+    game = Play(Embodied.of(person(locomotion), tailored(Build(height=1.15, child=1.0))))
+    tap(game, "F2", "W")
+    game.handle(KeyEvent("W", True))
+    assert frames(game, 120).ink is not None
+    child = acting(game.now.after.characters[0])
+    signals = Trace().read(game.history)
+    assert child.controller is locomotion and reason(child).startswith("walks: asked")
+    assert np.abs(signals.blended[-1] - signals.achieved[-30:].mean(0)).max() < 0.4
+    assert child.intent.velocity[0] > game.now.after.characters[0].intent.velocity[0]
+    game.close()
 
 
 def test_signals_do_not_reach_over_a_reset(locomotion):
