@@ -57,7 +57,7 @@ def methods(world):
         "nearest": Local(Nearest(), seeing, 1),
         "ridge": ridge(samples),
         "network": network(samples, (64, 64), 1200, 64),
-        "gplvm": SGPLVM.of(database, solver, active=60, dimensions=2),
+        "gplvm": SGPLVM.of(database, solver, active=100, dimensions=2, loosening=10.0),
     }
     assert tuple(priors) == NAMES
     return {name: Method(prior, solver) for name, prior in priors.items()}
@@ -173,12 +173,12 @@ def test_a_process_is_learnt_and_derived_rightly(world):
     process, barely = gplvm.learn(features, 2), gplvm.learn(features, 2, iterations=1)
     assert process.energy < barely.energy
     x = np.array([0.3, -0.2])
-    mean, _, slope, thinning = process.predict(x)
+    mean, _, slope, widening = process.predict(x)
     for axis in range(2):
         step = 1e-4 * np.eye(2)[axis]
         up, down = process.predict(x + step), process.predict(x - step)
         assert np.allclose(slope[:, axis], (up[0] - down[0]) / 2e-4, rtol=1e-3, atol=1e-4)
-        assert np.allclose(thinning[axis], (up[1] - down[1]) / 2e-4, rtol=1e-3, atol=1e-4)
+        assert np.allclose(widening[:, axis], (up[1] - down[1]) / 2e-4, rtol=1e-3, atol=1e-4)
     placed = process.place(features[7], process.latent[9])
     assert process.misfit(placed, features[7]) < process.misfit(process.latent[9], features[7])
     assert np.allclose(process.predict(process.latent[7])[0], features[7], atol=0.3)

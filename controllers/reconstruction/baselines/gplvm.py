@@ -7,7 +7,7 @@ the kernel of an active set; reconstruction finds the frame and its x together (
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from scipy.optimize import minimize
 from ..chart import WIDTH
 from ..database import Database
 from ..method import Memory
-from ..prior import FLOOR, Gaussian, fuse
+from ..prior import FLOOR, Gaussian
 from ..solver import Solver
 
 _CANDIDATES = 4000
@@ -27,6 +27,7 @@ class Process:
     """A learnt process. latent: (N, q). features: (N, F), less their mean. mean: (F,). scales: (F,) w.
 
     kernel: (α, β, γ) of α exp(−γ|x − x'|² / 2) + δ / β. energy: its negative log posterior.
+    floor: (F,) standard deviation that comes on top. loosening: of the variance.
     """
 
     latent: np.ndarray
@@ -35,6 +36,8 @@ class Process:
     scales: np.ndarray
     kernel: tuple[float, float, float]
     energy: float
+    floor: np.ndarray | float = 0.0
+    loosening: float = 1.0
 
     def __post_init__(self):
         alpha, beta, gamma = self.kernel
@@ -43,31 +46,35 @@ class Process:
         object.__setattr__(self, "_inverse", inverse)
         object.__setattr__(self, "_map", inverse @ self.features)
 
-    def predict(self, x: np.ndarray) -> tuple[np.ndarray, float, np.ndarray, np.ndarray]:
-        """At a latent place (q,): features (F,), variance σ², and their derivatives by x, (F, q) and (q,)."""
+    def predict(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """At a latent place (q,): features (F,), their variances σ² / w² + floor² (F,), and both's derivatives (F, q)."""
         alpha, beta, gamma = self.kernel
         away = x - self.latent
         k = alpha * np.exp(-gamma / 2 * np.sum(away ** 2, 1))
         slope = -gamma * k[:, None] * away
         drawn = self._inverse @ k
-        variance = max(alpha + 1 / beta - k @ drawn, 1e-9)
-        return self.mean + k @ self._map, variance, self._map.T @ slope, -2.0 * drawn @ slope
+        scale = self.loosening / self.scales ** 2
+        variance = scale * max(alpha + 1 / beta - k @ drawn, 0.0) + self.floor ** 2
+        return self.mean + k @ self._map, variance, self._map.T @ slope, np.outer(scale, -2.0 * drawn @ slope)
 
     def misfit(self, x: np.ndarray, y: np.ndarray) -> float:
-        """|W(y − f(x))|² / 2σ² + (F/2) ln σ² + |x|² / 2 of features (F,) at a latent place."""
+        """Σ (y − f(x))² / 2σ² + ln σ + |x|² / 2 of features (F,) at a latent place."""
         mean, variance, _, _ = self.predict(x)
-        return float(np.sum((self.scales * (y - mean)) ** 2) / (2 * variance) + len(y) / 2 * np.log(variance) + x @ x / 2)
+        return float(np.sum((y - mean) ** 2 / variance + np.log(variance)) / 2 + x @ x / 2)
+
+    def near(self, step: np.ndarray) -> np.ndarray:
+        """A latent step, no longer than the kernel sees: farther off nothing is known, and no slope leads back."""
+        return step * min(1.0, 0.5 / (np.sqrt(self.kernel[2]) * max(np.linalg.norm(step), 1e-9)))
 
     def place(self, y: np.ndarray, x: np.ndarray, steps: int = 4) -> np.ndarray:
         """The latent place (q,) of features (F,): damped Gauss-Newton of `misfit` from x."""
         best, damping = self.misfit(x, y), 1e-3
         for _ in range(steps):
-            mean, variance, slope, thinning = self.predict(x)
-            error, slope = self.scales * (y - mean), self.scales[:, None] * slope
-            total = error @ error
-            gradient = -slope.T @ error / variance + (len(y) - total / variance) / (2 * variance) * thinning + x
-            curve = (slope.T @ slope / variance + len(y) / (2 * variance ** 2) * np.outer(thinning, thinning) + np.eye(len(x)))
-            step = np.linalg.solve(curve + damping * np.diag(np.diag(curve)), -gradient)
+            mean, variance, slope, widening = self.predict(x)
+            error, widening = y - mean, widening / variance[:, None]
+            gradient = -slope.T @ (error / variance) + (1 - error ** 2 / variance) @ widening / 2 + x
+            curve = slope.T @ (slope / variance[:, None]) + widening.T @ widening / 2 + np.eye(len(x))
+            step = self.near(np.linalg.solve(curve + damping * np.diag(np.diag(curve)), -gradient))
             reached = self.misfit(x + step, y)
             if reached < best:
                 x, best, damping = x + step, reached, damping / 4
@@ -134,39 +141,48 @@ def active_set(features: np.ndarray, count: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class SGPLVM:
-    """The prior of a process. rounds: how often frame and latent place take turns. loosening: of its variance."""
+    """The prior of a process. rounds: how often frame and latent place take turns."""
 
     process: Process
     solver: Solver
     rounds: int = 3
-    loosening: float = 1.0
 
     @staticmethod
-    def of(database: Database, solver: Solver, active: int = 150, dimensions: int = 3, seed: int = 0) -> SGPLVM:
+    def of(database: Database, solver: Solver, active: int = 150, dimensions: int = 3,
+           loosening: float = 1.0, seed: int = 0) -> SGPLVM:
         """Learnt from `active` frames of a database, chosen to be diverse: a kernel matrix of more is too slow."""
         last = database.segments(1)
         some = np.random.default_rng(seed).permutation(last)[:_CANDIDATES]
         frames = database.frames[some + 1].astype(float)
         features = np.concatenate([frames, frames - database.frames[some]], -1)
-        return SGPLVM(learn(features[active_set(features / np.maximum(features.std(0), 1e-6), active)], dimensions), solver)
+        process = learn(features[active_set(features / np.maximum(features.std(0), 1e-6), active)], dimensions)
+        return SGPLVM(replace(process, floor=np.tile(FLOOR, 2), loosening=loosening), solver)
 
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`. The hint is the latent place."""
         before = memory.frames[0]
-        x = memory.hint
-        if x is None:
-            y = np.concatenate([before, before - memory.frames[1]]) - self.process.mean
-            nearest = np.argmin(np.sum((self.process.scales * (self.process.features - y)) ** 2, 1))
-            x = self.process.place(y + self.process.mean, self.process.latent[nearest], 10)
+        y = np.concatenate([before, before - memory.frames[1]])
+        away = self.process.scales * (self.process.features + self.process.mean - y)
+        # from the nearest active frame too: the way there may lead over places where nothing is known
+        places = [self.process.latent[np.argmin(np.sum(away ** 2, 1))], *([] if memory.hint is None else [memory.hint])]
+        x = min((self.process.place(y, place) for place in places), key=lambda x: self.process.misfit(x, y))
         for _ in range(self.rounds - 1):
-            frame = self.solver.solve(self._at(x, before), goals).frame
+            frame = self.solver.solve(self._around(x, before), goals).frame
             x = self.process.place(np.concatenate([frame, frame - before]), x)
-        return self._at(x, before), x
+        return self._around(x, before), x
 
-    def _at(self, x, before):
-        """What a latent place believes of the frame: its columns, and how they change."""
-        mean, variance, _, _ = self.process.predict(x)
-        spread = variance * self.loosening / self.process.scales ** 2
-        least = FLOOR ** 2
-        return fuse(Gaussian(mean[:WIDTH], np.maximum(spread[:WIDTH], least)),
-                    Gaussian(before + mean[WIDTH:], np.maximum(spread[WIDTH:], least)))
+    def _around(self, x, before):
+        """What the process believes of the frame where x may move a little: linear in x, so that both are found at once.
+
+        Given x, columns and their change are two beliefs about the frame; where they disagree, x had better move.
+        """
+        mean, spread, slope, _ = self.process.predict(x)
+        here, there = spread[:WIDTH], spread[WIDTH:]
+        gap, across = mean[:WIDTH] - before - mean[WIDTH:], slope[:WIDTH] - slope[WIDTH:]
+        weighted = across / (here + there)[:, None]
+        free = np.linalg.inv(np.eye(len(x)) + across.T @ weighted)
+        move = self.process.near(-free @ (x + weighted.T @ gap))
+        share = here / (here + there)  # of the belief about the change
+        mean = mean[:WIDTH] - share * gap
+        slope = slope[:WIDTH] - share[:, None] * across
+        return Gaussian(mean + slope @ move, share * there, np.linalg.cholesky(free).T @ slope.T)
