@@ -20,7 +20,8 @@ from controllers.contract import Leap
 from controllers.jump import Jump, Physique
 from controllers.jump.ballistics import along
 from controllers.jump.muscles import POINTED, bend_kernel, muscle, spring_force
-from controllers.jump.path import Path
+from controllers.jump.controller import RUNNING
+from controllers.jump.path import Path, Start
 from controllers.jump.plan import Plan
 from controllers.jump.reach import fault
 from controllers.navigation import floor_at, gap
@@ -88,11 +89,18 @@ def previewed(jump: Jump, character: Character, leap: Leap, props: Sequence[Prop
     state = character.controller.active(character.state)[1]
     place, floor = np.asarray(leap.place, float), float(state.floor)
     solid = [prop for prop in props if not isinstance(prop, Goal)]
-    way = jump.path(jump.start_of(state), place, floor, leap.airtime)
+    way = jump.path(_pushing(jump.start_of(state)), place, floor, leap.airtime)
     inside = any(gap(place[None] + [0.0, 0.05, 0.0], prop)[0] < 0.0 for prop in solid)
     why = "the target is inside something solid" if inside else fault(jump.physique, way, solid, floor)
     arc, beads = _flight(way)
     return Preview(place, arc, beads, why)
+
+
+def _pushing(start: Start) -> Start:
+    """A runner between two steps, as if its lower foot stood: the arc stays what it is in every step."""
+    if start.single is None and np.hypot(start.velocity[0], start.velocity[2]) > RUNNING:
+        return replace(start, single=int(np.argmin(start.feet[:, 1])))
+    return start
 
 
 def _flight(way: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -145,9 +153,9 @@ def moment_of(old: Character, new: Character, alpha: float) -> tuple[Plan, float
 # --- the arc
 
 def aimed(seen: Preview) -> list[Sketch]:
-    """The arc that would be flown, and the ring where it lands."""
+    """The arc that would be flown, and the ring where it lands; who aims stands between them and the camera."""
     tint = CANNOT if seen.fault else CAN
-    return _arc(seen.arc, seen.beads, tint, 1.0) + ring(seen.place, tint)
+    return [replace(sketch, through=True) for sketch in ring(seen.place, tint) + _arc(seen.arc, seen.beads, tint, 1.0)]
 
 
 def flown(plan: Plan, time: float) -> list[Sketch]:

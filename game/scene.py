@@ -75,6 +75,7 @@ class Patch:
     corners: np.ndarray
     tint: tuple[float, float, float]
     opacity: float = 0.3
+    through: bool = False
 
 
 Sketch = Line | Arrow | Dot | Patch

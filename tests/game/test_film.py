@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controllers.locomotion import Locomotion
+from controllers.person import person
 from game import film
 from game.obstacles import blocked
 from game.scenario import load, shipped
@@ -138,7 +138,7 @@ def test_following_cameras_keep_out_of_walls(tmp_path):
 
 @pytest.fixture(scope="module")
 def walker():
-    return Locomotion.load(None)
+    return person()
 
 
 def in_picture(point, camera, aspect):

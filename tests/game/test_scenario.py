@@ -32,7 +32,8 @@ def written(folder, text):
 
 
 def test_all_that_is_shipped_loads_and_is_what_the_issue_lists():
-    assert {"speed_sweep", "curve_sweep", "holonomic", "start_stop", "medley", "corridor", "demo"} <= set(shipped())
+    assert {"speed_sweep", "curve_sweep", "holonomic", "start_stop", "medley", "corridor", "demo",
+            "jump_vertical", "jump_far", "jump_up", "jump_down", "jump_gap", "jump_moon", "jump_child", "jump_course"} <= set(shipped())
     for name in shipped():
         scenario = load(name)
         for actor in scenario.actors:
