@@ -37,7 +37,7 @@ class Graph:
     """
 
     def __init__(self, segments: Segments, cells: Cells | None = None, links: int = 16, per_take: int = 4, apart: int = 6,
-                 beam: int = 300, expand: int = 48, rounds: int = 2, restart: int = 15):
+                 beam: int = 600, expand: int = 96, rounds: int = 2, restart: int = 15):
         self.segments, self.cells = segments, cells or Cells(segments)
         self.beam, self.expand, self.rounds, self.restart = beam, expand, rounds, restart
         self.points = np.empty_like(self.cells.points)
@@ -60,7 +60,7 @@ class Graph:
                           max(self.beam, 2 * k), max(self.expand, k // 2), self.rounds, first, end)
         age = hint.age + 1 if len(found) >= k else 0
         if len(found) < k:
-            found = self.cells.candidates_of(feature, k, forbidden)
+            found = self.cells.candidates_of(feature, k, None, forbidden)
         return *ranked(self.segments, feature, found, k), Trail(found, age)
 
 

@@ -78,7 +78,8 @@ class Segments:
         """From which segment on, and up to which, a recording and its mirror image reach; (0, 0) for None."""
         if recording is None:
             return 0, 0
-        first, end = np.searchsorted(self.recordings, [recording, recording + 1])
+        # keys of another type would have the whole array converted
+        first, end = np.searchsorted(self.recordings, np.array([recording, recording + 1], np.int32))
         return int(first), int(end)
 
     def query(self, past: np.ndarray, points: np.ndarray | None = None, before: np.ndarray | None = None,
