@@ -1,0 +1,70 @@
+"""`gambol database`: motion databases from motion capture, for reconstruction to learn from."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .base import app, plainly, progress_bar, say
+
+database = typer.Typer(no_args_is_help=True, help="Motion databases: build one from motion capture, look at one.")
+app.add_typer(database, name="database")
+
+
+@database.command()
+@plainly
+def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AMC files.")],
+          out: Annotated[Path, typer.Option("-o", "--out", help="The .gambolmotion file to write.")] = Path("database.gambolmotion"),
+          fps: Annotated[float, typer.Option(help="Frames a second.")] = 60.0,
+          mirrors: Annotated[bool, typer.Option("--mirrors/--no-mirrors", help="Add the mirror image of every take.")] = True) -> None:
+    """Put every motion file of a folder onto one skeleton, into one file."""
+    from controllers.reconstruction.database import SUFFIX
+    from controllers.reconstruction.database_build import build as build_database
+
+    from ..output import named, output_file
+
+    output_file(out, SUFFIX)
+    with progress_bar() as bar, named(out):
+        task = bar.add_task("reading")
+        made = build_database(folder, out, fps=fps, mirrors=mirrors,
+                              progress=lambda done, total: bar.update(task, completed=done, total=total))
+    for problem in made.problems:
+        say(problem)
+    if made.problems:
+        say(f"{len(made.problems)} files or folders left out")
+    for line in _in_words(made.database):
+        say(line)
+
+
+@database.command()
+@plainly
+def report(file: Annotated[Path, typer.Argument(help="A .gambolmotion file.")],
+           takes: Annotated[bool, typer.Option("--takes", help="List every take.")] = False) -> None:
+    """What a database holds."""
+    from controllers.reconstruction.database import Database
+
+    opened = Database.open(file)
+    for line in _in_words(opened):
+        typer.echo(line)
+    if takes:
+        for take in opened.takes:
+            if not take.mirrored:
+                unsound = int((~opened.sound[take.start:take.stop]).sum())
+                typer.echo(f"{take.action:6} {(take.stop - take.start) / opened.fps:7.1f} s  {take.clip}, {take.subject}"
+                           + (f", {unsound} frames unsound" if unsound else ""))
+
+
+def _in_words(opened) -> list[str]:
+    """A database in some lines."""
+    seconds = Counter()
+    for take in opened.takes:
+        seconds[take.action] += (take.stop - take.start) / opened.fps
+    subjects = {take.subject for take in opened.takes}
+    unsound = sum(int((~opened.sound[take.start:take.stop]).sum()) for take in opened.takes)
+    return [f"{opened.path}: {len(opened):,} frames at {opened.fps:g} a second, {opened.path.stat().st_size / 1e6:.0f} MB",
+            f"{len(opened.takes)} takes, {sum(take.mirrored for take in opened.takes)} of them mirror images; {len(subjects)} subjects",
+            f"{unsound:,} frames are unsound and never used",
+            ", ".join(f"{action} {length / 60:.1f} min" for action, length in seconds.most_common())]
