@@ -6,14 +6,14 @@ points, the same solver and the same past, their own output.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from ..body import Pose
 from .chart import YAW_RATE, advance, decode
-from .prior import Gaussian, Regression, regress
+from .prior import Gaussian, Regression, fuse, regress
 from .segments import Neighbourhood, Segments
 from .solver import Solver, in_world, on_ground
 
@@ -123,3 +123,17 @@ class LocalRegression:
     def believe(self, feature: np.ndarray, near: Neighbourhood, memory: Memory) -> Gaussian:
         """See `LocalModel`."""
         return regress(feature, near.X, near.Y, near.distances, self.how)
+
+
+@dataclass(frozen=True, eq=False)
+class Fused:
+    """Several priors, taken for independent."""
+
+    priors: tuple[Prior, ...]
+
+    def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
+        """See `Prior`; the hint has one part for each."""
+        hints = memory.hint or (None,) * len(self.priors)
+        beliefs, hints = zip(*(prior.believe(replace(memory, hint=hint), seen, goals)
+                               for prior, hint in zip(self.priors, hints, strict=True)), strict=True)
+        return fuse(*beliefs), hints

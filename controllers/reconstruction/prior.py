@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
+from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from .chart import FORWARD, HEIGHT, LEFTWARD, WIDTH, YAW_RATE
 
@@ -50,25 +50,49 @@ class Gaussian:
 
 
 def fuse(*beliefs: Gaussian) -> Gaussian:
-    """What independent beliefs (without batch axes) say together: precisions add up. ValueError for none.
+    """What independent beliefs (without batch axes) say together: precisions add up.
 
-    ((Σ₁⁻¹ + Σ₂⁻¹)⁻¹ is computed as Σ₁ − Σ₁(Σ₁ + Σ₂)⁻¹Σ₁, so that one of the two may be singular.)
+    A singular one keeps the answer in its subspace. ValueError for none, or for two with factors that leave no width.
     """
     if not beliefs:
         raise ValueError("nothing to fuse")
     together = beliefs[0]
     for belief in beliefs[1:]:
-        if not together.factor.size and not belief.factor.size:
-            gain = together.variance / (together.variance + belief.variance)
-            together = Gaussian(together.mean + gain * (belief.mean - together.mean), gain * belief.variance)
-            continue
-        first = together.covariance
-        gain = np.linalg.solve(first + belief.covariance, first).T
-        joint = first - gain @ first
-        values, vectors = np.linalg.eigh((joint + joint.T) / 2)
-        together = Gaussian(together.mean + gain @ (belief.mean - together.mean), np.zeros(len(together.mean)),
-                            np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
+        if belief.factor.size and together.factor.size:
+            together = _fuse_full(together, belief)
+        elif belief.factor.size:
+            together = _fuse_plain(belief, together)
+        else:
+            together = _fuse_plain(together, belief)
     return together
+
+
+def _fuse_plain(belief, plain):
+    """Fuse with a belief that has no factor: in the small form of the factor's rows.
+
+    The belief is mean + √variance·ε + factorᵀ·η. Given η all columns are apart; and η itself is told from plain.mean.
+    """
+    total = belief.variance + plain.variance
+    gain = belief.variance / total
+    error = plain.mean - belief.mean
+    factor = belief.factor * (1.0 - gain)
+    if not factor.size:
+        return Gaussian(belief.mean + gain * error, gain * plain.variance, factor)
+    weighed = belief.factor / total
+    lower = np.linalg.cholesky(np.eye(len(factor)) + weighed @ belief.factor.T)
+    factor = solve_triangular(lower, factor, lower=True)
+    told = solve_triangular(lower, weighed @ error, lower=True)
+    return Gaussian(belief.mean + gain * error + told @ factor, gain * plain.variance, factor)
+
+
+def _fuse_full(a, b):
+    """Fuse two beliefs that both have factors: Σ = Σ₁ − Σ₁(Σ₁ + Σ₂)⁻¹Σ₁."""
+    first = a.covariance
+    gain = np.linalg.solve(first + b.covariance, first).T
+    joint = first - gain @ first
+    values, vectors = np.linalg.eigh((joint + joint.T) / 2)
+    return Gaussian(a.mean + gain @ (b.mean - a.mean), np.zeros(len(a.mean)),
+                    np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,23 +23,24 @@ class LocalPCA:
     """Poses q = p̄ + U w of the neighbours' principal subspace, wᵀΛ⁻¹w small and q near the way of the last two frames.
 
     share: of the variance that U keeps. most: components at most. loosening: 1/α, times Λ. smoothness: √(1/β), the
-    standard deviation of q − 2q₋₁ + q₋₂ in units of `FLOOR`; None for no such term. root: how far the root may
+    standard deviation of q − 2q₋₁ + q₋₂ in units of `FLOOR`; None for no such term, which did best on recorded
+    takes: on a method's own output it keeps errors going. root: how far the root may
     leave the subspace, as standard deviations (D,); without any, a body that has strayed from the neighbours explodes.
     """
 
     share: float = 0.99
     most: int = 7
-    loosening: float = 10.0
-    smoothness: float | None = 10.0
+    loosening: float = 1.0
+    smoothness: float | None = None
     root: np.ndarray = field(default_factory=lambda: LOOSE)
 
     def believe(self, feature: np.ndarray, near: Neighbourhood, memory: Memory) -> Gaussian:
         """See `LocalModel`. Columns are compared in units of `FLOOR`, so that metres and radians mix."""
         mean = near.Y.mean(0, dtype=float)
         away = (near.Y - mean) / (FLOOR * np.sqrt(max(len(near.Y) - 1, 1)))
-        _, size, across = np.linalg.svd(away, full_matrices=False)
-        kept = min(self.most, 1 + int(np.searchsorted(np.cumsum(size ** 2), self.share * np.sum(size ** 2))), len(size))
-        factor = np.sqrt(self.loosening) * size[:kept, None] * across[:kept] * FLOOR
+        size, across = _components(away.T @ away)
+        kept = min(self.most, 1 + int(np.searchsorted(np.cumsum(size), self.share * np.sum(size))), len(size))
+        factor = np.sqrt(self.loosening * size[:kept, None]) * across[:, :kept].T * FLOOR
         belief = Gaussian(mean, np.asarray(self.root) ** 2, factor)
         if self.smoothness is None:
             return belief
@@ -65,13 +66,14 @@ class LocalPCR:
         omega = np.ones(count) if self.bandwidth is None else weights(near.distances, self.bandwidth)
         root, part = np.sqrt(omega)[:, None], omega / omega.sum()
         x_mean, y_mean = part @ near.X, part @ near.Y
-        scores, size, across = np.linalg.svd(root * (near.X - x_mean), full_matrices=False)
-        energy = np.cumsum(size ** 2)
+        x, y = root * (near.X - x_mean), root * (near.Y - y_mean)
+        size, scores = _components(x @ x.T)
+        energy = np.cumsum(size)
         # as many as keep the share, but none that is nothing, and fewer than points, lest nothing be left to tell σ
-        kept = min(1 + int(np.searchsorted(energy, self.share * energy[-1])), int(np.sum(size > 1e-5 * size[0])), count // 2)
-        scores, y = scores[:, :kept], root * (near.Y - y_mean)
+        kept = min(1 + int(np.searchsorted(energy, self.share * energy[-1])), int(np.sum(size > 1e-10 * size[0])), count // 2)
+        scores = scores[:, :kept]
         slope = scores.T @ y
-        mean = y_mean + ((feature - x_mean) @ across[:kept].T / size[:kept]) @ slope
+        mean = y_mean + ((feature - x_mean) @ x.T @ scores / size[:kept]) @ slope
         leverage = part + np.sum(scores ** 2, 1)
         left_out = (y - scores @ slope) / (root * np.maximum(1.0 - leverage, 1e-6)[:, None])
         sigma = np.sqrt(part @ left_out ** 2)
@@ -87,3 +89,9 @@ class Nearest:
     def believe(self, feature: np.ndarray, near: Neighbourhood, memory: Memory) -> Gaussian:
         """See `LocalModel`."""
         return Gaussian(near.Y[0].astype(float), np.asarray(self.spread) ** 2)
+
+
+def _components(gram):
+    """Eigenvalues and eigenvectors (columns) of a positive matrix, the greatest first."""
+    values, vectors = np.linalg.eigh(gram)
+    return np.maximum(values[::-1], 0.0), vectors[:, ::-1]
