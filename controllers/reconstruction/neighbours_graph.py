@@ -37,7 +37,7 @@ class Graph:
     """
 
     def __init__(self, segments: Segments, cells: Cells | None = None, links: int = 16, per_take: int = 4, apart: int = 6,
-                 beam: int = 600, expand: int = 96, rounds: int = 2, restart: int = 15):
+                 beam: int = 600, expand: int = 96, rounds: int = 2, restart: int = 5):
         self.segments, self.cells = segments, cells or Cells(segments)
         self.beam, self.expand, self.rounds, self.restart = beam, expand, rounds, restart
         self.points = np.empty_like(self.cells.points)

@@ -28,7 +28,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
 
     output_file(out, SUFFIX)
     with progress_bar() as bar, named(out):
-        task = bar.add_task("reading")
+        task = bar.add_task("reading", total=None)
         made = build_database(folder, out, fps=fps, mirrors=mirrors,
                               progress=lambda done, total: bar.update(task, completed=done, total=total))
     for problem in made.problems:
