@@ -52,7 +52,7 @@ class Gaussian:
 def fuse(*beliefs: Gaussian) -> Gaussian:
     """What independent beliefs (without batch axes) say together: precisions add up.
 
-    A singular one keeps the answer in its subspace. ValueError for none, or for two with factors that leave no width.
+    A singular one keeps the answer in its subspace. ValueError for none.
     """
     if not beliefs:
         raise ValueError("nothing to fuse")
@@ -88,11 +88,16 @@ def _fuse_plain(belief, plain):
 def _fuse_full(a, b):
     """Fuse two beliefs that both have factors: Σ = Σ₁ − Σ₁(Σ₁ + Σ₂)⁻¹Σ₁."""
     first = a.covariance
-    gain = np.linalg.solve(first + b.covariance, first).T
-    joint = first - gain @ first
-    values, vectors = np.linalg.eigh((joint + joint.T) / 2)
-    return Gaussian(a.mean + gain @ (b.mean - a.mean), np.zeros(len(a.mean)),
-                    np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
+    lower = np.linalg.cholesky(first + b.covariance)
+    half = solve_triangular(lower, first, lower=True)
+    mean = a.mean + solve_triangular(lower, b.mean - a.mean, lower=True) @ half
+    joint = first - half.T @ half
+    try:
+        factor = np.linalg.cholesky(joint).T
+    except np.linalg.LinAlgError:  # singular: one of them leaves no width somewhere
+        values, vectors = np.linalg.eigh((joint + joint.T) / 2)
+        factor = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+    return Gaussian(mean, np.zeros(len(mean)), factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +172,7 @@ def believe(fitted: Fit, how: Regression) -> Gaussian:
     if how.covariance == "full":
         errors = fitted.residuals * np.sqrt(fitted.weights / fitted.weights.sum())[:, None]
         variance = np.broadcast_to(np.asarray(how.floor) ** 2, fitted.mean.shape)
-        return Gaussian(fitted.mean, variance, _compact(errors)).loosened(how.loosening)
+        return Gaussian(fitted.mean, variance, compact(errors)).loosened(how.loosening)
     return Gaussian(fitted.mean, np.maximum(fitted.sigma, how.floor) ** 2).loosened(how.loosening)
 
 
@@ -254,6 +259,6 @@ def _inverse(matrix):
     return np.tril(half) + np.tril(half, -1).T
 
 
-def _compact(errors):
+def compact(errors):
     """Rows whose sum of squares is that of `errors` (K, D), no more than D of them."""
     return errors if len(errors) <= errors.shape[1] else np.linalg.qr(errors, mode="r")

@@ -10,14 +10,14 @@ from controllers.reconstruction.baselines import gplvm, regressors
 from controllers.reconstruction.chart import ANGLES, FORWARD, HEIGHT, SKELETON, WIDTH, YAW_RATE, advance, decode
 from controllers.reconstruction.controls import parse
 from controllers.reconstruction.database import Database, Writer
-from controllers.reconstruction.method import Local, LocalRegression, Method
+from controllers.reconstruction.method import Fused, Local, LocalRegression, Method
 from controllers.reconstruction.neighbours import Exact
 from controllers.reconstruction.prior import FLOOR, PAPER, Regression
 from controllers.reconstruction.segments import Segments
 from controllers.reconstruction.solver import Solver
 
 DT = 1 / 60
-NAMES = ("regression", "hybrid", "paper", "pca", "pcr", "nearest", "ridge", "network", "gplvm")
+NAMES = ("regression", "hybrid", "paper", "pca", "pcr", "nearest", "ridge", "network", "gplvm", "fused")
 
 
 def motion(frames, phase, pace):
@@ -59,6 +59,7 @@ def methods(world):
         "network": network(samples, (64, 64), 1200, 64),
         "gplvm": SGPLVM.of(database, solver, active=100, dimensions=2, loosening=10.0),
     }
+    priors["fused"] = Fused((priors["hybrid"], priors["network"]))
     assert tuple(priors) == NAMES
     return {name: Method(prior, solver) for name, prior in priors.items()}
 

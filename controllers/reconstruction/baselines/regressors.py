@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..method import Memory
-from ..prior import FLOOR, Gaussian
+from ..prior import FLOOR, Gaussian, compact
 from .windows import Samples, window
 
 _CHUNK = 8192
@@ -21,15 +21,15 @@ class Layers:
     """A network of fully connected layers, ReLU between them; one layer alone is a linear map.
 
     weights, biases: of the layers, (inputs, outputs) and (outputs,). ins, outs: (2, …) mean and deviation of inputs
-    and outputs. deviation: (D,) its error's standard deviation on samples that it did not see. loosening: of that
-    error's variance.
+    and outputs. errors: (D, D) whose rows' squares sum up to its errors' covariance on recordings that it did not see.
+    loosening: of that covariance.
     """
 
     weights: tuple[np.ndarray, ...]
     biases: tuple[np.ndarray, ...]
     ins: np.ndarray
     outs: np.ndarray
-    deviation: np.ndarray
+    errors: np.ndarray
     loosening: float = 10.0
 
     def predict(self, inputs: np.ndarray) -> np.ndarray:
@@ -39,13 +39,13 @@ class Layers:
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`."""
         mean = self.predict(window(memory, seen).astype(np.float32)).astype(float)
-        return Gaussian(mean, np.maximum(self.deviation, FLOOR) ** 2).loosened(self.loosening), None
+        return Gaussian(mean, FLOOR ** 2, self.errors).loosened(self.loosening), None
 
     def save(self, path: str | Path) -> None:
         """Write it as an .npz file."""
         arrays = {f"weights{i}": w for i, w in enumerate(self.weights)} | {f"biases{i}": b for i, b in enumerate(self.biases)}
         with Path(path).open("wb") as file:
-            np.savez(file, ins=self.ins, outs=self.outs, deviation=self.deviation, loosening=self.loosening, **arrays)
+            np.savez(file, ins=self.ins, outs=self.outs, errors=self.errors, loosening=self.loosening, **arrays)
 
     @staticmethod
     def load(path: str | Path) -> Layers:
@@ -55,15 +55,12 @@ class Layers:
                 raise ValueError(f"{path}: is no regressor")
             count = sum(name.startswith("weights") for name in file)
             return Layers(tuple(file[f"weights{i}"] for i in range(count)), tuple(file[f"biases{i}"] for i in range(count)),
-                          file["ins"], file["outs"], file["deviation"], float(file["loosening"]))
+                          file["ins"], file["outs"], file["errors"], float(file["loosening"]))
 
 
-def ridge(samples: Samples, strength: float = 1e-3, held_out: float = 0.05, seed: int = 0) -> Layers:
-    """Ridge regression on all samples once straight and astray; λ is `strength` times the number of samples.
-
-    held_out: the share of frames, in one piece, that its error is told from.
-    """
-    learnt, rest = _split(samples, held_out)
+def ridge(samples: Samples, strength: float = 1e-3, seed: int = 0) -> Layers:
+    """Ridge regression on every sample; λ is `strength` times their number."""
+    learnt, rest = _split(samples)
     rng = np.random.default_rng(seed)
     ins, outs = _standard(samples, learnt, rng)
     size = len(ins[0])
@@ -74,17 +71,17 @@ def ridge(samples: Samples, strength: float = 1e-3, held_out: float = 0.05, seed
         gram += x.T @ x
         across += x.T @ y
     slope = np.linalg.solve(gram + strength * len(learnt) * np.eye(size), across)
-    return _judged(samples, rest, Layers((slope,), (np.zeros(len(outs[0])),), ins, outs, np.ones(len(outs[0]))))
+    return _judged(samples, rest, Layers((slope,), (np.zeros(len(outs[0])),), ins, outs, np.eye(len(outs[0]))))
 
 
 def network(samples: Samples, hidden: tuple[int, ...] = (384, 384), batches: int = 10_000, size: int = 256,
-            rate: float = 1e-3, held_out: float = 0.05, seed: int = 0,
+            rate: float = 1e-3, seed: int = 0,
             progress: Callable[[int, float], None] | None = None) -> Layers:
     """A small network, learnt by Adam (Kingma & Ba 2015) whose rate falls along a cosine; the same from the same seed.
 
     progress: called with each batch's number and mean squared error.
     """
-    learnt, rest = _split(samples, held_out)
+    learnt, rest = _split(samples)
     rng = np.random.default_rng(seed)
     ins, outs = (a.astype(np.float32) for a in _standard(samples, learnt, rng))
     widths = (len(ins[0]), *hidden, len(outs[0]))
@@ -105,7 +102,7 @@ def network(samples: Samples, hidden: tuple[int, ...] = (384, 384), batches: int
             values[i] -= (now / (1 - 0.9 ** (batch + 1))) * first[i] / (np.sqrt(second[i] / (1 - 0.999 ** (batch + 1))) + 1e-8)
         if progress is not None:
             progress(batch, float(np.mean(error ** 2)))
-    return _judged(samples, rest, Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.ones(widths[-1])))
+    return _judged(samples, rest, Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.eye(widths[-1])))
 
 
 def _forward(weights, biases, x):
@@ -127,10 +124,13 @@ def _backward(weights, found, slope):
     return by_weights + by_biases
 
 
-def _split(samples, held_out):
-    """Samples to learn from, and those in one piece at the end to judge by."""
-    at = len(samples) - max(1, int(held_out * len(samples)))
-    return np.arange(at), np.arange(at, len(samples))
+def _split(samples):
+    """Samples to learn from, and those of every twentieth recording to judge by; of a single one, all for both."""
+    recordings = np.unique(samples.recording)
+    apart = np.isin(samples.recording, recordings[::20])
+    if len(recordings) == 1:
+        return np.arange(len(samples)), np.arange(len(samples))
+    return np.flatnonzero(~apart), np.flatnonzero(apart)
 
 
 def _chunks(chosen):
@@ -144,9 +144,9 @@ def _standard(samples, learnt, rng):
 
 
 def _judged(samples, rest, layers):
-    """The same layers with their error on the samples held out."""
-    square, rng = 0.0, np.random.default_rng(1)
+    """The same layers with their errors on the samples held out."""
+    rng, errors = np.random.default_rng(1), np.zeros((0, len(layers.outs[0])))
     for chosen in _chunks(rest):
         x, y = samples.draw(chosen, rng)
-        square = square + np.sum((layers.predict(x) - y) ** 2, 0)
-    return Layers(layers.weights, layers.biases, layers.ins, layers.outs, np.sqrt(square / len(rest)))
+        errors = compact(np.concatenate([errors, (layers.predict(x) - y) / np.sqrt(len(rest))]))
+    return replace(layers, errors=errors)

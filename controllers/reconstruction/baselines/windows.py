@@ -29,8 +29,8 @@ def window(memory: Memory, seen: np.ndarray) -> np.ndarray:
 class Samples:
     """Frames to learn from. points: (N, n, 3) [m] in the world. tracks: (N, 3). frames: (N, D).
 
-    which: (S,) numbers of frames that have one before them. first: (S,) the first frame of each one's take.
-    dt: seconds between frames.
+    which: (S,) numbers of frames that have one before them. first: (S,) the first frame of each one's take, and
+    recording: (S,) what it is of. dt: seconds between frames.
     """
 
     points: np.ndarray
@@ -38,21 +38,24 @@ class Samples:
     frames: np.ndarray
     which: np.ndarray
     first: np.ndarray
+    recording: np.ndarray
     dt: float
 
     @staticmethod
     def of(database: Database, solver: Solver) -> Samples:
         """All sound frames of a database's takes; the control points are the solver's."""
         parts = [_of_take(database.frames[take.start:take.stop].astype(float), solver) for take in database.takes]
-        which, first, begin = [], [], 0
+        which, first, recording, begin = [], [], [], 0
         for take in database.takes:
             sound = database.sound[take.start:take.stop]
             good = 1 + np.flatnonzero(sound[1:] & sound[:-1])
             which.append(begin + good)
             first.append(np.full(len(good), begin))
+            recording.append(np.full(len(good), take.recording))
             begin += len(sound)
         points, tracks, frames = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-        return Samples(points, tracks, frames, np.concatenate(which), np.concatenate(first), solver.dt)
+        return Samples(points, tracks, frames, np.concatenate(which), np.concatenate(first),
+                       np.concatenate(recording), solver.dt)
 
     def __len__(self) -> int:
         return len(self.which)
