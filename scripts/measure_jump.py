@@ -165,10 +165,14 @@ def result_of(t: Trial, made: Plan) -> dict[str, float]:
     out = {}
     # where it landed
     sole = contact_height(jump.skeleton)
-    flat = Motion.of(jump, made, [min(down + 0.25, end)])
+    flat = Motion.of(jump, made, [end])
     corners = sole_corners(jump.skeleton, flat.positions, flat.orientations)[0].reshape(2, 6, 3)
     heading = float(t.state.ground[2])
-    out["miss cm"] = 100.0 * np.linalg.norm(corners[:, [0, 1, 4, 5]].mean((0, 1)) - t.leap.place)  # heels and tips
+    if np.isfinite(made.through):  # heels may be up already: the balls tell where the feet were set
+        balls = flat.positions[0, [jump.skeleton.index("LeftToe"), jump.skeleton.index("RightToe")]]
+        out["miss cm"] = 100.0 * np.linalg.norm(balls - made.feet[:, :3], axis=1).max()
+    else:  # heels and tips
+        out["miss cm"] = 100.0 * np.linalg.norm(corners[:, [0, 1, 4, 5]].mean((0, 1)) - t.leap.place)
     turns, tilts = [], []
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         foot = flat.orientations[0, jump.skeleton.index(side + "Foot")]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..body import Pose, Skeleton, forward_kinematics
 from ..body.anatomy import centre_of_mass
-from ..body.rotations import log
+from ..body.rotations import log, wrap
 from ..contract import CharacterState, Intent, Status
 from ..navigation import floor_at, gap
 from .dynamics import GRAVITY, Physique
@@ -125,8 +125,7 @@ class Jump:
     def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None) -> Path:
         """The path estimate alone: the arc to draw while aiming."""
         body = self.physique.tables
-        feet = start.feet.copy()
-        feet[:, 1], feet[:, 4] = floor + body.sole, 0.0
+        feet = start.planted(floor, body)
         pushing = feet if start.single is None else feet[start.single:start.single + 1]
         return path(self.physique, start, pushing, landing_feet(place, start.heading, body), floor,
                     self.gravity, airtime)
@@ -137,20 +136,29 @@ class Jump:
         pose = Pose(np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))
         positions, turned = forward_kinematics(skeleton, pose.root, pose.rotations)
         centre = centre_of_mass(masses, positions, turned)
-        velocity, rates = np.zeros(3), np.zeros((len(skeleton), 3))
+        velocity, rates, feet_rates = np.zeros(3), np.zeros((len(skeleton), 3)), np.zeros((2, 5))
+        feet = self._feet(positions, turned)
         if state.previous is not None and state.elapsed > 0.0:
             before = forward_kinematics(skeleton, np.asarray(state.previous.root, float),
                                         np.asarray(state.previous.rotations, float))
             velocity = (centre - centre_of_mass(masses, *before)) / state.elapsed
+            moved = feet - self._feet(*before)
+            moved[:, 3:] = wrap(moved[:, 3:])
+            standing = np.asarray(state.contacts).reshape(2, 2).any(1)
+            feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
             rates = log(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
+        return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),
+                     feet_rates, self._single(state, feet))
+
+    def _feet(self, positions: np.ndarray, turned: np.ndarray) -> np.ndarray:
+        """The feet (2, 5) of a placed body: balls, yaw, pitch."""
         feet = np.zeros((2, 5))
         for side, name in enumerate(("Left", "Right")):
-            foot = turned[skeleton.index(name + "Foot")]
-            feet[side, :3] = positions[skeleton.index(name + "Toe")]
+            foot = turned[self.skeleton.index(name + "Foot")]
+            feet[side, :3] = positions[self.skeleton.index(name + "Toe")]
             feet[side, 3] = np.arctan2(foot[0, 2], foot[2, 2])
             feet[side, 4] = np.arcsin(np.clip(-foot[1, 2], -1.0, 1.0))
-        return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),
-                     self._single(state, feet))
+        return feet
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-TIME = 1.15
+TIME = 1.35
 """From touch-down until the body stands [s]."""
-HOLD, PASS = 3.6, 1.0
+HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
-DEEPEST, STIFFEST = 0.46, 14.0
+DEEPEST, STIFFEST = 0.41, 14.0
 """How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""

@@ -4,7 +4,7 @@ wind-up over take-off to landing, and what stops a body from going there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -22,7 +22,7 @@ HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
 FLEX = np.radians(38.0)
 """How far a loaded ankle bends [rad]; times flexibility."""
-TAKE_OFF_REACH, TOUCH_REACH, STAND_REACH = 0.965, 0.955, 0.98
+TAKE_OFF_REACH, TOUCH_REACH, STAND_REACH = 0.955, 0.93, 0.98
 """How straight legs are, as shares of their length, as they take off, touch down, stand."""
 HALF_STANCE, SHOE = 0.10, 0.045
 """From the middle to a landing foot, and from a foot's line to the edge of its sole [m], at standard height."""
@@ -36,6 +36,8 @@ SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
+FOOT_FADE = 0.07
+"""Half-life with which feet settle flat where they come to stand [s]."""
 LEAST_CROUCH = 0.07
 """A body crouches at least so deep [m], at standard height."""
 LEAST_AIRTIME = 0.30
@@ -47,8 +49,8 @@ class Start:
     """From where a jump starts.
 
     root: (3,) [m], rotations: (J, 3, 3) of the pose. rates: (J, 3) [rad/s] how fast the joints turn,
-    each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet: (2, 5)
-    ball x, y, z [m], yaw, pitch [rad]. heading [rad]. single: the foot that pushes off a run, 0 left
+    each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet, feet_rates:
+    (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
     or 1 right; None for both.
     """
 
@@ -59,7 +61,14 @@ class Start:
     velocity: np.ndarray
     feet: np.ndarray
     heading: float
+    feet_rates: np.ndarray = field(default_factory=lambda: np.zeros((2, 5)))
     single: int | None = None
+
+    def planted(self, floor: float, body: BodyTables) -> np.ndarray:
+        """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""
+        feet = self.feet + self.feet_rates * (FOOT_FADE / (2.0 * np.log(2.0)))
+        feet[:, 1], feet[:, 4] = floor + body.sole, 0.0
+        return feet
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,11 +14,11 @@ from . import style
 from .dynamics import Physique, exp_kernel, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .landing import TIME, absorb
-from .path import FLEX, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, path, soles
+from .path import FLEX, FOOT_FADE, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, path, soles
 from .plan import Plan
 from .posture import stand_kernel
 
-GROUND_RATE, PUSH_RATE, AIR_RATE = 80.0, 240.0, 120.0
+GROUND_RATE, PUSH_RATE, AIR_RATE = 72.0, 240.0, 90.0
 """Poses a second over planted feet, during the push, in the air."""
 PLANT = 0.09
 """From the toes' landing to the heels' [s]."""
@@ -26,12 +26,12 @@ FADE = 0.14
 """Half-life with which the start's pose gives way to the jump's [s]."""
 STEADY = 0.12
 """Half-life with which the pelvis loses the turn it landed with [s]."""
-FOOT_FADE = 0.05
-"""Half-life with which feet settle flat where they stand [s]."""
 HEELS_RISE = (0.45, 0.85)
 """When in the push a heel starts to rise, at the earliest and at the latest."""
 FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
+SAME = 5e-4
+"""The legs reach for a body turned to within this of how it lands [rad]."""
 ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 
@@ -45,8 +45,7 @@ def plan(physique: Physique, start: Start, place: np.ndarray, floor: float, grav
     body = physique.tables
     landing = landing_feet(np.asarray(place, float), start.heading, body)
     pushing = slice(0, 2) if start.single is None else slice(start.single, start.single + 1)
-    planted = start.feet.copy()
-    planted[:, 1], planted[:, 4] = floor + body.sole, 0.0
+    planted = start.planted(floor, body)
     way = path(physique, start, planted[pushing], landing, floor, gravity, airtime)
     return _Draft(physique, start, way, planted, landing, gravity).plan()
 
@@ -111,8 +110,8 @@ class _Draft:
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
         self.nudge = (share**3 - share**2)[:, None] * way.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
-        fade = 2.0 ** (-self.times / FOOT_FADE)[:, None, None]
-        self.feet[..., :5] = self.planted + (start.feet - self.planted) * fade
+        self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
+        self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])
         self.feet[..., 4] += (HEEL_UP * late**2 * (3.0 - 2.0 * late))[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))
@@ -193,16 +192,28 @@ class _Draft:
         spin, gain = np.array([-1.8 / self.way.airtime, 0.0, 0.0]), 0.57 * self.way.airtime * np.eye(3)
         for attempt in range(ROUNDS):
             self._flight(spin, wanted, 1e-4)
-            miss = vectors(wanted @ self.air[-1, 0].T)
+            miss = self._miss(wanted)
             if attempt:
                 gain += np.outer(before - miss - gain @ change, change) / (change @ change)
             if np.abs(miss).max() < CLOSE:
                 break
             change, before = np.clip(np.linalg.solve(gain, miss), -5.0, 5.0), miss
             spin = spin + change
-        # the legs reach for where this very body comes down
-        self._flight(spin, self.air[-1, 0].copy(), 1e-9)
+        # the legs reach for where this very body comes down, which changes a little how it turns
+        for _ in range(ROUNDS):
+            landed = self.air[-1, 0].copy()
+            self._flight(spin, landed, 1e-9)
+            if np.abs(vectors(landed.T @ self.air[-1, 0])).max() < SAME:
+                break
         return spin
+
+    def _miss(self, wanted: np.ndarray) -> np.ndarray:
+        """The rotation vector (3,) [rad] from how the body came down to how it should, somersaults counted."""
+        miss = vectors(wanted @ self.air[-1, 0].T)
+        across = yaw(self.start.heading)[:, 0]
+        turned = vectors(self.air[1:, 0] @ np.swapaxes(self.air[:-1, 0], -1, -2)) @ across
+        meant = vectors(wanted @ self.air[0, 0].T) @ across
+        return miss + 2.0 * np.pi * np.round((meant - turned.sum() - miss @ across) / (2.0 * np.pi)) * across
 
     def _flight(self, spin: np.ndarray, landed: np.ndarray, tolerance: float) -> None:
         """The flight after a take-off with `spin`, its legs reaching as if it came down turned `landed` (3, 3)."""
@@ -264,7 +275,7 @@ class _Draft:
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
                       self.air_roots[-1].copy(), roots, local)
-        return after, (roots, local, c, v, a), landing.until(after)
+        return after, (roots, local, c, v, a), max(landing.until(after), PLANT + 0.02)
 
 
 def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..body import Skeleton
 from ..compiled import kernel
@@ -60,7 +60,7 @@ def shapes(effort: float, fall: float, running: bool) -> np.ndarray:
     winds up.
     """
     crouch = min(max(effort / 2.8, 0.25), 1.15) * (0.35 if running else 1.0)
-    absorb = min(max(fall / 3.2, 0.25), 1.3)
+    absorb = min(max(fall / 3.2, 0.25), 1.1)
     leave, air = TAKE_OFF.copy(), AIR.copy()
     if running:  # arms that swing against the legs have no time to rise above the head
         leave[3], air[3] = RUNNER_ARMS
@@ -71,6 +71,8 @@ def shapes(effort: float, fall: float, running: bool) -> np.ndarray:
 def keyed(times: np.ndarray, keys: np.ndarray, at: np.ndarray) -> np.ndarray:
     """The angles (N, 6) at times `at` (N,) [s], through `keys` (K, 6) at `times` (K,).
 
-    Monotone between keys (PCHIP): nothing overshoots.
+    Monotone between keys (PCHIP's slopes): nothing overshoots; at rest at both ends.
     """
-    return PchipInterpolator(times, keys)(np.clip(at, times[0], times[-1]))
+    slopes = PchipInterpolator(times, keys).derivative()(times)
+    slopes[[0, -1]] = 0.0
+    return CubicHermiteSpline(times, keys, slopes)(np.clip(at, times[0], times[-1]))

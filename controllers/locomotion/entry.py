@@ -19,6 +19,8 @@ from .memory import RUN, WALK
 
 WALKS_ON = 0.35
 """A body that moves faster than this [m/s] walks on; a slower one stands."""
+FADE = 0.22
+"""Half-life with which the pose that was taken over gives way to the walker's own [s]."""
 ABOUT_TO_STEP = 0.95
 """The phase in which both feet stand and the left one is about to leave."""
 
@@ -38,6 +40,7 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     shown = _row(locomotion, state.pose, ground, state.floor)
     memory["blend"][:LABELS_AT] = shown - memory["row"][:LABELS_AT]
     memory["row"][:LABELS_AT] = shown
+    memory["fade"] = FADE
     if state.previous is not None and state.elapsed > 0.0:
         before = _row(locomotion, state.previous, ground, state.floor)
         rate = (shown - before) / state.elapsed

@@ -90,6 +90,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis
         ("row", "f4", COLUMNS), ("row_rate", "f4", COLUMNS),  # the blended series and its rate
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
+        ("fade", "f4"),  # its half-life [s]
         ("breath", "f4"),  # phase of breathing
     ], align=True)
 

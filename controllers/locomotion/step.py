@@ -104,6 +104,7 @@ def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
     for i in range(m.weights.shape[0]):
         m.weights[i] /= total
     if switch:  # inertialise: what was shown minus what the other family shows now
+        m.fade = settings.switch_halflife
         series_kernel(table, m.weights, m.phase, fresh)
         for d in range(LABELS_AT):
             m.blend[d] = m.row[d] - fresh[d]
@@ -142,7 +143,7 @@ def blend_series(m, settings, table, fresh, legs, dt):
     series_kernel(table, m.weights, m.phase, fresh)
     for d in range(LABELS_AT):
         m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
-                                                      settings.switch_halflife, dt)
+                                                      m.fade, dt)
         fresh[d] += m.blend[d]
     for d in range(COLUMNS):
         m.row_rate[d] = (fresh[d] - m.row[d]) / dt
