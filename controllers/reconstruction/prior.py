@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs, solve_triangular
+from scipy.linalg import get_lapack_funcs
 
 from .chart import FORWARD, HEIGHT, LEFTWARD, WIDTH, YAW_RATE
 
@@ -80,8 +80,7 @@ def _fuse_plain(belief, plain):
         return Gaussian(belief.mean + gain * error, gain * plain.variance, factor)
     weighed = belief.factor / total
     lower = np.linalg.cholesky(np.eye(len(factor)) + weighed @ belief.factor.T)
-    factor = solve_triangular(lower, factor, lower=True)
-    told = solve_triangular(lower, weighed @ error, lower=True)
+    factor, told = _unfold(lower, factor), _unfold(lower, weighed @ error)
     return Gaussian(belief.mean + gain * error + told @ factor, gain * plain.variance, factor)
 
 
@@ -89,15 +88,9 @@ def _fuse_full(a, b):
     """Fuse two beliefs that both have factors: Σ = Σ₁ − Σ₁(Σ₁ + Σ₂)⁻¹Σ₁."""
     first = a.covariance
     lower = np.linalg.cholesky(first + b.covariance)
-    half = solve_triangular(lower, first, lower=True)
-    mean = a.mean + solve_triangular(lower, b.mean - a.mean, lower=True) @ half
-    joint = first - half.T @ half
-    try:
-        factor = np.linalg.cholesky(joint).T
-    except np.linalg.LinAlgError:  # singular: one of them leaves no width somewhere
-        values, vectors = np.linalg.eigh((joint + joint.T) / 2)
-        factor = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
-    return Gaussian(mean, np.zeros(len(mean)), factor)
+    half = _unfold(lower, first)
+    mean = a.mean + _unfold(lower, b.mean - a.mean) @ half
+    return Gaussian(mean, np.zeros(len(mean)), _rows(first - half.T @ half))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +147,7 @@ def weights(distances: np.ndarray, bandwidth: str = "knn") -> np.ndarray:
     """
     square = np.asarray(distances, float) ** 2
     if bandwidth == "knn":
-        square = square / max(np.median(square), 1e-12)
+        square = square / max(np.partition(square, len(square) // 2)[len(square) // 2], 1e-12)
     return np.maximum(np.exp(-0.5 * (square - square.min())), 1e-6)
 
 
@@ -255,10 +248,31 @@ def _inverse(matrix):
     lower, failed = potrf(matrix, lower=True)
     if failed:
         return np.linalg.pinv(matrix, hermitian=True)
-    half, _ = potri(lower, lower=True)
-    return np.tril(half) + np.tril(half, -1).T
+    half, _ = potri(lower, lower=True)  # above the diagonal it is zero, as potrf left it
+    diagonal = half.diagonal().copy()
+    half = half + half.T
+    half[np.diag_indices(len(half))] = diagonal
+    return half
 
 
-def compact(errors):
-    """Rows whose sum of squares is that of `errors` (K, D), no more than D of them."""
-    return errors if len(errors) <= errors.shape[1] else np.linalg.qr(errors, mode="r")
+def _unfold(lower, right):
+    """L⁻¹ · right for a lower triangular matrix L."""
+    trtrs, = get_lapack_funcs(("trtrs",), (lower, right))
+    return trtrs(lower, right, lower=True)[0]
+
+
+def compact(errors: np.ndarray) -> np.ndarray:
+    """Rows R (≤ D, D) with RᵀR = EᵀE, for many errors E (K, D)."""
+    if len(errors) <= errors.shape[1]:
+        return errors
+    errors = errors.astype(float)
+    return _rows(errors.T @ errors)
+
+
+def _rows(covariance):
+    """Rows R (D, D) with RᵀR = covariance, which may be singular."""
+    try:
+        return np.linalg.cholesky(covariance).T
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
+        return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
