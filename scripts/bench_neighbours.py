@@ -56,11 +56,13 @@ def main() -> None:
     print(f"{len(database):,} frames of {len(database.takes)} takes, {database.path.stat().st_size / 1e6:.0f} MB")
     for name, joints in POINTS.items():
         segments = Segments.of(database, 3, 4, [SKELETON.index(joint) for joint in joints])
-        rng = np.random.default_rng(0)
-        runs = [(int(segments.recordings[run[0]]), segments.features(run)) for run in passages(segments, options.queries, rng)]
-        runs = [(recording, features + rng.normal(0, options.noise, features.shape).astype(np.float32))
-                for recording, features in runs]
-        print(f"\n{name}: {len(segments):,} segments of {segments.width} features; {len(runs)} takes × {options.queries} queries")
+        rng, runs = np.random.default_rng(0), []
+        for run in passages(segments, options.queries, rng):
+            features = segments.features(run)
+            noise = rng.normal(0, options.noise, features.shape).astype(np.float32)
+            runs.append((int(segments.recordings[run[0]]), features + noise))
+        print(f"\n{name}: {len(segments):,} segments of {segments.width} features; "
+              f"{len(runs)} takes × {options.queries} queries")
         truth = measure(Exact(segments), runs, None)
         measure(built(Tree, segments), runs, truth)
         cells = built(Cells, segments)

@@ -27,8 +27,10 @@ _FASTEST = 12.0  # m/s, of the hips over ground; the fastest of men run as fast
 _HEIGHTS = -1.0, 4.0  # m, of the hips
 _CALIBRATING = 20_000  # frames: more than enough stance and walking for one skeleton
 
-_ACTIONS = (("jump", r"jump|hop(?!e)|leap"), ("punch", r"punch|box(?!man)|hook|jab"), ("swing", r"golf|swing|tennis|str[ou]c?k|_tt_"),
-            ("run", r"run|jog|sprint"), ("walk", r"walk|stroll|march|navigate"))
+_AT_ONCE = 200_000  # frames held in memory, with the clip that goes beyond
+
+_ACTIONS = (("jump", r"jump|hop(?!e)|leap"), ("punch", r"punch|box|hook|jab"), ("swing", r"golf|swing|tennis|stroke"),
+            ("run", r"run|jog|sprint"), ("walk", r"walk|stroll|march"))
 
 
 @dataclass(frozen=True)
@@ -49,46 +51,46 @@ def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: boo
     folder, problems = Path(folder), []
     if not 10 <= fps <= 240:
         raise DatabaseError(f"{fps:g} frames a second: a database needs 10 … 240")
-    paths = sorted(path for path in folder.rglob("*") if path.suffix.lower() in (".bvh", ".amc"))
+    paths = sorted((path for path in folder.rglob("*") if path.suffix.lower() in (".bvh", ".amc")),
+                   key=lambda path: (path.parent, path))
     if not paths:
         raise DatabaseError(f"{folder}: no .bvh or .amc files in it" + ("" if folder.is_dir() else " (no such folder)"))
-    known, done = actions(folder), 0
+    known = actions(folder)
     with Writer(out, fps, mirrors) as writer:
-        for parent, group in _by_folder(paths):
-            clips = []
-            for path in group:
-                try:
-                    clips.append((path, _at_most(load(path), fps)))
-                except MotionFileError as error:
-                    problems.append(str(error))
-                done += 1
-                if progress:
-                    progress(done, len(paths))
-            for path, clip in _on_our_skeleton(parent, clips, known, folder, problems):
+        def keep(clips: list[tuple[Path, Clip]]) -> None:
+            for path, clip in _on_our_skeleton(clips, known, folder, problems):
                 clip = clip.resample(fps)
                 frames, _ = encode(clip.root, clip.rotations, clip.frame_time)
                 name = path.relative_to(folder).with_suffix("").as_posix()
                 writer.add(name, subject(path, folder), _action(path, folder, known), frames, sound(clip, frames))
+
+        clips: list[tuple[Path, Clip]] = []
+        for done, path in enumerate(paths, 1):
+            # the clips of one folder are calibrated together: most often they show one person
+            if clips and (path.parent != clips[0][0].parent or sum(len(clip) for _, clip in clips) > _AT_ONCE):
+                keep(clips)
+                clips = []
+            try:
+                clips.append((path, _at_most(load(path), fps, path)))
+            except MotionFileError as error:
+                problems.append(str(error))
+            if progress:
+                progress(done, len(paths))
+        keep(clips)
         if not writer.takes:
             raise DatabaseError(f"{folder}: none of its {len(paths)} motion files can be used"
                                 + "".join(f"\n{problem}" for problem in problems[:5]))
     return Built(Database.open(out), problems)
 
 
-def _by_folder(paths: list[Path]) -> Iterator[tuple[Path, list[Path]]]:
-    parents = sorted({path.parent for path in paths})
-    for parent in parents:
-        yield parent, [path for path in paths if path.parent == parent]
-
-
-def _at_most(clip: Clip, fps: float) -> Clip:
+def _at_most(clip: Clip, fps: float, path: Path) -> Clip:
     """The clip at no more than fps [Hz]: what is thrown away later need not be retargeted."""
     if len(clip) < 4:
-        raise MotionFileError(f"{clip.name}: {len(clip)} frames are no motion")
+        raise MotionFileError(f"{path}: {len(clip)} frames are too few; a take needs 4")
     return clip.resample(fps) if clip.frame_time < 0.99 / fps else clip
 
 
-def _on_our_skeleton(parent, clips, known, folder, problems) -> Iterator[tuple[Path, Clip]]:
+def _on_our_skeleton(clips, known, folder, problems) -> Iterator[tuple[Path, Clip]]:
     """The clips of one folder on our skeleton, those of the same one calibrated together."""
     groups: dict[tuple, list[tuple[Path, Clip]]] = {}
     for path, clip in clips:
@@ -101,7 +103,7 @@ def _on_our_skeleton(parent, clips, known, folder, problems) -> Iterator[tuple[P
         try:
             calibration = calibrate([clip for (_, clip), start in zip(order, before) if start < _CALIBRATING])
         except ValueError as error:
-            problems.append(f"{parent}: {len(group)} files left out: {error}")
+            problems.append(f"{group[0][0].parent}: {len(group)} files left out: {error}")
             continue
         for path, clip in group:
             yield path, retarget(clip, calibration=calibration)
@@ -131,8 +133,8 @@ def actions(folder: Path) -> dict[str, str]:
     index = folder / "index.tsv"
     if not index.is_file():
         return {}
-    with index.open(encoding="utf-8", newline="") as file:
-        rows = csv.DictReader(file, delimiter="\t")
+    with index.open(encoding="utf-8", errors="replace", newline="") as file:
+        rows = csv.DictReader(file, delimiter="\t", quoting=csv.QUOTE_NONE)
         return {row["path"]: row["action"] for row in rows if row.get("path") and row.get("action")}
 
 

@@ -160,6 +160,7 @@ def folder(tmp_path):
     write_bvh(clip(1, 41, 30.0), made / "07" / "07_01.bvh")
     write_bvh(clip(2, 80, 120.0), made / "boxing" / "jab_left.bvh")
     (made / "07" / "07_02.bvh").write_text("HIERARCHY\njunk\n")
+    write_bvh(clip(3, 3), made / "boxing" / "short.bvh")
     (made / "index.tsv").write_text("path\tfps\taction\n07/07_01.bvh\t30\trun\n")
     return made
 
@@ -169,8 +170,8 @@ def test_a_folder_becomes_a_database(folder, tmp_path):
     made = build(folder, tmp_path / "a", progress=lambda *done: told.append(done))
     assert [(t.clip, t.subject, t.action, t.stop - t.start) for t in made.database.takes if not t.mirrored] == \
         [("07/07_01", "07", "run", 81), ("boxing/jab_left", "boxing", "punch", 40)]
-    assert len(made.problems) == 1 and "07_02.bvh, line 2" in made.problems[0]
-    assert told[-1] == (3, 3)
+    assert len(made.problems) == 2 and "07_02.bvh, line 2" in made.problems[0] and "short.bvh: 3 frames" in made.problems[1]
+    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
     plain = build(folder, tmp_path / "b", mirrors=False).database
     assert len(made.database) == 2 * len(plain) and not any(take.mirrored for take in plain.takes)
 
@@ -219,7 +220,7 @@ def test_the_command_builds_and_reports(folder, tmp_path):
 
     out = tmp_path / f"made{SUFFIX}"
     done = CliRunner().invoke(cli.app, ["database", "build", str(folder), "-o", str(out)])
-    assert done.exit_code == 0 and "07_02.bvh, line 2" in done.output and "1 files or folders left out" in done.output
+    assert done.exit_code == 0 and "07_02.bvh, line 2" in done.output and "2 files or folders left out" in done.output
     done = CliRunner().invoke(cli.app, ["database", "report", str(out), "--takes"])
     assert "242 frames at 60 a second" in done.output and "07/07_01, 07" in done.output
 
