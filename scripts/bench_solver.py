@@ -20,7 +20,8 @@ import numpy as np  # noqa: E402
 
 from controllers.reconstruction.chart import HEIGHT, SKELETON, WIDTH  # noqa: E402
 from controllers.reconstruction.controls import SETS, parse  # noqa: E402
-from controllers.reconstruction.prior import Gaussian, Regression, regress  # noqa: E402
+from controllers.reconstruction.beliefs import Gaussian  # noqa: E402
+from controllers.reconstruction.prior import Regression, regress  # noqa: E402
 from controllers.reconstruction.solver import Solver  # noqa: E402
 
 MANY = 64

@@ -13,7 +13,8 @@ import numpy as np
 
 from ..body import Pose
 from .chart import YAW_RATE, advance, decode
-from .prior import Gaussian, Regression, fuse, regress
+from .beliefs import Gaussian, fuse
+from .prior import Regression, regress
 from .segments import Neighbourhood, Segments
 from .solver import Solver, in_world, on_ground
 

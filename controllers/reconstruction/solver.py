@@ -15,7 +15,7 @@ import numpy as np
 from ..body import Skeleton
 from .chart import JOINTS, REFERENCE, SKELETON
 from .controls import Controls
-from .prior import Gaussian
+from .beliefs import Gaussian
 from .solver_kernel import kinematics_kernel, points_kernel, solve_all_kernel
 
 

@@ -171,6 +171,8 @@ def test_a_process_is_learnt_and_derived_rightly(world):
     rng = np.random.default_rng(4)
     turn = rng.uniform(0, 2 * np.pi, 50)
     features = np.stack([np.cos(turn), np.sin(turn), np.cos(2 * turn)], -1) @ rng.normal(size=(3, 8))
+    z, y = rng.normal(size=50 * 2 + 3), features - features.mean(0)
+    assert np.allclose(gplvm.energy(z, y, 2)[1], approx_fprime(z, lambda z: gplvm.energy(z, y, 2)[0], 1e-7), rtol=1e-3, atol=1e-2)
     process, barely = gplvm.learn(features, 2), gplvm.learn(features, 2, iterations=1)
     assert process.energy < barely.energy
     x = np.array([0.3, -0.2])

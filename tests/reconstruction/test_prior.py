@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from controllers.reconstruction.chart import SKELETON, WIDTH
 from controllers.reconstruction.controls import parse
-from controllers.reconstruction.prior import FORMS, PAPER, Gaussian, Regression, fit, fuse, regress, weights
+from controllers.reconstruction.beliefs import Gaussian, fuse
+from controllers.reconstruction.prior import FORMS, PAPER, Regression, fit, regress, weights
 from controllers.reconstruction.solver import Solver
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -167,6 +168,18 @@ def test_fusing_adds_precisions(seed):
         precision = [np.linalg.inv(g.covariance) for g in (a, b)]
         assert np.allclose(np.linalg.inv(both.covariance), sum(precision))
         assert np.allclose(sum(precision) @ both.mean, precision[0] @ a.mean + precision[1] @ b.mean)
+
+
+def test_fusing_keeps_a_singular_belief_in_its_subspace():
+    """Along one line, the other belief says where on it; as Σ₁ − Σ₁(Σ₁ + Σ₂)⁻¹Σ₁ has it."""
+    rng = np.random.default_rng(10)
+    line = Gaussian(rng.normal(size=4), np.zeros(4), rng.normal(size=(1, 4)))
+    for other in (Gaussian(rng.normal(size=4), rng.uniform(0.5, 2, 4)),
+                  Gaussian(rng.normal(size=4), rng.uniform(0.5, 2, 4), rng.normal(size=(2, 4)))):
+        gain = line.covariance @ np.linalg.inv(line.covariance + other.covariance)
+        for both in (fuse(line, other), fuse(other, line)):
+            assert np.allclose(both.mean, line.mean + gain @ (other.mean - line.mean))
+            assert np.allclose(both.covariance, line.covariance - gain @ line.covariance, atol=1e-7)
 
 
 def test_what_is_wrong_is_said():

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 from controllers.body import forward_kinematics
 from controllers.reconstruction.chart import ANGLES, HEIGHT, SKELETON, WIDTH, advance, decode
 from controllers.reconstruction.controls import SETS, parse
-from controllers.reconstruction.prior import Gaussian
+from controllers.reconstruction.beliefs import Gaussian
 from controllers.reconstruction.solver import Solver, in_world, on_ground
 
 DT = 1 / 60

@@ -16,7 +16,8 @@ from scipy.optimize import minimize
 from ..chart import WIDTH
 from ..database import Database
 from ..method import Memory
-from ..prior import FLOOR, Gaussian
+from ..beliefs import Gaussian
+from ..prior import FLOOR
 from ..solver import Solver
 
 _CANDIDATES = 4000
@@ -90,43 +91,43 @@ def learn(features: np.ndarray, dimensions: int = 3, iterations: int = 150) -> P
     """
     mean = features.mean(0)
     y = features - mean
-    count, width = y.shape
+    count = len(y)
     u, size, _ = np.linalg.svd(y / np.maximum(y.std(0), 1e-6), full_matrices=False)
     start = np.zeros((count, dimensions))
     start[:, :min(dimensions, len(size))] = u[:, :dimensions] * np.sqrt(count)
-    upper = np.triu_indices(count, 1)
-
-    def unpack(z):
-        return z[:-3].reshape(count, dimensions), np.exp(z[-3:])
-
-    def scales(solved):
-        return np.sqrt(count / np.maximum(np.sum(y * solved, 0), 1e-9))
-
-    def energy(z):
-        x, (alpha, noise, gamma) = unpack(z)
-        difference = x[:, None] - x
-        away = np.sum(difference ** 2, -1)
-        k = alpha * np.exp(-gamma / 2 * away)
-        lower = np.linalg.cholesky(k + noise * np.eye(count))
-        inverse = np.linalg.inv(lower)
-        inverse = inverse.T @ inverse
-        solved = inverse @ y
-        w = scales(solved)
-        value = (width * np.sum(np.log(np.diag(lower))) + 0.5 * np.sum(w ** 2 * np.sum(y * solved, 0))
-                 + 0.5 * np.sum(x ** 2) + np.log(alpha / noise * gamma) - count * np.sum(np.log(w)))
-        by_kernel = 0.5 * (width * inverse - (solved * w ** 2) @ solved.T)
-        pulled = by_kernel * k
-        by_x = -2 * gamma * np.einsum("ij,ijq->iq", pulled, difference) + x
-        by_log = np.array([pulled.sum(), noise * np.trace(by_kernel), -gamma / 2 * np.sum(pulled * away)]) + [1.0, -1.0, 1.0]
-        return value, np.concatenate([by_x.ravel(), by_log])
-
-    gamma = 1.0 / max(np.median(np.sum((start[:, None] - start) ** 2, -1)[upper]), 1e-6)
-    begin = np.concatenate([start.ravel(), np.log([1.0, 0.05, gamma])])
-    found = minimize(energy, begin, jac=True, method="L-BFGS-B", options={"maxiter": iterations},
+    away = np.sum((start[:, None] - start) ** 2, -1)[np.triu_indices(count, 1)]
+    begin = np.concatenate([start.ravel(), np.log([1.0, 0.05, 1.0 / max(np.median(away), 1e-6)])])
+    found = minimize(energy, begin, (y, dimensions), jac=True, method="L-BFGS-B", options={"maxiter": iterations},
                      bounds=[(None, None)] * start.size + [(-6.0, 6.0), (-9.0, 3.0), (-6.0, 6.0)])
-    x, (alpha, noise, gamma) = unpack(found.x)
+    x, (alpha, noise, gamma) = found.x[:-3].reshape(count, dimensions), np.exp(found.x[-3:])
     kernel = alpha * np.exp(-gamma / 2 * np.sum((x[:, None] - x) ** 2, -1)) + noise * np.eye(count)
-    return Process(x, y, mean, scales(np.linalg.solve(kernel, y)), (alpha, 1 / noise, gamma), float(found.fun))
+    return Process(x, y, mean, _scales(y, np.linalg.solve(kernel, y)), (alpha, 1 / noise, gamma), float(found.fun))
+
+
+def energy(z: np.ndarray, y: np.ndarray, dimensions: int) -> tuple[float, np.ndarray]:
+    """What `learn` minimises, and its gradient. z: N latent places, and the logarithms of α, 1/β, γ. y: (N, F) less its mean."""
+    count, width = y.shape
+    x, (alpha, noise, gamma) = z[:-3].reshape(count, dimensions), np.exp(z[-3:])
+    difference = x[:, None] - x
+    away = np.sum(difference ** 2, -1)
+    k = alpha * np.exp(-gamma / 2 * away)
+    lower = np.linalg.cholesky(k + noise * np.eye(count))
+    inverse = np.linalg.inv(lower)
+    inverse = inverse.T @ inverse
+    solved = inverse @ y
+    w = _scales(y, solved)
+    value = (width * np.sum(np.log(np.diag(lower))) + 0.5 * np.sum(w ** 2 * np.sum(y * solved, 0))
+             + 0.5 * np.sum(x ** 2) + np.log(alpha / noise * gamma) - count * np.sum(np.log(w)))
+    by_kernel = 0.5 * (width * inverse - (solved * w ** 2) @ solved.T)
+    pulled = by_kernel * k
+    by_x = -2 * gamma * np.einsum("ij,ijq->iq", pulled, difference) + x
+    by_log = np.array([pulled.sum(), noise * np.trace(by_kernel), -gamma / 2 * np.sum(pulled * away)]) + [1.0, -1.0, 1.0]
+    return float(value), np.concatenate([by_x.ravel(), by_log])
+
+
+def _scales(y, solved):
+    """The w (F,) that are best for a kernel, whose inverse times y is given."""
+    return np.sqrt(len(y) / np.maximum(np.sum(y * solved, 0), 1e-9))
 
 
 def active_set(features: np.ndarray, count: int) -> np.ndarray:

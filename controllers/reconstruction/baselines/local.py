@@ -8,7 +8,8 @@ import numpy as np
 
 from ..chart import FORWARD, HEIGHT, LEFTWARD, WIDTH, YAW_RATE
 from ..method import Memory
-from ..prior import FLOOR, Gaussian, fuse, weights
+from ..beliefs import Gaussian, fuse
+from ..prior import FLOOR, weights
 from ..segments import Neighbourhood
 
 LOOSE = np.zeros(WIDTH)

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..method import Memory
-from ..prior import FLOOR, Gaussian, compact
+from ..beliefs import Gaussian, compact
+from ..prior import FLOOR
 from .windows import Samples, window
 
 _CHUNK = 8192

@@ -1,0 +1,101 @@
+"""What is believed of the coming frame before its points are seen: normal distributions, and several of them in one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import get_lapack_funcs
+
+
+@dataclass(frozen=True, eq=False)
+class Gaussian:
+    """A belief about the next frame of the chart: normal about mean (..., D), covariance diag(variance) + factorᵀ·factor.
+
+    variance: (..., D). factor: (..., R, D); by default R is 0.
+    """
+
+    mean: np.ndarray
+    variance: np.ndarray
+    factor: np.ndarray | None = None
+
+    def __post_init__(self):
+        if self.factor is None:
+            object.__setattr__(self, "factor", np.zeros((*np.shape(self.mean)[:-1], 0, np.shape(self.mean)[-1])))
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """(..., D, D)."""
+        return (self.variance[..., None] * np.eye(self.variance.shape[-1])
+                + np.swapaxes(self.factor, -1, -2) @ self.factor)
+
+    def loosened(self, times: float) -> Gaussian:
+        """The same mean, believed less: the covariance `times` as large."""
+        return Gaussian(self.mean, self.variance * times, self.factor * np.sqrt(times))
+
+
+def fuse(*beliefs: Gaussian) -> Gaussian:
+    """What independent beliefs (without batch axes) say together: precisions add up.
+
+    A singular one keeps the answer in its subspace. ValueError for none.
+    """
+    if not beliefs:
+        raise ValueError("nothing to fuse")
+    together = beliefs[0]
+    for belief in beliefs[1:]:
+        if belief.factor.size and together.factor.size:
+            together = _fuse_full(together, belief)
+        elif belief.factor.size:
+            together = _fuse_plain(belief, together)
+        else:
+            together = _fuse_plain(together, belief)
+    return together
+
+
+def _fuse_plain(belief, plain):
+    """Fuse with a belief that has no factor: in the small form of the factor's rows.
+
+    The belief is mean + √variance·ε + factorᵀ·η. Given η all columns are apart; and η itself is told from plain.mean.
+    """
+    total = belief.variance + plain.variance
+    gain = belief.variance / total
+    error = plain.mean - belief.mean
+    factor = belief.factor * (1.0 - gain)
+    if not factor.size:
+        return Gaussian(belief.mean + gain * error, gain * plain.variance, factor)
+    weighed = belief.factor / total
+    lower = np.linalg.cholesky(np.eye(len(factor)) + weighed @ belief.factor.T)
+    factor, told = _unfold(lower, factor), _unfold(lower, weighed @ error)
+    return Gaussian(belief.mean + gain * error + told @ factor, gain * plain.variance, factor)
+
+
+def _fuse_full(a, b):
+    """Fuse two beliefs that both have factors: Σ = Σ₁ − Σ₁(Σ₁ + Σ₂)⁻¹Σ₁."""
+    first = a.covariance
+    lower = np.linalg.cholesky(first + b.covariance)
+    half = _unfold(lower, first)
+    mean = a.mean + _unfold(lower, b.mean - a.mean) @ half
+    return Gaussian(mean, np.zeros(len(mean)), _rows(first - half.T @ half))
+
+
+def _unfold(lower, right):
+    """L⁻¹ · right for a lower triangular matrix L."""
+    trtrs, = get_lapack_funcs(("trtrs",), (lower, right))
+    return trtrs(lower, right, lower=True)[0]
+
+
+def compact(errors: np.ndarray) -> np.ndarray:
+    """Rows R (≤ D, D) with RᵀR = EᵀE, for many errors E (K, D)."""
+    if len(errors) <= errors.shape[1]:
+        return errors
+    errors = errors.astype(float)
+    return _rows(errors.T @ errors)
+
+
+def _rows(covariance):
+    """Rows R (D, D) with RᵀR = covariance, which may be singular."""
+    try:
+        return np.linalg.cholesky(covariance).T
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
+        return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
