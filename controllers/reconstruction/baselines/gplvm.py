@@ -1,8 +1,9 @@
 """Style-based inverse kinematics (Grochow, Martin, Hertzmann & Popović 2004): a scaled Gaussian process latent variable model.
 
-Features y of a frame are its columns and how much each has changed since the frame before. A Gaussian process maps
-a latent place x to all of them: f(x) with one variance σ²(x), scaled by w_k for each feature. Learning finds x, w and
-the kernel of an active set; reconstruction finds the frame and its x together (their sections 5 and 6).
+A Gaussian process maps a latent place x to a frame's columns, its features y: f(x) with one variance σ²(x), scaled by
+w_k for each. Learning finds x, w and the kernel of an active set; reconstruction finds the frame and its x together
+(their sections 5 and 6). Their features hold velocities as well; on takes of many kinds those blurred all the rest, so
+here a second belief, that a frame is not far from the one before, keeps the motion in one piece.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from ..chart import WIDTH
 from ..database import Database
 from ..method import Memory
 from ..beliefs import Gaussian
@@ -84,7 +84,7 @@ class Process:
         return x
 
 
-def learn(features: np.ndarray, dimensions: int = 3, iterations: int = 150) -> Process:
+def learn(features: np.ndarray, dimensions: int = 3, iterations: int = 300) -> Process:
     """The process of an active set's features (N, F), by L-BFGS from their principal components.
 
     Minimises (F/2) ln|K| + ½ Σ w_k² y_kᵀK⁻¹y_k + ½ Σ|x|² + ln αβγ − N Σ ln w_k; w has a closed form.
@@ -98,7 +98,7 @@ def learn(features: np.ndarray, dimensions: int = 3, iterations: int = 150) -> P
     away = np.sum((start[:, None] - start) ** 2, -1)[np.triu_indices(count, 1)]
     begin = np.concatenate([start.ravel(), np.log([1.0, 0.05, 1.0 / max(np.median(away), 1e-6)])])
     found = minimize(energy, begin, (y, dimensions), jac=True, method="L-BFGS-B", options={"maxiter": iterations},
-                     bounds=[(None, None)] * start.size + [(-6.0, 6.0), (-9.0, 3.0), (-6.0, 6.0)])
+                     bounds=[(None, None)] * start.size + [(0.0, 0.0), (-9.0, 3.0), (-6.0, 6.0)])  # w has α's size already
     x, (alpha, noise, gamma) = found.x[:-3].reshape(count, dimensions), np.exp(found.x[-3:])
     kernel = alpha * np.exp(-gamma / 2 * np.sum((x[:, None] - x) ** 2, -1)) + noise * np.eye(count)
     return Process(x, y, mean, _scales(y, np.linalg.solve(kernel, y)), (alpha, 1 / noise, gamma), float(found.fun))
@@ -142,48 +142,52 @@ def active_set(features: np.ndarray, count: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class SGPLVM:
-    """The prior of a process. rounds: how often frame and latent place take turns."""
+    """The prior of a process. rounds: how often frame and latent place take turns.
+
+    change: (D,) how far a frame is from the one before, as a standard deviation.
+    """
 
     process: Process
     solver: Solver
+    change: np.ndarray
     rounds: int = 3
 
     @staticmethod
     def of(database: Database, solver: Solver, active: int = 150, dimensions: int = 3,
-           loosening: float = 1.0, seed: int = 0) -> SGPLVM:
-        """Learnt from `active` frames of a database, chosen to be diverse: a kernel matrix of more is too slow."""
+           loosening: float = 10.0, apart: float = 1.0, seed: int = 0) -> SGPLVM:
+        """Learnt from `active` frames of a database, chosen to be diverse: a kernel matrix of more is too slow.
+
+        apart: `change`, as a multiple of what the database has.
+        """
         last = database.segments(1)
-        some = np.random.default_rng(seed).permutation(last)[:_CANDIDATES]
-        frames = database.frames[some + 1].astype(float)
-        features = np.concatenate([frames, frames - database.frames[some]], -1)
-        process = learn(features[active_set(features / np.maximum(features.std(0), 1e-6), active)], dimensions)
-        return SGPLVM(replace(process, floor=np.tile(FLOOR, 2), loosening=loosening), solver)
+        last = np.random.default_rng(seed).permutation(last)[:_CANDIDATES]
+        frames = database.frames[last + 1].astype(float)
+        change = np.sqrt(np.mean((frames - database.frames[last]) ** 2, 0)) + FLOOR
+        process = learn(frames[active_set(frames / np.maximum(frames.std(0), 1e-6), active)], dimensions)
+        return SGPLVM(replace(process, floor=FLOOR, loosening=loosening), solver, apart * change)
 
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`. The hint is the latent place."""
         before = memory.frames[0]
-        y = np.concatenate([before, before - memory.frames[1]])
-        away = self.process.scales * (self.process.features + self.process.mean - y)
+        away = self.process.scales * (self.process.features + self.process.mean - before)
         # from the nearest active frame too: the way there may lead over places where nothing is known
         places = [self.process.latent[np.argmin(np.sum(away ** 2, 1))], *([] if memory.hint is None else [memory.hint])]
-        x = min((self.process.place(y, place) for place in places), key=lambda x: self.process.misfit(x, y))
+        x = min((self.process.place(before, place) for place in places), key=lambda x: self.process.misfit(x, before))
         for _ in range(self.rounds - 1):
             frame = self.solver.solve(self._around(x, before), goals).frame
-            x = self.process.place(np.concatenate([frame, frame - before]), x)
+            x = self.process.place(frame, x)
         return self._around(x, before), x
 
     def _around(self, x, before):
-        """What the process believes of the frame where x may move a little: linear in x, so that both are found at once.
+        """What is believed of the frame where x may move a little: linear in x, so that both are found at once.
 
-        Given x, columns and their change are two beliefs about the frame; where they disagree, x had better move.
+        Given x, process and last frame are two beliefs; where they disagree, x had better move.
         """
-        mean, spread, slope, _ = self.process.predict(x)
-        here, there = spread[:WIDTH], spread[WIDTH:]
-        gap, across = mean[:WIDTH] - before - mean[WIDTH:], slope[:WIDTH] - slope[WIDTH:]
-        weighted = across / (here + there)[:, None]
-        free = np.linalg.inv(np.eye(len(x)) + across.T @ weighted)
+        mean, here, slope, _ = self.process.predict(x)
+        gap, there = mean - before, self.change ** 2
+        weighted = slope / (here + there)[:, None]
+        free = np.linalg.inv(np.eye(len(x)) + slope.T @ weighted)
         move = self.process.near(-free @ (x + weighted.T @ gap))
-        share = here / (here + there)  # of the belief about the change
-        mean = mean[:WIDTH] - share * gap
-        slope = slope[:WIDTH] - share[:, None] * across
-        return Gaussian(mean + slope @ move, share * there, np.linalg.cholesky(free).T @ slope.T)
+        share = here / (here + there)  # of the last frame's belief
+        slope = slope * (1.0 - share)[:, None]
+        return Gaussian(mean - share * gap + slope @ move, share * there, np.linalg.cholesky(free).T @ slope.T)
