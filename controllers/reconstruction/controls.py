@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..body import Clip, Skeleton, forward_kinematics
+from ..body import Clip, Skeleton
 
 NAMES = {
     "root": "Hips", "torso": "Spine1", "chest": "Spine2", "neck": "Neck", "head": "Head",
@@ -54,11 +54,8 @@ class Controls:
                                                           self.offsets.astype(positions.dtype))
 
     def extract(self, clip: Clip) -> np.ndarray:
-        """Where a recorded body has the points, (T, n, 3) [m]. KeyError, naming the joint, if it has other joints.
-
-        The clip's joints count, not the numbers in `joints`: see `parse`.
-        """
-        return self.on(*forward_kinematics(clip.skeleton, clip.root, clip.rotations))
+        """Where a recorded body has the points, (T, n, 3) [m]; it must have the skeleton that they were parsed for."""
+        return self.on(*clip.kinematics())
 
 
 def parse(text: str, skeleton: Skeleton) -> Controls:

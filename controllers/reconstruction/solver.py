@@ -59,11 +59,8 @@ class Solver:
     def _body(self):
         first = np.full(len(SKELETON), -1, np.int64)
         first[JOINTS] = 3 * np.arange(len(JOINTS))
-        return (self.dt, self.skeleton.parents, self.skeleton.offsets, REFERENCE, first, self.controls.joints, self.controls.offsets)
-
-    @cached_property
-    def _sigma(self):
-        return np.array(np.broadcast_to(np.asarray(self.sigma, float), (1, len(self.controls))))
+        return (self.dt, self.skeleton.parents, self.skeleton.offsets, REFERENCE, first,
+                self.controls.joints, self.controls.offsets)
 
     def solve(self, prior: Gaussian, goals: np.ndarray, start: np.ndarray | None = None,
               sigma: np.ndarray | None = None) -> Solution:
@@ -78,22 +75,23 @@ class Solver:
         if goals.shape[-2:] != (count, 3):
             raise ValueError(f"points of shape {goals.shape} do not fit {count} control points: expected (..., {count}, 3)")
 
-        number = int(np.prod(batch))
-
+        if sigma is not None and not np.all(np.asarray(sigma) > 0.0):
+            raise ValueError(f"sigma must be above zero, not {sigma}")
         number = math.prod(batch)
 
         def flat(value, *shape):
             value = np.asarray(value, float)
             if value.shape != (*batch, *shape):
                 value = np.broadcast_to(value, (*batch, *shape))
-            return np.ascontiguousarray(value).reshape(number, *shape)
+            # the kernel is compiled for one kind of array, which may be written to
+            return np.require(value, requirements="CW").reshape(number, *shape)
+
         mean, variance = flat(prior.mean, size), flat(prior.variance, size)
         factor = flat(prior.factor, prior.factor.shape[-2], size)
         begin = mean if start is None else flat(start, size)
         frames, points, energies = np.empty((number, size)), np.empty((number, count, 3)), np.empty(number)
-        found = solve_all_kernel(mean, variance, factor, begin, flat(goals, count, 3),
-                                 self._sigma if sigma is None and not batch else flat(self.sigma if sigma is None else sigma, count),
-                                 *self._body, self.steps, self.tolerance, frames, points, energies)
+        exact = flat(self.sigma if sigma is None else sigma, count)
+        found = solve_all_kernel(mean, variance, factor, begin, flat(goals, count, 3), exact, *self._body, self.steps, self.tolerance, frames, points, energies)
         if not found:
             raise ValueError("the prior, or where to start, is not finite")
         return Solution(frames.reshape(*batch, size), points.reshape(*batch, count, 3), energies.reshape(batch))
@@ -105,8 +103,7 @@ class Solver:
         positions, orientations, axes = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((count, 3, 3))
         kinematics_kernel(frame, dt, parents, offsets, reference, first, positions, orientations, axes, np.empty((3, 3, 3)))
         points, jacobian = np.empty((len(self.controls), 3)), np.empty((3 * len(self.controls), len(frame)))
-        points_kernel(dt, parents, first, positions, orientations, axes, joints, beside,
-                      points, jacobian)
+        points_kernel(dt, parents, first, positions, orientations, axes, joints, beside, points, jacobian)
         return points, jacobian
 
 

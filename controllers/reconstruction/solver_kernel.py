@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
-from .chart import ANGLES, FORWARD, HEIGHT, LEFTWARD, PITCH, ROLL, YAW_RATE
+from .chart import FORWARD, HEIGHT, LEFTWARD, PITCH, ROLL, YAW_RATE
 
 EXACT = {"reassoc", "contract", "arcp", "nsz"}
 """Fast arithmetic that still knows NaN, which stands for a point not seen."""

@@ -11,6 +11,7 @@ from controllers.reconstruction.chart import ANGLES, HEIGHT, SKELETON, WIDTH, ad
 from controllers.reconstruction.controls import SETS, parse
 from controllers.reconstruction.beliefs import Gaussian
 from controllers.reconstruction.solver import Solver, in_world, on_ground
+from controllers.reconstruction.solver_kernel import solve_all_kernel
 
 DT = 1 / 60
 SEEDS = st.integers(0, 2**32 - 1)
@@ -136,8 +137,10 @@ def test_batches_are_single_solves():
     means, deviations, truths = (np.stack(a).reshape(2, 3, WIDTH) for a in zip(*(case(s) for s in range(6)), strict=True))
     goals = np.stack([solver.points(t)[0] for t in truths.reshape(6, -1)]).reshape(2, 3, 4, 3)
     together = solver.solve(Gaussian(means, deviations**2), goals)
+    means.setflags(write=False)
     alone = [solver.solve(Gaussian(m, d**2), g).frame for m, d, g in
              zip(means.reshape(6, -1), deviations.reshape(6, -1), goals.reshape(6, 4, 3), strict=True)]
+    assert len(solve_all_kernel.signatures) == 1  # whoever calls: each kind of array would be compiled for anew
     assert np.array_equal(together.frame.reshape(6, -1), alone)
     assert together.energy.shape == (2, 3) and together.points.shape == goals.shape
 
@@ -164,6 +167,8 @@ def test_what_is_wrong_is_said():
         solver.solve(Gaussian(mean, deviation**2), np.zeros((2, 3)))
     with pytest.raises(ValueError, match="sigma must be above zero"):
         Solver(parse("2", SKELETON), DT, sigma=0.0)
+    with pytest.raises(ValueError, match="sigma must be above zero"):
+        solver.solve(Gaussian(np.zeros(WIDTH), deviation**2), np.zeros((2, 3)), sigma=np.array([0.01, 0.0]))
 
 
 @given(SEEDS)
