@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from .body.human import STATURE
-from .contract import Intent, Leap
-from .jump import GRAVITY, Jump, Physique
+from .contract import Intent
+from .jump import GRAVITY, Jump, Physique, rehearsal
 from .locomotion import Locomotion
 from .scaled import Scaled
 from .supervisor import Supervisor
@@ -30,9 +28,8 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
 
 def rehearse(someone: Any) -> None:
     """One step and one jump of nobody, so that what they compile or load does not halt a game."""
-    state = someone.start((0.0, 0.0, 0.0))
-    for leap in (None, Leap(np.array([0.0, 0.0, 0.5]))):
-        state, _ = someone.step(state, Intent(leap=leap), 1.0 / 60.0)
+    someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
+    rehearsal.rehearse(someone.controllers["jump"])
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:

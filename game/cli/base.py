@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import os
+import subprocess
+import sys
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
@@ -62,11 +64,21 @@ def say(text: str) -> None:
 def person_of(library: Path | None, character: Path | None = None) -> Any:
     """Who moves, with a gait library (the shipped one by default), in a character's body if one is named."""
     from controllers.compiled import cold
+    from controllers.contract import Intent
+    from controllers.locomotion import Locomotion
+    from controllers.locomotion.controller import DEFAULT_LIBRARY
+    from controllers.locomotion.library import Library as Gaits
     from controllers.person import person, rehearse
 
+    gaits = Gaits.load(library or DEFAULT_LIBRARY)
+    beside = None
     if cold():
         say("compiling the motion, once: half a minute")
-    somebody = person(library)
+        beside = subprocess.Popen([sys.executable, "-P", "-m", "controllers.jump.rehearsal"], stdin=subprocess.DEVNULL)
+    somebody = person(Locomotion(gaits))
+    if beside is not None:
+        somebody.step(somebody.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
+        beside.wait()
     rehearse(somebody)
     if character is None:
         return somebody
