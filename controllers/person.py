@@ -29,7 +29,8 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
 def rehearse(someone: Any) -> None:
     """One step and one jump of nobody, so that what they compile or load does not halt a game."""
     someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
-    rehearsal.rehearse(someone.controllers["jump"])
+    if "jump" in getattr(someone, "controllers", {}):
+        rehearsal.rehearse(someone.controllers["jump"])
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:
