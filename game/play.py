@@ -16,7 +16,7 @@ import numpy as np
 
 from . import session, settings
 from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
-from .input import (DEFAULT, Bindings, Keyboard, Wish, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
+from .input import (DEFAULT, Bindings, Keyboard, Wish, drivers, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
                     player_of, wheel_wish, wishes)
 from .input.names import key_label
 from .input.script import jumping
@@ -209,6 +209,9 @@ class Play:
         before = self.now
         self.timeline.advance(asked_for)
         self.kept.add(asked_for)
+        count = len(self.now.players)
+        if count > len(before.players) and not drivers(self.pads, count)[-1]:
+            self.kept.say(f"player {count} waits for a gamepad: plug one in")
         for line in refused(before, self.now):
             for part in broken(line):
                 self.kept.say(part)

@@ -14,6 +14,8 @@ TIME = 1.35
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
+SLOWEST = 3.2
+"""Rate of the spring with which a body that hardly fell stands up [1/s]."""
 DEEPEST, STIFFEST = 0.41, 14.0
 """How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
 CATCH = 0.6
@@ -67,7 +69,7 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         ahead = flat / pace
         capture = (land - goal) @ ahead + pace * np.sqrt((goal[1] - support[0, 1]) / gravity) * CATCH
         passes = bool(capture > ((support - goal) @ ahead).max())
-    rate, sink = (PASS if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), 2.0)
+    rate, sink = (PASS if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), SLOWEST)
     while sink < STIFFEST and _lowest(land[1] - goal[1], velocity[1], sink) < -DEEPEST * (goal[1] - support[0, 1]):
         sink *= 1.1
     return Landing(np.array([rate, sink, rate]), land - goal, velocity, goal, passes)

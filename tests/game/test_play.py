@@ -357,6 +357,12 @@ def test_two_players_share_a_picture(game):
     assert len(one.figures) == len(two.figures) == 2 and one.figures[0].tint != one.figures[1].tint
 
 
+def test_a_player_who_joins_without_a_pad_is_told_so(game):
+    game.do("join")
+    wait(game, 0.1)
+    assert len(game.now.players) == 2 and "player 2 waits for a gamepad: plug one in" in game.kept.notices
+
+
 def test_a_second_pad_joins_with_start(game):
     game.handle(pad(slot=0))
     game.handle(pad(slot=1))
