@@ -107,7 +107,7 @@ class Jump:
         way, reason = self.arc(start, place, float(state.floor), leap.airtime, around)
         if reason:
             raise Refused(reason, self._nearest(state, start, place, leap.airtime, around))
-        return plan(self.physique, start, place, float(state.floor), self.gravity, way.airtime)
+        return plan(self.physique, start, way, place, float(state.floor))
 
     def arc(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
             around: Sequence[Any] = ()) -> tuple[Path, str]:

@@ -14,7 +14,7 @@ from . import style
 from .dynamics import Physique, exp_kernel, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .landing import TIME, absorb
-from .path import FLEX, FOOT_FADE, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, path, soles
+from .path import FLEX, FOOT_FADE, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, soles
 from .plan import Plan
 from .posture import stand_kernel
 
@@ -36,27 +36,21 @@ ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 
 
-def plan(physique: Physique, start: Start, place: np.ndarray, floor: float, gravity: np.ndarray,
-         airtime: float | None = None) -> Plan:
-    """The whole jump from `start`, off a floor at height `floor` [m], to a `place` (3,) [m] under the feet.
+def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Plan:
+    """The whole jump from `start`, off a floor at height `floor` [m], along a path to a `place` (3,) [m].
 
-    gravity: (3,) [m/s²]. airtime: [s], or None for the least effort. Checks nothing: see `reach`.
+    Checks nothing: see `reach`.
     """
-    body = physique.tables
-    landing = landing_feet(np.asarray(place, float), start.heading, body)
-    pushing = slice(0, 2) if start.single is None else slice(start.single, start.single + 1)
-    planted = start.planted(floor, body)
-    way = path(physique, start, planted[pushing], landing, floor, gravity, airtime)
-    return _Draft(physique, start, way, planted, landing, gravity).plan()
+    landing = landing_feet(np.asarray(place, float), start.heading, physique.tables)
+    return _Draft(physique, start, way, start.planted(floor, physique.tables), landing).plan()
 
 
 class _Draft:
     """One plan in the making: what its parts share."""
 
-    def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray,
-                 gravity: np.ndarray):
+    def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray):
         self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
-        self.planted, self.landing, self.gravity = planted, landing, gravity
+        self.planted, self.landing, self.gravity = planted, landing, way.gravity
         self.joints = style.joints_of(physique.skeleton)
         self.count = len(physique.skeleton)
         self.flex = FLEX * physique.flexibility
@@ -66,8 +60,8 @@ class _Draft:
         self.down = self.leave + way.airtime
         self.keys = np.array([0.0, self.off, self.leave, self.leave + 0.45 * way.airtime, self.down,
                               self.down + 0.28, self.down + TIME])
-        self.shapes = style.shapes(np.linalg.norm(way.velocity - way.passing), np.linalg.norm(way.falling),
-                                   start.single is not None)
+        self.carriage = style.keyed(self.keys, style.shapes(
+            np.linalg.norm(way.velocity - way.passing), np.linalg.norm(way.falling), start.single is not None))
 
     def plan(self) -> Plan:
         """Everything, in order."""
@@ -103,7 +97,7 @@ class _Draft:
         self.times = np.concatenate([before, self.off + pushing])
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
         self.forces = np.concatenate([a - self.gravity, way.push.force(pushing)])
-        self.angles = style.keyed(self.keys, self.shapes, self.times)
+        self.angles = self.carriage(self.times)
         self._leftovers()
         share = np.clip((self.times - self.off) / way.push.duration, 0.0, 1.0)
         rising = self._heels_rise(share)
@@ -176,7 +170,7 @@ class _Draft:
         self.flying = np.linspace(0.0, way.airtime, max(int(np.ceil(AIR_RATE * way.airtime)), 8) + 1)
         t = self.flying[:, None]
         self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
-        self.air_angles = style.keyed(self.keys, self.shapes, self.leave + self.flying)
+        self.air_angles = self.carriage(self.leave + self.flying)
         self.air = np.tile(np.eye(3), (len(t), self.count, 1, 1))
         for angles, left, local in zip(self.air_angles, self._left_over(self.leave + self.flying), self.air):
             carry_on_kernel(angles, self.joints, left, local)
@@ -265,7 +259,7 @@ class _Draft:
         goal = support.mean(0) + [0.0, measures(self.physique).stand, 0.0]
         landing = absorb(way.land, way.falling, goal, support, -self.gravity[1])
         c, v, a = landing.motion(after)
-        angles = style.keyed(self.keys, self.shapes, self.down + after)
+        angles = self.carriage(self.down + after)
         feet = np.ones((len(after), 2, 6))
         feet[..., :5] = self.landing
         feet[..., 4] = (TOES_DOWN * np.clip(1.0 - after / PLANT, 0.0, 1.0) ** 2)[:, None]

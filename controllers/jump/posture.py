@@ -144,7 +144,7 @@ def stand_kernel(body, centre, feet, flex, root, local, positions, orientations)
                 gap = max(gap, leg_kernel(body, side, feet[side], flex, local, positions, orientations))
         centre_kernel(body, positions, orientations, found)
         missing = _apart(centre, found)
-        if missing < 1e-10:
+        if missing < 1e-9:
             break
         for i in range(3):
             root[i] += GAIN * (centre[i] - found[i])

@@ -68,11 +68,11 @@ def shapes(effort: float, fall: float, running: bool) -> np.ndarray:
                      STAND + absorb * (ABSORB - STAND), STAND])
 
 
-def keyed(times: np.ndarray, keys: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """The angles (N, 6) at times `at` (N,) [s], through `keys` (K, 6) at `times` (K,).
+def keyed(times: np.ndarray, keys: np.ndarray) -> CubicHermiteSpline:
+    """The angles as a function of times within times[0] … times[-1] [s], through `keys` (K, 6) at `times` (K,).
 
     Monotone between keys (PCHIP's slopes): nothing overshoots; at rest at both ends.
     """
     slopes = PchipInterpolator(times, keys).derivative()(times)
     slopes[[0, -1]] = 0.0
-    return CubicHermiteSpline(times, keys, slopes)(np.clip(at, times[0], times[-1]))
+    return CubicHermiteSpline(times, keys, slopes)
