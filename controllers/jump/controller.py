@@ -30,6 +30,8 @@ UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 HIGHER = (1.12, 1.26, 1.42, 1.6)
 """What the airtime is multiplied by until the arc clears what stands in its way."""
+FLUSH = 0.03
+"""A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
 
@@ -104,6 +106,9 @@ class Jump:
         for thing in around:
             if gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0:
                 raise Refused("the target is inside something solid", self._nearest(state, start, place, leap.airtime, around))
+        below = floor_at(place[0], place[2], around, place[1] + FLUSH)
+        if around and below < place[1] - FLUSH:
+            raise Refused(f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m")
         way, reason = self.arc(start, place, float(state.floor), leap.airtime, around)
         if reason:
             raise Refused(reason, self._nearest(state, start, place, leap.airtime, around))

@@ -80,6 +80,7 @@ def test_a_step_must_be_one(jump, standing, dt):
     (Physique(), leap(1.3, around=(WALL,)), "would hit"),
     (Physique(), leap(1.3, around=(Pillar((0.0, 0.0, 0.8)),)), "would hit"),
     (Physique(), leap(1.2, around=(ROOF,)), "head would hit"),
+    (Physique(), leap(0.4, 0.3, around=(Box((0.0, 0.1, 3.0), (1.0, 0.2, 1.0)),)), "nothing to land on"),
     (Physique(), leap(8.0), "take off with"),
     (Physique(), leap(0.8, 2.0), "take off with"),
     (Physique(strength=0.15), leap(1.0), "take off with"),
