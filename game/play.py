@@ -103,6 +103,8 @@ class Play:
         match event:
             case KeyEvent(key, True):
                 self.keyboard = self.keyboard.press(key)
+                if any(row.action == "jump" for row in self.bindings.rows_of(key)):
+                    self._wish(Wish(jump=True))  # a tap may be over before the next tick looks
                 for action in self.bindings.pressed_by(key, mode=mode_of(None, self.pads, self.players, rewound)):
                     self.do(action)
             case KeyEvent(key, False):

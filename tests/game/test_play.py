@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from controllers.person import person
 from game.hosts.events import Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 from game.log import LogWriter, fingerprint, read, replay
 from game.output import OutputError
@@ -355,6 +356,13 @@ def test_two_players_share_a_picture(game):
     one, two = game.scene((20, 10))
     assert one.part == (0, 0, 0.5, 1) and two.part == (0.5, 0, 0.5, 1)
     assert len(one.figures) == len(two.figures) == 2 and one.figures[0].tint != one.figures[1].tint
+
+
+def test_a_tap_between_two_ticks_still_jumps():
+    game = Play(person())
+    tap(game, "SPACE")
+    wait(game, 0.5)
+    assert game.now.after.characters[0].state.memory.active == "jump"
 
 
 def test_a_player_who_joins_without_a_pad_is_told_so(game):
