@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+PANELS = {"space": "control space", "plots": "velocities", "quality": "quality", "settings": "settings"}
+"""What is drawn in it, and what the title bars say. "NAME_panel" is the action that opens and closes one."""
 VERTEX = np.dtype([("place", "f4", 2), ("uv", "f4", 2), ("tint", "u1", 4)])
 """Place [px] from the picture's top-left corner, place in its sheet 0 … 1, display RGB and opacity."""
 

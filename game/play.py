@@ -16,6 +16,7 @@ import numpy as np
 
 from . import session, settings
 from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
+from .ink import PANELS
 from .input import (DEFAULT, Bindings, Keyboard, Wish, drivers, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
                     player_of, wheel_wish, wishes)
 from .input.names import key_label
@@ -32,7 +33,6 @@ from .world import DT, FixedStep, World
 
 SHOWS = {"show_jump" if name == "jump" else name: name for name in OVERLAYS}
 """What shows an overlay and takes it away again: called as it is, but for the jump, which is jumped by its name."""
-PANELS = ("space", "plots", "quality", "settings")
 SHOWN_SPEED = 0.03
 """Below this speed [m/s] or [rad/s] a character is said to stand."""
 PUSHED = 0.3

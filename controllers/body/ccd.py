@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import kernel
+from .turning import exp_kernel, log_kernel
 
 ITERATIONS = 100
 """Enough to converge (the thesis: 100, "with as few as 30 working well")."""
@@ -161,7 +162,7 @@ def _place(root, base, bones, turns, joints, orientations, first):
         parent = base if k == 0 else orientations[k - 1]
         if k == 0:
             joints[0, 0], joints[0, 1], joints[0, 2] = root[0], root[1], root[2]
-        turn_kernel(turns[k], own)
+        exp_kernel(turns[k, 0], turns[k, 1], turns[k, 2], own)
         for i in range(3):
             joints[k + 1, i] = joints[k, i]
             for m in range(3):
@@ -194,13 +195,13 @@ def _turn_joint(e, d, lower, upper, turn):
         return False
     angle = math.atan2(sine, cosine) / sine
     now, way, both, wish = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
-    turn_kernel(turn, now)
+    exp_kernel(turn[0], turn[1], turn[2], now)
     wish[0], wish[1], wish[2] = angle * x, angle * y, angle * z
-    turn_kernel(wish, way)
+    exp_kernel(wish[0], wish[1], wish[2], way)
     for i in range(3):
         for k in range(3):
             both[i, k] = way[i, 0] * now[0, k] + way[i, 1] * now[1, k] + way[i, 2] * now[2, k]
-    rotvec_kernel(both, wish)
+    log_kernel(both, wish)
     held = False
     for i in range(3):
         inside = min(max(wish[i], lower[i]), upper[i])
@@ -248,7 +249,7 @@ def _turn_hinge(e, d, axis, lower, upper, turn):
 def _towards(own, d, turn):
     """How far along d (3,) a turn brings `own` (3,), an end in the joint's frame."""
     matrix = np.empty((3, 3))
-    turn_kernel(turn, matrix)
+    exp_kernel(turn[0], turn[1], turn[2], matrix)
     total = 0.0
     for i in range(3):
         total += d[i] * (matrix[i, 0] * own[0] + matrix[i, 1] * own[1] + matrix[i, 2] * own[2])
@@ -294,49 +295,6 @@ def _apart(a, b):
 
 
 @kernel
-def turn_kernel(turn, out):
-    """Write the rotation matrix (3, 3) of a rotation vector (3,) [rad]."""
-    x, y, z = turn[0], turn[1], turn[2]
-    square = x * x + y * y + z * z
-    angle = math.sqrt(square)
-    if angle < 1e-4:  # Taylor, to rounding
-        s, c = 1.0 - square / 6.0, 0.5 - square / 24.0
-    else:
-        s, c = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
-    out[0, 0], out[0, 1], out[0, 2] = 1.0 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y
-    out[1, 0], out[1, 1], out[1, 2] = c * x * y + s * z, 1.0 - c * (x * x + z * z), c * y * z - s * x
-    out[2, 0], out[2, 1], out[2, 2] = c * x * z - s * y, c * y * z + s * x, 1.0 - c * (x * x + y * y)
-
-
-@kernel
-def rotvec_kernel(matrix, out):
-    """Write the rotation vector (3,) [rad], at most π long, of a rotation matrix (3, 3).
-
-    By the quaternion whose largest part comes first (Shepperd 1978), exact up to half a turn.
-    """
-    m = matrix
-    trace = m[0, 0] + m[1, 1] + m[2, 2]
-    q = np.empty(4)
-    if trace > 0.0:
-        q[3] = 1.0 + trace
-        q[0], q[1], q[2] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
-    else:
-        i = 0
-        if m[1, 1] > m[0, 0]:
-            i = 1
-        if m[2, 2] > m[i, i]:
-            i = 2
-        j, k = (i + 1) % 3, (i + 2) % 3
-        q[i] = 1.0 + m[i, i] - m[j, j] - m[k, k]
-        q[j], q[k], q[3] = m[j, i] + m[i, j], m[k, i] + m[i, k], m[k, j] - m[j, k]
-    if q[3] < 0.0:
-        q = -q
-    sine = math.sqrt(q[0] ** 2 + q[1] ** 2 + q[2] ** 2)
-    scale = 2.0 / q[3] if sine < 1e-12 * abs(q[3]) else 2.0 * math.atan2(sine, q[3]) / sine
-    out[0], out[1], out[2] = scale * q[0], scale * q[1], scale * q[2]
-
-
-@kernel
 def foot_turn_kernel(parent, wanted, lower, upper, turn, out):
     """Re-impose an orientation at the end of a chain: the ankle turns back what the leg has turned.
 
@@ -344,13 +302,13 @@ def foot_turn_kernel(parent, wanted, lower, upper, turn, out):
     Writes the limited rotation vector (3,) [rad] and the orientation (3, 3) it gives. Returns how
     far the limits held it back [rad], by its most limited axis.
     """
-    rotvec_kernel(parent.T @ wanted, turn)
+    log_kernel(parent.T @ wanted, turn)
     excess = 0.0
     for i in range(3):
         inside = min(max(turn[i], lower[i]), upper[i])
         excess = max(excess, abs(turn[i] - inside))
         turn[i] = inside
     own = np.empty((3, 3))
-    turn_kernel(turn, own)
+    exp_kernel(turn[0], turn[1], turn[2], own)
     out[:] = parent @ own
     return excess

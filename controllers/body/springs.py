@@ -28,8 +28,10 @@ def damp(x: np.ndarray, goal: np.ndarray, halflife: float, dt: float) -> np.ndar
     return np.asarray(goal) + decay(np.asarray(x) - goal, halflife, dt)
 
 
-def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
+def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """An offset and its velocity (...) after dt [s], settling critically damped to 0: inertialisation.
+
+    dt: a number, or anything that broadcasts with them.
 
     At a transition take x = old − new and v likewise, as vectors or rotation vectors (the short
     way round), add the settling offset to the new motion, and nothing jumps.
@@ -37,7 +39,7 @@ def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float) -> tuple[np
     y = 2.0 * _LN2 / (halflife + _EPSILON)
     x, v = np.asarray(x), np.asarray(v)
     pull = v + x * y
-    fade = math.exp(-y * dt)
+    fade = np.exp(-y * dt)
     return fade * (x + pull * dt), fade * (v - pull * (y * dt))
 
 

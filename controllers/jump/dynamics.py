@@ -12,6 +12,7 @@ from ..body import Skeleton, human
 from ..body.anatomy import Anatomy, anatomy
 from ..body.contact import contact_height, heel_offset
 from ..body.human import STATURE
+from ..body.turning import exp_kernel, log_kernel
 from ..compiled import kernel
 
 GRAVITY = np.array([0.0, -9.81, 0.0])
@@ -158,29 +159,6 @@ def momentum_kernel(body, before, turned_before, after, turned_after, dt, angula
             for k in range(3):
                 inertia[i, k] += own[i, k]
                 angular[i] += own[i, k] * rate[k] / dt
-
-
-@kernel
-def log_kernel(matrix, out):
-    """Write the rotation vector (3,) [rad] of a rotation matrix (3, 3) by less than half a turn."""
-    x, y, z = matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]
-    sine = 0.5 * np.sqrt(x * x + y * y + z * z)
-    cosine = 0.5 * (matrix[0, 0] + matrix[1, 1] + matrix[2, 2] - 1.0)
-    scale = 0.5 if sine < 1e-9 else 0.5 * np.arctan2(sine, cosine) / sine
-    out[0], out[1], out[2] = scale * x, scale * y, scale * z
-
-
-@kernel
-def exp_kernel(x, y, z, out):
-    """Write the rotation matrix (3, 3) of a rotation vector [rad]."""
-    angle = np.sqrt(x * x + y * y + z * z)
-    if angle < 1e-8:
-        s, c = 1.0 - angle * angle / 6.0, 0.5
-    else:
-        s, c = np.sin(angle) / angle, (1.0 - np.cos(angle)) / (angle * angle)
-    out[0, 0], out[0, 1], out[0, 2] = 1.0 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y
-    out[1, 0], out[1, 1], out[1, 2] = c * x * y + s * z, 1.0 - c * (x * x + z * z), c * y * z - s * x
-    out[2, 0], out[2, 1], out[2, 2] = c * x * z - s * y, c * y * z + s * x, 1.0 - c * (x * x + y * y)
 
 
 def turns(vectors: np.ndarray) -> np.ndarray:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..body.turning import exp_kernel
 from ..compiled import kernel
-from .dynamics import exp_kernel, momentum_kernel
+from .dynamics import momentum_kernel
 from .posture import float_kernel
 
 

@@ -11,9 +11,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body.rotations import yaw
+from ..body.support import HALF_SOLE
 from . import style
 from .ballistics import apex_airtime, least_effort, take_off_velocity
 from .dynamics import BodyTables, Physique
+from .poise import HALF_STANCE, STAND_REACH
 from .posture import stand_kernel
 from .thrust import Push, push, risen
 from .windup import crouch_depth, strength
@@ -22,10 +24,8 @@ HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
 FLEX = np.radians(38.0)
 """How far a loaded ankle bends [rad]; times flexibility."""
-TAKE_OFF_REACH, TOUCH_REACH, STAND_REACH = 0.955, 0.93, 0.98
-"""How straight legs are, as shares of their length, as they take off, touch down, stand."""
-HALF_STANCE, SHOE = 0.10, 0.045
-"""From the middle to a landing foot, and from a foot's line to the edge of its sole [m], at standard height."""
+TAKE_OFF_REACH, TOUCH_REACH = 0.955, 0.93
+"""How straight legs are, as shares of their length, as they take off and touch down."""
 MOST_LEAD = 0.60
 """How far ahead of its ball of foot a runner may leave the floor, as a share of the leg."""
 YIELD = (0.05, 0.13)
@@ -138,7 +138,7 @@ def _height(physique: Physique, angles, pitch: float, share: float, feet: np.nda
 
 def soles(feet: np.ndarray, body: BodyTables) -> np.ndarray:
     """The corners (4 F, 3) [m] of the soles of flat feet (F, 5): heels and tips."""
-    half = SHOE * body.sole / 0.02
+    half = HALF_SOLE * body.sole / 0.02
     corners = [(side * half, -body.sole, along) for along in (body.heel[2] - body.toe[2], body.tip[2])
                for side in (-1.0, 1.0)]
     return np.concatenate([foot[:3] + np.array(corners) @ yaw(foot[3]).T for foot in feet])

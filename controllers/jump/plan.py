@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body import Pose
+from ..body.turning import exp_kernel, log_kernel
 from ..compiled import kernel
-from .dynamics import exp_kernel
 from .path import Path
 
 
@@ -56,14 +56,10 @@ class Plan:
 @kernel
 def between_kernel(root_a, root_b, a, b, part, root, local):
     """Write the pose `part` (0 … 1) of the way from one to the next nearby one."""
-    from_a = np.empty((3, 3))
+    turned, way = np.empty((3, 3)), np.empty(3)
     for i in range(3):
         root[i] = root_a[i] + part * (root_b[i] - root_a[i])
     for j in range(len(a)):
-        turn = a[j].T @ b[j]
-        x, y, z = turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]
-        sine = 0.5 * np.sqrt(x * x + y * y + z * z)
-        cosine = 0.5 * (turn[0, 0] + turn[1, 1] + turn[2, 2] - 1.0)
-        scale = part * (0.5 if sine < 1e-9 else 0.5 * np.arctan2(sine, cosine) / sine)
-        exp_kernel(scale * x, scale * y, scale * z, from_a)
-        local[j] = a[j] @ from_a
+        log_kernel(a[j].T @ b[j], way)
+        exp_kernel(part * way[0], part * way[1], part * way[2], turned)
+        local[j] = a[j] @ turned

@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..body.rotations import yaw
+from ..body.springs import settle
+from ..body.turning import exp_kernel
 from ..compiled import kernel
 from . import style
-from .dynamics import Physique, exp_kernel, momentum_kernel, place_kernel, turns, vectors
+from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .landing import TIME, absorb
 from .path import FLEX, FOOT_FADE, HEEL_UP, TOES_DOWN, Path, Start, landing_feet, measures, soles
@@ -184,10 +186,11 @@ class _Draft:
         self.roots[-3:] = self.centres[-3:]  # a guess
         wanted = self._upright(self.air_angles[-1:, 0])[0]
         spin, gain = np.array([-1.8 / self.way.airtime, 0.0, 0.0]), 0.57 * self.way.airtime * np.eye(3)
-        for attempt in range(ROUNDS):
+        change = before = np.zeros(3)
+        for _ in range(ROUNDS):
             self._flight(spin, wanted, 1e-4)
             miss = self._miss(wanted)
-            if attempt:
+            if change.any():
                 gain += np.outer(before - miss - gain @ change, change) / (change @ change)
             if np.abs(miss).max() < CLOSE:
                 break
@@ -273,10 +276,8 @@ class _Draft:
 
 
 def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
-    """Offsets (N, ...) at times (N,) [s] of one (...) that settles critically damped from its rate."""
-    y = 2.0 * np.log(2.0) / halflife
-    t = times.reshape((-1,) + (1,) * np.ndim(offset))
-    return np.exp(-y * t) * (offset + (rate + offset * y) * t)
+    """Offsets (N, ...) at times (N,) [s] of one (...) that settles from its rate."""
+    return settle(offset, rate, halflife, times.reshape((-1,) + (1,) * np.ndim(offset)))[0]
 
 
 def hermite(times: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray) -> np.ndarray:

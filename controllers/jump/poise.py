@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.anatomy import joint_limits
-from ..body.ccd import ccd_kernel, foot_turn_kernel, turn_kernel
+from ..body.ccd import ccd_kernel, foot_turn_kernel
 from ..body.human import STATURE
 from ..body.support import HALF_SOLE, centroid_kernel, hull_kernel, margin_kernel
+from ..body.turning import exp_kernel
 from ..compiled import kernel
 from . import style
 from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
@@ -121,7 +122,7 @@ def pose_kernel(fixed, pelvis, standing, feet, turns, local, positions, orientat
         orientations[hip], orientations[hip + 1] = bones[0], bones[1]
         foot_kernel(foot[3], 0.0, orientations[hip + 3])  # toes stay level
         for k in range(3):
-            turn_kernel(turns[side, k], local[hip + k])
+            exp_kernel(turns[side, k, 0], turns[side, k, 1], turns[side, k, 2], local[hip + k])
         local[hip + 3] = orientations[hip + 2].T @ orientations[hip + 3]
     return worst
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..body import Skeleton
+from ..body.turning import exp_kernel
 from ..compiled import kernel
-from .dynamics import exp_kernel
 
 ANGLES = ("lean", "bend", "look", "swing", "spread", "elbow")
 STAND = np.radians([2.0, 2.0, 0.0, 2.0, 9.0, 14.0])

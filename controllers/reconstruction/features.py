@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compiled import kernel
-from .chart import ANGLES, FORWARD, HEIGHT, JOINTS, LEFTWARD, PITCH, REFERENCE, ROLL, ROOT, SKELETON, WIDTH, YAW_RATE
+from .chart import ANGLES, FORWARD, HEIGHT, JOINTS, LEFTWARD, PITCH, REFERENCE, ROLL, ROOT, SKELETON, YAW_RATE
 
 
 @dataclass(frozen=True)

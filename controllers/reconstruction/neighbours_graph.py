@@ -8,7 +8,6 @@ before and after it; and now and then the walk is started anew from the cells.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from ..hosts.events import Event
-from ..ink import Ink
+from ..ink import PANELS, Ink
 from ..scene import Figure
 from ..session import Moment
 from . import meter, plots, sliders, space, transport
@@ -15,8 +15,6 @@ from .ghost import ghost
 from .toolkit import imgui
 from .trace import Trace
 
-PANELS = {"space": "control space", "plots": "velocities", "quality": "quality", "settings": "settings"}
-"""The panels, and what their title bars say. "NAME_panel" is the action that opens and closes one."""
 MARGIN = 12.0
 STRIP = 70.0
 LEAST = 60.0

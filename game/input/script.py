@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from controllers.contract import CharacterState, Intent, Leap
-from controllers.navigation import Path, Steering, follow, steer
+from controllers.navigation import Path, follow, steer
 
-STEERING = Steering()
+from .pilot import STEERING
+
 ARRIVED = 0.12
 """A path is walked when no more than this is left of it [m]."""
 NEAR = 0.12
