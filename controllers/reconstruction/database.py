@@ -37,7 +37,8 @@ class Take:
 
     subject: whom it shows. action: what they do ("walk", "run", "jump", "punch", "swing", "other").
     start, stop: its frames in the database. recording: a number that a take and its mirror image
-    share. mirrored: whether left and right are exchanged.
+    share. mirrored: whether left and right are exchanged. interpolated: whether it was recorded at a
+    lower rate than the database's, so that its accelerations are not a body's.
     """
 
     clip: str
@@ -47,6 +48,7 @@ class Take:
     stop: int
     recording: int
     mirrored: bool = False
+    interpolated: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,14 +164,16 @@ class Writer:
         self._file.write(_MAGIC.ljust(HEAD, b"\0"))
         return self
 
-    def add(self, clip: str, subject: str, action: str, frames: np.ndarray, sound: np.ndarray) -> None:
+    def add(self, clip: str, subject: str, action: str, frames: np.ndarray, sound: np.ndarray,
+            interpolated: bool = False) -> None:
         """Append a take. frames: (T, WIDTH). sound: (T,) bool. Unsound frames are zero where they are not finite."""
         frames = np.where(np.isfinite(frames), frames, 0.0)
         recording = self.takes[-1].recording + 1 if self.takes else 0
         for mirrored in (False, True) if self.mirrors else (False,):
             self._file.write(np.ascontiguousarray(mirror(frames) if mirrored else frames, np.float32).data)
             self._sound.append(np.asarray(sound, np.uint8))
-            self.takes.append(Take(clip, subject, action, self.count, self.count + len(frames), recording, mirrored))
+            self.takes.append(Take(clip, subject, action, self.count, self.count + len(frames), recording, mirrored,
+                                   interpolated))
             self.count += len(frames)
 
     def __exit__(self, kind, *_) -> None:

@@ -59,10 +59,12 @@ def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: boo
     with Writer(out, fps, mirrors) as writer:
         def keep(clips: list[tuple[Path, Clip]]) -> None:
             for path, clip in _on_our_skeleton(clips, known, folder, problems):
+                interpolated = clip.frame_time > 1.01 / fps
                 clip = clip.resample(fps)
                 frames, _ = encode(clip.root, clip.rotations, clip.frame_time)
                 name = path.relative_to(folder).with_suffix("").as_posix()
-                writer.add(name, subject(path, folder), _action(path, folder, known), frames, sound(clip, frames))
+                writer.add(name, subject(path, folder), _action(path, folder, known), frames, sound(clip, frames),
+                           interpolated)
 
         clips: list[tuple[Path, Clip]] = []
         for done, path in enumerate(paths, 1):

@@ -1,0 +1,142 @@
+"""Trials of reconstruction on recorded takes that the methods have not seen.
+
+Whole takes are held out, never frames: at 60 Hz a frame's neighbours are next to the frame itself. A take that
+stands in the database twice, as files of two formats, is never held out.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+import numpy as np
+
+from ..body import forward_kinematics
+from . import metrics
+from .chart import SKELETON, advance, decode
+from .controls import Controls
+from .database import Database, DatabaseError, Take
+from .method import SPAN, Method
+
+LEAST = 30
+"""Fewest frames that a trial has to reconstruct."""
+MOST = 600
+"""A trial ends after ten seconds."""
+
+
+@dataclass(frozen=True)
+class Split:
+    """What is learnt from, settings are tuned on, and results are told of."""
+
+    learnt: Database
+    validation: tuple[Take, ...]
+    test: tuple[Take, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A recorded take, or its first seconds. frames: (T, D) of the chart. tracks: (T, 3). positions: (T, J, 3) [m].
+
+    rotations: (T, J, 3, 3) local. points: (T, n, 3) [m] the control points in the world. dt: [s].
+    The first `SPAN` frames are given to the methods, as that much of the past.
+    """
+
+    take: Take
+    frames: np.ndarray
+    tracks: np.ndarray
+    positions: np.ndarray
+    rotations: np.ndarray
+    points: np.ndarray
+    dt: float
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a method made of a trial: positions (T − SPAN, J, 3) [m] and local rotations (T − SPAN, J, 3, 3)."""
+
+    trial: Trial
+    positions: np.ndarray
+    rotations: np.ndarray
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Mean distance of the joints from the recorded ones in each frame (T − SPAN,) [m]."""
+        return metrics.position_error(self.positions, self.trial.positions[SPAN:])
+
+
+def split(database: Database, test: int = 22, validation: int = 11, seed: int = 0) -> Split:
+    """Hold out takes of seen subjects: of every action and subject in turn, so that no kind fills the test.
+
+    Only takes that were recorded at the database's rate and without a gap are held out, and at least half of each
+    subject's takes stay. DatabaseError if there are not enough.
+    """
+    rng = np.random.default_rng(seed)
+    names = Counter(_stem(take) for take in database.takes if not take.mirrored)
+    groups: dict[tuple[str, str], list[Take]] = {}
+    for take in database.takes:
+        if not take.mirrored and not take.interpolated and _usable(database, take) and names[_stem(take)] == 1:
+            groups.setdefault((take.action, take.subject), []).append(take)
+    left = {subject: count // 2 for subject, count in
+            Counter(take.subject for take in database.takes if not take.mirrored).items()}
+    queues = [list(rng.permutation(len(group))) for group in groups.values()]
+    order, chosen = list(groups.items()), []
+    while len(chosen) < test + validation:
+        before = len(chosen)
+        for k in rng.permutation(len(order)):
+            (_, subject), group = order[k]
+            if queues[k] and left[subject] > 0 and len(chosen) < test + validation:
+                chosen.append(group[queues[k].pop()])
+                left[subject] -= 1
+        if len(chosen) == before:
+            raise DatabaseError(f"{database.path}: only {len(chosen)} takes can be held out, not {test + validation}")
+    learnt, _ = database.hold_out([take.clip for take in chosen])
+    return Split(learnt, tuple(chosen[test:]), tuple(chosen[:test]))
+
+
+def split_subjects(database: Database, subjects: Sequence[str], test: int = 22, seed: int = 0) -> Split:
+    """Hold out subjects altogether, and tell results of some takes of theirs, of each subject and action in turn."""
+    _, held = database.hold_out(subjects=subjects)
+    rng = np.random.default_rng(seed)
+    groups: dict[tuple[str, str], list[Take]] = {}
+    for take in held.takes:
+        if not take.mirrored and not take.interpolated and _usable(database, take):
+            groups.setdefault((take.subject, take.action), []).append(take)
+    queues = [[group[i] for i in rng.permutation(len(group))] for group in groups.values()]
+    chosen = [queue[k] for k in range(max(map(len, queues), default=0)) for queue in queues if k < len(queue)][:test]
+    if not chosen:
+        raise DatabaseError(f"{database.path}: no take of {', '.join(subjects)} can be held out")
+    return Split(database.hold_out(subjects=subjects)[0], (), tuple(chosen))
+
+
+def _stem(take):
+    return PurePosixPath(take.clip).name
+
+
+def _usable(database, take):
+    """Whether its first seconds are sound and long enough."""
+    stop = min(take.stop, take.start + SPAN + MOST)
+    return stop - take.start >= SPAN + LEAST and bool(database.sound[take.start:stop].all())
+
+
+def trial(database: Database, take: Take, controls: Controls, most: int = MOST) -> Trial:
+    """A take's first frames, `SPAN` + `most` at most, from the origin on."""
+    frames = database.frames[take.start:min(take.stop, take.start + SPAN + most)].astype(float)
+    tracks = np.zeros((len(frames), 3))
+    for t in range(1, len(frames)):
+        tracks[t] = advance(tracks[t - 1], frames[t], 1 / database.fps)
+    positions, orientations = forward_kinematics(SKELETON, *decode(frames, tracks))
+    return Trial(take, frames, tracks, positions, decode(frames, tracks)[1], controls.on(positions, orientations),
+                 1 / database.fps)
+
+
+def run(method: Method, on: Trial, points: np.ndarray | None = None) -> Outcome:
+    """A method's reconstruction of a trial on its own output. points: (T, n, 3) seen instead of the true ones."""
+    seen = on.points if points is None else points
+    memory = method.begin(on.frames[:SPAN], on.tracks[:SPAN])
+    root, rotations = np.empty((len(seen) - SPAN, 3)), np.empty((len(seen) - SPAN, len(SKELETON), 3, 3))
+    for t in range(SPAN, len(seen)):
+        memory, pose = method.step(memory, seen[t])
+        root[t - SPAN], rotations[t - SPAN] = pose.root, pose.rotations
+    return Outcome(on, forward_kinematics(SKELETON, root, rotations)[0], rotations)
