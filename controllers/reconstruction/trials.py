@@ -66,33 +66,29 @@ class Outcome:
         return metrics.position_error(self.positions, self.trial.positions[SPAN:])
 
 
-def split(database: Database, test: int = 22, validation: int = 11, seed: int = 0) -> Split:
+def split(database: Database, test: int = 22, validation: int = 11, seed: int = 0, interpolated: bool = False) -> Split:
     """Hold out takes of seen subjects: of every action and subject in turn, so that no kind fills the test.
 
-    Only takes that were recorded at the database's rate and without a gap are held out, and at least half of each
-    subject's takes stay. DatabaseError if there are not enough.
+    At least half of what a subject did of each action stays. Only takes without a gap are held out; those that were
+    recorded at a lower rate than the database's only if `interpolated` is set.
+    DatabaseError if there are not enough.
     """
     rng = np.random.default_rng(seed)
-    names = Counter(_stem(take) for take in database.takes if not take.mirrored)
+    originals = [take for take in database.takes if not take.mirrored]
+    names = Counter(_stem(take) for take in originals)
     groups: dict[tuple[str, str], list[Take]] = {}
-    for take in database.takes:
-        if not take.mirrored and not take.interpolated and _usable(database, take) and names[_stem(take)] == 1:
+    for take in originals:
+        if names[_stem(take)] == 1 and (interpolated or not take.interpolated) and _usable(database, take):
             groups.setdefault((take.action, take.subject), []).append(take)
-    left = {subject: count // 2 for subject, count in
-            Counter(take.subject for take in database.takes if not take.mirrored).items()}
-    queues = [list(rng.permutation(len(group))) for group in groups.values()]
-    order, chosen = list(groups.items()), []
+    count = Counter((take.action, take.subject) for take in originals)
+    queues = [[group[i] for i in rng.permutation(len(group))[:count[kind] // 2]] for kind, group in groups.items()]
+    chosen: list[Take] = []
     while len(chosen) < test + validation:
-        before = len(chosen)
-        for k in rng.permutation(len(order)):
-            (_, subject), group = order[k]
-            if queues[k] and left[subject] > 0 and len(chosen) < test + validation:
-                chosen.append(group[queues[k].pop()])
-                left[subject] -= 1
-        if len(chosen) == before:
+        if not any(queues):
             raise DatabaseError(f"{database.path}: only {len(chosen)} takes can be held out, not {test + validation}")
-    learnt, _ = database.hold_out([take.clip for take in chosen])
-    return Split(learnt, tuple(chosen[test:]), tuple(chosen[:test]))
+        chosen += [queues[k].pop() for k in rng.permutation(len(queues)) if queues[k]]
+    learnt, _ = database.hold_out([take.clip for take in chosen[:test + validation]])
+    return Split(learnt, tuple(chosen[test:test + validation]), tuple(chosen[:test]))
 
 
 def split_subjects(database: Database, subjects: Sequence[str], test: int = 22, seed: int = 0) -> Split:
