@@ -1,0 +1,239 @@
+"""The reconstruction controller: ``state', pose = reconstruction.step(state, intent, dt)`` follows `intent.points`.
+
+Where the points come from is nobody's business here: a recorded performance, handles that somebody drags, a live
+stream (`sources`). A method of `method` makes the poses; here they are taken over from whoever moved the body before,
+kept going while points are lost, and given back.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..body import Pose, Skeleton, forward_kinematics, human
+from ..body.contact import HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact_points
+from ..body.human import STATURE
+from ..body.rotations import exp, heading_of, log, wrap
+from ..body.springs import damp, settle
+from ..contract import CharacterState, Intent, Status, Unable
+from .chart import SKELETON, YAW_RATE, advance, encode
+from .controls import Controls
+from .gating import Gate
+from .method import SPAN
+
+READY, HOLDS = 1.0, 1.2
+"""How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""
+LOST = 1.0
+"""Without a point for so long [s] it gives up."""
+FAR = 1.5
+"""Points that are farther from the body than this on the average [m] can't be taken hold of."""
+APART = 2.5
+"""No two points of a standard body are farther apart [m]."""
+FADE = 0.15
+"""Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
+_FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
+_SMOOTH = 0.1  # s, half-life of the ground frame's heading and of its velocity
+
+
+class Reconstructor(Protocol):
+    """What makes the poses: a `method.Method`, or anything that is used like one."""
+
+    def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Any:
+        """See `Method`."""
+
+    def step(self, memory: Any, points: np.ndarray) -> tuple[Any, Pose]:
+        """See `Method`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Following:
+    """What is remembered while points are followed; lengths as of a standard body on a floor at height 0.
+
+    memory: the method's. gate: what is known of the points, which were last at seen (n, 3). pose, before: the newest
+    frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
+    and joints until it has settled. lost: [s] since a point was followed. fault: what went wrong.
+    """
+
+    memory: Any
+    gate: Gate
+    seen: np.ndarray
+    pose: Pose
+    before: Pose
+    ahead: float
+    offset: np.ndarray
+    rate: np.ndarray
+    lost: float = 0.0
+    fault: str = ""
+
+
+class Reconstruction:
+    """Moves a whole body as a few points on it go.
+
+    method: whose poses. controls: the points, as the method has them. height: of the body [m]; the performer's points
+    are taken to be as far apart as on a body of this height. dt: seconds between the method's frames.
+    Pre-condition: a point is seen, and those seen are within reach. Post-condition: the body is where the points were
+    and moves as it last did. Expected performance: a point is seen every now and then.
+    Characters come singly.
+    """
+
+    def __init__(self, method: Reconstructor, controls: Controls, height: float = STATURE, dt: float = 1 / 60):
+        self.method, self.controls, self.dt = method, controls, dt
+        self.factor, self.skeleton = height / STATURE, human(height)
+        self._sole = contact_height(self.skeleton)
+
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of others."""
+        return f"Reconstruction {','.join(self.controls.names)} × {self.factor:.6f}"
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """READY if a point is seen; while points are followed, how firmly it holds on."""
+        if intent.points is None:
+            return 0.0
+        if isinstance(state.memory, Following):
+            return HOLDS
+        return READY if np.isfinite(intent.points).any() else 0.0
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state with the body about to follow. Unable, with the reason, if the points are none of this body's."""
+        if isinstance(state.memory, Following):
+            return state
+        seen = self._seen(state, intent)
+        pose = self._shrunk(state.pose, state.floor)
+        self._possible(seen, self._points(pose))
+        past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, state.floor)
+        frames, tracks = _past(pose, past, state.elapsed, self.dt)
+        still = Following(self.method.begin(frames, tracks), Gate.closed(len(self.controls)), seen, pose, pose, 0.0,
+                          np.zeros((1 + len(SKELETON), 3)), np.zeros((1 + len(SKELETON), 3)))
+        rate = np.zeros_like(still.rate) if past is None else _difference(pose, past) / state.elapsed
+        begun = self._frame(replace(still, before=_moved(pose, -rate * self.dt)), seen)
+        # what the body would do next by itself is where the fading begins
+        offset = _difference(_moved(pose, rate * self.dt), begun.pose)
+        return replace(state, memory=replace(begun, ahead=self.dt, offset=offset))
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
+
+        The method makes a frame each of its own steps; in between, poses are interpolated.
+        """
+        if not 0.0 < dt <= 0.1:
+            raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
+        if not isinstance(state.memory, Following):
+            raise ValueError("this state's memory is not of a reconstruction: enter it first")
+        following, seen = state.memory, self._seen(state, intent)
+        due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
+        ahead = following.ahead - dt + due * self.dt
+        start = following.seen
+        for k in range(1, due + 1):
+            points = seen if k == due else start + (seen - start) * (k / due)
+            following = self._frame(following, points)
+        if due:
+            following = replace(following, seen=seen)
+        offset, rate = settle(following.offset, following.rate, FADE, dt)
+        following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
+        shown = _moved(following.pose, _difference(following.before, following.pose) * (following.ahead / self.dt))
+        pose = self._grown(_moved(shown, offset), state.floor)
+        return self._after(state, pose, following, dt), pose
+
+    def status(self, state: CharacterState) -> Status:
+        """Running as long as points are seen now and then."""
+        following: Following = state.memory
+        if following.fault:
+            return Status("failed", following.fault)
+        return Status("done", "the points are lost") if following.lost >= LOST else Status("running")
+
+    def _frame(self, following: Following, points: np.ndarray) -> Following:
+        """One frame of the method on."""
+        body, before = self._points(following.pose), self._points(following.before)
+        motion = (body - before) / self.dt
+        gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
+        memory, pose = self.method.step(following.memory, goals)
+        if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
+            return replace(following, fault="the reconstruction came to no pose", before=following.pose)
+        lost = 0.0 if gate.trusted.any() else following.lost + self.dt
+        return replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
+
+    def _after(self, state: CharacterState, pose: Pose, following: Following, dt: float) -> CharacterState:
+        """The state with a new pose: its ground frame, velocity and contacts are told from the body."""
+        positions, orientations = forward_kinematics(self.skeleton, pose.root, pose.rotations)
+        arms = positions[[self.skeleton.index("LeftArm"), self.skeleton.index("RightArm")]]
+        middle, heading = arms.mean(0), float(state.ground[2])
+        heading += float(damp(0.0, wrap(heading_of(orientations[0] @ [0.0, 0.0, 1.0]) - heading), _SMOOTH, dt))
+        c, s = np.cos(heading), np.sin(heading)
+        x, _, z = (pose.root - state.pose.root) / dt
+        now = np.array([s * x + c * z, (heading - float(state.ground[2])) / dt, c * x - s * z])
+        before = contact_points(self.skeleton, *forward_kinematics(
+            self.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
+        points = contact_points(self.skeleton, positions, orientations)
+        slack = np.where(state.contacts, RELEASE, 1.0)
+        stands = (points[:, 1] - state.floor - self._sole < HEIGHT_GATE * slack) & (
+            np.linalg.norm(points - before, axis=-1) / dt < WALK_SPEEDS * slack)
+        return replace(state, ground=np.array([middle[0], middle[2], heading]), pose=pose, contacts=stands,
+                       velocity=damp(np.asarray(state.velocity, float), now, _SMOOTH, dt), memory=following)
+
+    def _seen(self, state: CharacterState, intent: Intent) -> np.ndarray:
+        """The points that are wanted (n, 3) as of a standard body on the floor. Unable for another number of them."""
+        count = len(self.controls)
+        if intent.points is None:
+            return np.full((count, 3), np.nan)
+        points = np.asarray(intent.points, float)
+        if points.shape != (count, 3):
+            raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
+        return (points - [0.0, float(state.floor), 0.0]) / self.factor
+
+    def _possible(self, seen: np.ndarray, body: np.ndarray) -> None:
+        """Unable unless these points can be of this body."""
+        there = np.isfinite(seen).all(-1)
+        if not there.any():
+            raise Unable("no point is seen")
+        away = float(np.linalg.norm(seen - body, axis=-1)[there].mean())
+        if away > FAR:
+            raise Unable(f"the points are {away * self.factor:.1f} m away from the body")
+        apart = float(np.linalg.norm(seen[there][:, None] - seen[there], axis=-1).max())
+        if apart > APART:
+            raise Unable(f"two points are {apart * self.factor:.1f} m apart, which no body is")
+
+    def _points(self, pose: Pose) -> np.ndarray:
+        """Where (n, 3) [m] a standard body has the points."""
+        return self.controls.on(*forward_kinematics(SKELETON, pose.root, pose.rotations))
+
+    def _shrunk(self, pose: Pose, floor: float) -> Pose:
+        return Pose((np.asarray(pose.root, float) - [0.0, float(floor), 0.0]) / self.factor,
+                    np.asarray(pose.rotations, float))
+
+    def _grown(self, pose: Pose, floor: float) -> Pose:
+        return Pose(pose.root * self.factor + [0.0, float(floor), 0.0], pose.rotations)
+
+
+def _difference(to: Pose, start: Pose) -> np.ndarray:
+    """What moves one pose onto another (1 + J, 3): of the root [m], and of the joints as rotation vectors [rad]."""
+    return np.concatenate([(to.root - start.root)[None], log(np.swapaxes(start.rotations, -1, -2) @ to.rotations)])
+
+
+def _moved(pose: Pose, by: np.ndarray) -> Pose:
+    """The inverse of `_difference`."""
+    return Pose(pose.root + by[0], pose.rotations @ exp(by[1:]))
+
+
+def _past(pose: Pose, before: Pose | None, elapsed: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """Frames (SPAN, D) and ground tracks (SPAN, 3) that end in a pose, from it and maybe one `elapsed` [s] before.
+
+    Farther back it is guessed: the hips went as fast all the time, the joints had begun to move not long before.
+    """
+    if before is None:
+        frames, tracks = encode(pose.root[None], pose.rotations[None], dt)
+        return frames, tracks
+    pair, tracks = encode(np.stack([before.root, pose.root]), np.stack([before.rotations, pose.rotations]), elapsed)
+    newest = pair[1]
+    back = -np.arange(SPAN - 1, -1, -1) * dt
+    frames = newest + (np.expm1(back / _FADING) * _FADING)[:, None] * (newest - pair[0]) / elapsed
+    frames[:, YAW_RATE:] = newest[YAW_RATE:]
+    way = [tracks[1]]
+    for _ in range(SPAN - 1):
+        earlier = way[0] - [0.0, 0.0, newest[YAW_RATE] * dt]
+        earlier[:2] -= advance(earlier, newest, dt)[:2] - earlier[:2]
+        way.insert(0, earlier)
+    return frames, np.stack(way)

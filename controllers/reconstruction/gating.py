@@ -1,0 +1,76 @@
+"""Points as trackers give them, made fit to be followed: lost ones stay away, wild ones are refused, returning ones eased in.
+
+Whatever comes back is first taken to be where the body has it already, with the body's velocity; the difference
+then settles (inertialisation), so that nothing pops.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..body.springs import damp, settle
+
+SUDDEN = 0.15
+"""Farther than this [m] from where its motion leads no point gets within a frame: 500 m/s² is beyond any body."""
+FASTEST = 15.0
+"""And one of which no motion is known yet no farther than this [m/s] goes."""
+NEAR = 0.4
+"""A point that comes back within this of where the body has it [m] is believed at once."""
+PATIENCE = 0.3
+"""Farther away it has to be seen to move like a body for so long [s]."""
+REACH = 1.5
+"""And beyond this [m] it is never believed."""
+EASE = 0.1
+"""Half-life with which a point that is back comes to where it is seen [s]."""
+_RATE = 0.03  # s, half-life of the velocity that is told from places
+
+
+@dataclass(frozen=True, eq=False)
+class Gate:
+    """What is remembered of n points. raw: (n, 3) [m] where they were last seen, NaN where they were not.
+
+    rate: (n, 3) [m/s] how they move. steady: (n,) [s] for how long they have moved like a body. trusted: (n,) bool
+    which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has settled.
+    """
+
+    raw: np.ndarray
+    rate: np.ndarray
+    steady: np.ndarray
+    trusted: np.ndarray
+    offset: np.ndarray
+    slip: np.ndarray
+
+    @staticmethod
+    def closed(count: int) -> Gate:
+        """Before anything was seen of so many points."""
+        zero = np.zeros((count, 3))
+        return Gate(np.full((count, 3), np.nan), zero, np.zeros(count), np.zeros(count, bool), zero, zero)
+
+    def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
+        """The gate dt [s] later, and the points (n, 3) [m] to follow, NaN where there is nothing to believe.
+
+        seen: (n, 3) [m] as they come, NaN where lost. body: (n, 3) [m] where the body would have them now.
+        motion: (n, 3) [m/s] how it moves them.
+        """
+        there = np.isfinite(seen).all(-1)
+        seen = np.where(there[:, None], seen, np.nan)
+        known = np.isfinite(self.raw).all(-1)
+        away = _length(seen - self.raw - self.rate * dt)
+        limit = SUDDEN + np.where(self.steady > 0.0, 0.0, FASTEST * dt)
+        goes_on = there & known & (away <= limit)
+        steady = np.where(goes_on, self.steady + dt, 0.0)
+        rate = np.where(goes_on[:, None], damp(self.rate, (seen - self.raw) / dt, _RATE, dt), 0.0)
+        gap = _length(seen - body)
+        believed = goes_on & (gap <= REACH) & (self.trusted | (gap <= NEAR) | (steady >= PATIENCE))
+        back = (believed & ~self.trusted)[:, None]
+        offset, slip = settle(self.offset, self.slip, EASE, dt)
+        offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
+        slip = np.where(believed[:, None], np.where(back, motion - rate, slip), 0.0)
+        after = replace(self, raw=seen, rate=rate, steady=steady, trusted=believed, offset=offset, slip=slip)
+        return after, np.where(believed[:, None], seen + offset, np.nan)
+
+
+def _length(vectors):
+    return np.linalg.norm(vectors, axis=-1)
