@@ -7,6 +7,7 @@ hint, and needs to search fewer cells. What was found once is kept as long as it
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,13 +37,34 @@ class Cells:
         points = self.projection.all(segments)
         count = min(round(2.5 * len(segments) ** 0.5) if cells is None else cells, len(segments))
         self.probes = max(16, round(share * count))
-        self.centres, self.cell = cluster(points, count, np.random.default_rng(seed))
-        # a cell's segments lie together, in the order of time
-        self.order = np.argsort(self.cell, kind="stable")
+        centres, cell = cluster(points, count, np.random.default_rng(seed))
+        self._arrange(centres, cell, points[np.argsort(cell, kind="stable")])
+
+    def _arrange(self, centres, cell, points):
+        """points: of the segments, those of a cell together, in the order of time."""
+        self.centres, self.cell, self.points = centres, cell, points
+        self.order = np.argsort(cell, kind="stable")
         self.place = np.argsort(self.order)
-        self.bounds = np.concatenate([[0], np.cumsum(np.bincount(self.cell, minlength=count))])
-        self.points = points[self.order]
-        self._norms = np.einsum("ij,ij->i", self.centres, self.centres)
+        self.bounds = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=len(centres)))])
+        self._norms = np.einsum("ij,ij->i", centres, centres)
+
+    def save(self, path: str | Path) -> None:
+        """Write it as an .npz file."""
+        with Path(path).open("wb") as file:
+            np.savez(file, mean=self.projection.mean, basis=self.projection.basis, centres=self.centres, cell=self.cell,
+                     points=self.points, about=[self.probes, self.cold, self.candidates])
+
+    @staticmethod
+    def load(path: str | Path, segments: Segments) -> Cells:
+        """Read what `save` wrote of the same segments. OSError or ValueError for anything else."""
+        with np.load(path) as file:
+            if "centres" not in file or len(file["cell"]) != len(segments):
+                raise ValueError(f"{path}: is no index of these segments")
+            found = object.__new__(Cells)
+            found.segments, found.projection = segments, Projection(file["mean"], file["basis"])
+            found.probes, found.cold, found.candidates = (int(number) for number in file["about"])
+            found._arrange(file["centres"], file["cell"], file["points"])
+        return found
 
     def query(self, feature: np.ndarray, k: int, hint: np.ndarray | None = None, forbidden: int | None = None
               ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
