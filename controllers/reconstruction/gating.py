@@ -13,7 +13,7 @@ import numpy as np
 from ..body.springs import damp, settle
 
 SUDDEN = 0.15
-"""Farther than this [m] from where its motion leads no point gets within a frame: 500 m/s² is beyond any body."""
+"""Farther than this [m] from where its motion leads no point gets within a frame: 540 m/s² is beyond any body."""
 FASTEST = 15.0
 """And one of which no motion is known yet no farther than this [m/s] goes."""
 NEAR = 0.4
@@ -31,12 +31,13 @@ _RATE = 0.03  # s, half-life of the velocity that is told from places
 class Gate:
     """What is remembered of n points. raw: (n, 3) [m] where they were last seen, NaN where they were not.
 
-    rate: (n, 3) [m/s] how they move. steady: (n,) [s] for how long they have moved like a body. trusted: (n,) bool
+    rate, smooth: (n, 3) [m/s] how they move, and how they did in the last frames, which noise blurs less. steady: (n,) [s] for how long they have moved like a body. trusted: (n,) bool
     which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has settled.
     """
 
     raw: np.ndarray
     rate: np.ndarray
+    smooth: np.ndarray
     steady: np.ndarray
     trusted: np.ndarray
     offset: np.ndarray
@@ -46,7 +47,7 @@ class Gate:
     def closed(count: int) -> Gate:
         """Before anything was seen of so many points."""
         zero = np.zeros((count, 3))
-        return Gate(np.full((count, 3), np.nan), zero, np.zeros(count), np.zeros(count, bool), zero, zero)
+        return Gate(np.full((count, 3), np.nan), zero, zero, np.zeros(count), np.zeros(count, bool), zero, zero)
 
     def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """The gate dt [s] later, and the points (n, 3) [m] to follow, NaN where there is nothing to believe.
@@ -57,18 +58,20 @@ class Gate:
         there = np.isfinite(seen).all(-1)
         seen = np.where(there[:, None], seen, np.nan)
         known = np.isfinite(self.raw).all(-1)
-        away = _length(seen - self.raw - self.rate * dt)
+        moved = seen - self.raw
+        away = np.minimum(_length(moved - self.rate * dt), _length(moved - self.smooth * dt))
         limit = SUDDEN + np.where(self.steady > 0.0, 0.0, FASTEST * dt)
         goes_on = there & known & (away <= limit)
         steady = np.where(goes_on, self.steady + dt, 0.0)
-        rate = np.where(goes_on[:, None], damp(self.rate, (seen - self.raw) / dt, _RATE, dt), 0.0)
+        rate = np.where(goes_on[:, None], moved / dt, 0.0)
+        smooth = np.where((self.steady > 0.0)[:, None], damp(self.smooth, rate, _RATE, dt), rate)
         gap = _length(seen - body)
         believed = goes_on & (gap <= REACH) & (self.trusted | (gap <= NEAR) | (steady >= PATIENCE))
         back = (believed & ~self.trusted)[:, None]
         offset, slip = settle(self.offset, self.slip, EASE, dt)
         offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
-        slip = np.where(believed[:, None], np.where(back, motion - rate, slip), 0.0)
-        after = replace(self, raw=seen, rate=rate, steady=steady, trusted=believed, offset=offset, slip=slip)
+        slip = np.where(believed[:, None], np.where(back, motion - smooth, slip), 0.0)
+        after = replace(self, raw=seen, rate=rate, smooth=smooth, steady=steady, trusted=believed, offset=offset, slip=slip)
         return after, np.where(believed[:, None], seen + offset, np.nan)
 
 
