@@ -9,14 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..body import forward_kinematics
-from .chart import JOINTS, SKELETON, decode
-
-
-def bodies(frames: np.ndarray, tracks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Joint positions (T, J, 3) [m] and local rotations (T, J, 3, 3) of frames (T, D) at ground tracks (T, 3)."""
-    root, rotations = decode(frames, tracks)
-    return forward_kinematics(SKELETON, root, rotations)[0], rotations
+from ..body.rotations import log
+from .chart import JOINTS, REFERENCE
 
 
 def position_error(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
@@ -34,6 +28,13 @@ def angle_error(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
     between = np.swapaxes(truth[:, JOINTS], -1, -2) @ found[:, JOINTS]
     angles = Rotation.from_matrix(between.reshape(-1, 3, 3)).magnitude().reshape(between.shape[:2])
     return np.sqrt(np.mean(angles ** 2, -1))
+
+
+def column_error(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """Root mean square (T,) [rad] of the 57 joint columns' differences, of local rotations (T, J, 3, 3)."""
+    def columns(rotations):
+        return log(np.swapaxes(REFERENCE[JOINTS], -1, -2) @ rotations[:, JOINTS])
+    return np.sqrt(np.mean((columns(found) - columns(truth)) ** 2, (-1, -2)))
 
 
 def jitter(positions: np.ndarray, dt: float) -> float:

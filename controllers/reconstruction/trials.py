@@ -7,7 +7,7 @@ stands in the database twice, as files of two formats, is never held out.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
@@ -75,10 +75,9 @@ def split(database: Database, test: int = 22, validation: int = 11, seed: int = 
     """
     rng = np.random.default_rng(seed)
     originals = [take for take in database.takes if not take.mirrored]
-    names = Counter(_stem(take) for take in originals)
     groups: dict[tuple[str, str], list[Take]] = {}
-    for take in originals:
-        if names[_stem(take)] == 1 and (interpolated or not take.interpolated) and _usable(database, take):
+    for take in _alone(database, originals):
+        if (interpolated or not take.interpolated) and _usable(database, take):
             groups.setdefault((take.action, take.subject), []).append(take)
     count = Counter((take.action, take.subject) for take in originals)
     queues = [[group[i] for i in rng.permutation(len(group))[:count[kind] // 2]] for kind, group in groups.items()]
@@ -106,6 +105,60 @@ def split_subjects(database: Database, subjects: Sequence[str], test: int = 22, 
     return Split(database.hold_out(subjects=subjects)[0], (), tuple(chosen))
 
 
+def split_actions(database: Database, each: int = 4, poses: int = 70_000, seed: int = 0,
+                  actions: Sequence[str] = ("walk", "run", "jump", "punch", "swing"), avoid: Collection[Take] = ()) -> Split:
+    """Hold out `each` takes of every action, and learn from about so many poses of these actions alone.
+
+    avoid: takes not to hold out. Interpolated takes are among them: compare positions, not accelerations.
+    At most half of an action's takes are held out. DatabaseError if none can be.
+    """
+    rng = np.random.default_rng(seed)
+    chosen: list[Take] = []
+    for action in actions:
+        every = [take for take in database.takes if take.action == action and not take.mirrored]
+        good = [take for take in _alone(database, every) if take not in avoid and _usable(database, take)]
+        chosen += [good[i] for i in rng.permutation(len(good))[:min(each, len(every) // 2)]]
+    if not chosen:
+        raise DatabaseError(f"{database.path}: no take of {', '.join(actions)} can be held out")
+    rest = without(database, chosen)
+    queues = [[take for take in rest.takes if take.action == action and not take.mirrored] for action in actions]
+    queues = [[queue[i] for i in rng.permutation(len(queue))] for queue in queues]
+    sizes, clips, copies = [0] * len(queues), set(), 2 if any(take.mirrored for take in rest.takes) else 1
+    while any(queues) and copies * sum(sizes) < poses:
+        least = min((k for k, queue in enumerate(queues) if queue), key=lambda k: sizes[k])
+        take = queues[least].pop()
+        sizes[least] += take.stop - take.start
+        clips.add(take.clip)
+    return Split(rest.only([take for take in rest.takes if take.clip in clips]), (), tuple(chosen))
+
+
+def long_takes(database: Database, frames: int = 3600, count: int = 4, avoid: Collection[Take] = ()) -> tuple[Take, ...]:
+    """Takes that go on for so many frames after the warm start, of each subject in turn, the liveliest first."""
+    found: dict[str, list[tuple[float, Take]]] = {}
+    for take in database.takes:
+        sound = database.sound[take.start:take.start + SPAN + frames]
+        if not take.mirrored and take not in avoid and take.stop - take.start >= SPAN + frames and sound.all():
+            poses = database.poses[take.start:take.start + SPAN + frames]
+            found.setdefault(take.subject, []).append((float(np.abs(np.diff(poses, axis=0)).mean()), take))
+    queues = [sorted(group, key=lambda one: one[0]) for group in found.values()]
+    chosen: list[Take] = []
+    while any(queues) and len(chosen) < count:
+        chosen += [queue.pop()[1] for queue in queues if queue]
+    return tuple(chosen[:count])
+
+
+def without(database: Database, takes: Collection[Take]) -> Database:
+    """A database less some takes, their mirror images, and whatever else bears their name: the same in another format."""
+    names = {_stem(take) for take in takes}
+    return database.only([take for take in database.takes if _stem(take) not in names])
+
+
+def _alone(database, takes):
+    """Those of some takes that are the only one of their name, mirror images aside."""
+    names = Counter(_stem(take) for take in database.takes if not take.mirrored)
+    return [take for take in takes if names[_stem(take)] == 1]
+
+
 def _stem(take):
     return PurePosixPath(take.clip).name
 
@@ -122,9 +175,9 @@ def trial(database: Database, take: Take, controls: Controls, most: int = MOST) 
     tracks = np.zeros((len(frames), 3))
     for t in range(1, len(frames)):
         tracks[t] = advance(tracks[t - 1], frames[t], 1 / database.fps)
-    positions, orientations = forward_kinematics(SKELETON, *decode(frames, tracks))
-    return Trial(take, frames, tracks, positions, decode(frames, tracks)[1], controls.on(positions, orientations),
-                 1 / database.fps)
+    root, rotations = decode(frames, tracks)
+    positions, orientations = forward_kinematics(SKELETON, root, rotations)
+    return Trial(take, frames, tracks, positions, rotations, controls.on(positions, orientations), 1 / database.fps)
 
 
 def run(method: Method, on: Trial, points: np.ndarray | None = None) -> Outcome:

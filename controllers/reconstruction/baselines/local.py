@@ -29,9 +29,9 @@ class LocalPCA:
     leave the subspace, as standard deviations (D,); without any, a body that has strayed from the neighbours explodes.
     """
 
-    share: float = 0.99
-    most: int = 7
-    loosening: float = 1.0
+    share: float = 0.999
+    most: int = 12
+    loosening: float = 3.0
     smoothness: float | None = None
     root: np.ndarray = field(default_factory=lambda: LOOSE)
 
@@ -56,10 +56,10 @@ class LocalPCR:
     has no weights, which None stands for.
     """
 
-    share: float = 0.95
+    share: float = 0.99
     floor: np.ndarray = field(default_factory=lambda: FLOOR)
-    loosening: float = 1000.0
-    bandwidth: str | None = None
+    loosening: float = 300.0
+    bandwidth: str | None = "knn"
 
     def believe(self, feature: np.ndarray, near: Neighbourhood, memory: Memory) -> Gaussian:
         """See `LocalModel`."""
@@ -85,7 +85,7 @@ class LocalPCR:
 class Nearest:
     """The frame that followed the nearest segment, believed within `spread` (D,) standard deviations."""
 
-    spread: np.ndarray = field(default_factory=lambda: 30.0 * FLOOR)
+    spread: np.ndarray = field(default_factory=lambda: 10.0 * FLOOR)
 
     def believe(self, feature: np.ndarray, near: Neighbourhood, memory: Memory) -> Gaussian:
         """See `LocalModel`."""
