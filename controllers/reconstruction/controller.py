@@ -19,10 +19,11 @@ from ..body.human import STATURE
 from ..body.rotations import exp, heading_of, log, wrap
 from ..body.springs import damp, settle
 from ..contract import CharacterState, Intent, Status, Unable
-from .chart import SKELETON, YAW_RATE, advance, encode
+from .chart import SKELETON, YAW_RATE, decode, encode
 from .controls import Controls
 from .gating import Gate
 from .method import SPAN
+from .starts import Starts, backed
 
 READY, HOLDS = 1.0, 1.2
 """How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""
@@ -32,6 +33,8 @@ FAR = 1.5
 """Points that are farther from the body than this on the average [m] can't be taken hold of."""
 APART = 2.5
 """No two points of a standard body are farther apart [m]."""
+ANEW = 0.25
+"""Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
 _FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
@@ -72,15 +75,15 @@ class Following:
 class Reconstruction:
     """Moves a whole body as a few points on it go.
 
-    method: whose poses. controls: the points, as the method has them. height: of the body [m]; the performer's points
+    method: whose poses. controls: the points, as the method has them. starts: where to begin from points alone. height: of the body [m]; the performer's points
     are taken to be as far apart as on a body of this height. dt: seconds between the method's frames.
     Pre-condition: a point is seen, and those seen are within reach. Post-condition: the body is where the points were
     and moves as it last did. Expected performance: a point is seen every now and then.
     Characters come singly.
     """
 
-    def __init__(self, method: Reconstructor, controls: Controls, height: float = STATURE, dt: float = 1 / 60):
-        self.method, self.controls, self.dt = method, controls, dt
+    def __init__(self, method: Reconstructor, controls: Controls, starts: Starts, height: float = STATURE, dt: float = 1 / 60):
+        self.method, self.controls, self.starts, self.dt = method, controls, starts, dt
         self.factor, self.skeleton = height / STATURE, human(height)
         self._sole = contact_height(self.skeleton)
 
@@ -103,16 +106,37 @@ class Reconstruction:
             return state
         seen = self._seen(state, intent)
         pose = self._shrunk(state.pose, state.floor)
-        self._possible(seen, self._points(pose))
+        away = self._possible(seen, self._points(pose))
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, state.floor)
-        frames, tracks = _past(pose, past, state.elapsed, self.dt)
-        still = Following(self.method.begin(frames, tracks), Gate.closed(len(self.controls)), seen, pose, pose, 0.0,
-                          np.zeros((1 + len(SKELETON), 3)), np.zeros((1 + len(SKELETON), 3)))
-        rate = np.zeros_like(still.rate) if past is None else _difference(pose, past) / state.elapsed
-        begun = self._frame(replace(still, before=_moved(pose, -rate * self.dt)), seen)
+        rate = np.zeros((1 + len(SKELETON), 3)) if past is None else _difference(pose, past) / state.elapsed
+        own = _past(pose, past, state.elapsed, self.dt)
+        begun = self._frame(self._begun(*(own if away <= ANEW else self.starts.find(seen)), seen, self.dt), seen)
         # what the body would do next by itself is where the fading begins
         offset = _difference(_moved(pose, rate * self.dt), begun.pose)
         return replace(state, memory=replace(begun, ahead=self.dt, offset=offset))
+
+    def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0) -> CharacterState:
+        """A body out of nothing, in a pose that has these points (n, 3) [m], which move at velocities (n, 3) [m/s].
+
+        Both NaN where not known. Unable if no point is seen, or none of this body's.
+        """
+        nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
+        seen = self._seen(nobody, Intent(points=points))
+        self._possible(seen, seen)
+        frames, tracks = self.starts.find(seen, None if velocities is None else velocities / self.factor)
+        following = self._begun(frames, tracks, seen)
+        pose = self._grown(following.pose, floor)
+        ground = np.array([pose.root[0], pose.root[2], tracks[-1, 2]])
+        state, _ = self.step(replace(nobody, ground=ground, pose=pose, memory=replace(following, ahead=self.dt)),
+                             Intent(points=points), self.dt)
+        return state
+
+    def _begun(self, frames: np.ndarray, tracks: np.ndarray, seen: np.ndarray, late: float = 0.0) -> Following:
+        """Before the first frame, after a past that may be guessed. late: when points were seen after its end [s]."""
+        before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
+        motion, zero = (self._points(pose) - self._points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
+        return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
+                         0.0, zero, zero)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
@@ -184,8 +208,8 @@ class Reconstruction:
             raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
         return (points - [0.0, float(state.floor), 0.0]) / self.factor
 
-    def _possible(self, seen: np.ndarray, body: np.ndarray) -> None:
-        """Unable unless these points can be of this body."""
+    def _possible(self, seen: np.ndarray, body: np.ndarray) -> float:
+        """How far they are from the body's on the average [m]. Unable unless these points can be of this body."""
         there = np.isfinite(seen).all(-1)
         if not there.any():
             raise Unable("no point is seen")
@@ -195,6 +219,7 @@ class Reconstruction:
         apart = float(np.linalg.norm(seen[there][:, None] - seen[there], axis=-1).max())
         if apart > APART:
             raise Unable(f"two points are {apart * self.factor:.1f} m apart, which no body is")
+        return away
 
     def _points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""
@@ -233,7 +258,5 @@ def _past(pose: Pose, before: Pose | None, elapsed: float, dt: float) -> tuple[n
     frames[:, YAW_RATE:] = newest[YAW_RATE:]
     way = [tracks[1]]
     for _ in range(SPAN - 1):
-        earlier = way[0] - [0.0, 0.0, newest[YAW_RATE] * dt]
-        earlier[:2] -= advance(earlier, newest, dt)[:2] - earlier[:2]
-        way.insert(0, earlier)
+        way.insert(0, backed(way[0], newest, dt))
     return frames, np.stack(way)

@@ -44,10 +44,11 @@ class Gate:
     slip: np.ndarray
 
     @staticmethod
-    def closed(count: int) -> Gate:
-        """Before anything was seen of so many points."""
-        zero = np.zeros((count, 3))
-        return Gate(np.full((count, 3), np.nan), zero, zero, np.zeros(count), np.zeros(count, bool), zero, zero)
+    def before(seen: np.ndarray, motion: np.ndarray) -> Gate:
+        """When points were seen for the first time, at (n, 3) [m], NaN where not; taken to move as the body does
+        [m/s]. None is followed yet."""
+        zero = np.zeros_like(motion)
+        return Gate(seen, motion, motion, np.zeros(len(seen)), np.zeros(len(seen), bool), zero, zero)
 
     def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """The gate dt [s] later, and the points (n, 3) [m] to follow, NaN where there is nothing to believe.
