@@ -1,0 +1,65 @@
+"""Walkers keep out of what stands about, whatever their speed, and get out again where they stand in it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from controllers.contract import Intent
+from controllers.locomotion import Locomotion
+from controllers.navigation.obstacles import HEAD, SHOULDER, floor_at, gap, slide
+from game.scene import Box
+
+BOX = Box((0.0, 0.3, 4.0), (1.6, 0.6, 1.0), 0.0)
+WALL = Box((0.0, 0.5, 4.0), (2.6, 1.0, 0.1), 0.4)
+angles = st.floats(-np.pi, np.pi)
+speeds = st.floats(0.1, 4.0)
+
+
+def along(velocity, heading):
+    """A velocity (2,) in the world as an intent's, for somebody who faces a heading."""
+    c, s = np.cos(heading), np.sin(heading)
+    return np.array([s * velocity[0] + c * velocity[1], 0.0, c * velocity[0] - s * velocity[1]])
+
+
+@pytest.mark.parametrize("thing", [BOX, WALL], ids=["box", "wall"])
+@pytest.mark.parametrize("speed", [1.3, 3.2])
+def test_nobody_walks_or_runs_into_a_box(thing, speed):
+    walker = Locomotion.load()
+    for aside in (0.0, 0.7):
+        state, nearest = walker.start((aside, 0.0, 0.0)), np.inf
+        for _ in range(240):
+            wish = slide(state.ground[:2], (0.0, speed), 0.0, [thing])
+            state, _ = walker.step(state, Intent(along(wish, state.ground[2])), 1 / 60)
+            nearest = min(nearest, gap(np.array([[state.ground[0], 0.5, state.ground[1]]]), thing)[0])
+        assert 0.1 < nearest < 1.0, "he came to it, and not into it"
+
+
+@given(angles, speeds)
+def test_with_nothing_near_a_wish_stays_as_it_is(angle, speed):
+    wish = speed * np.array([np.sin(angle), np.cos(angle)])
+    assert np.array_equal(slide((0.0, -5.0), wish, 0.0, [BOX]), wish)
+    assert np.array_equal(slide((0.0, 3.0), wish, 0.0, []), wish)
+
+
+@given(angles, st.floats(0.0, 0.29), speeds)
+def test_who_came_too_near_may_only_leave(angle, away, speed):
+    """The way he is let go leads from the wall."""
+    place = np.array([0.2, 3.5 - away])
+    found = slide(place, speed * np.array([np.sin(angle), np.cos(angle)]), 0.0, [BOX])
+    assert np.array_equal(found, np.zeros(2)) or found[1] < 0.0
+
+
+@given(angles, speeds)
+def test_what_is_left_of_a_wish_is_its_part_along_the_way_that_is_free(angle, speed):
+    wish = speed * np.array([np.sin(angle), np.cos(angle)])
+    found = slide((0.0, 3.0), wish, 0.0, [BOX])
+    assert found @ found == pytest.approx(wish @ found, abs=1e-12)
+
+
+def test_edges_stop_and_what_hangs_high_does_not():
+    on_top = (0.0, 4.0)
+    assert floor_at(*on_top, [BOX]) == pytest.approx(0.6)
+    assert slide((0.0, 4.3), (0.0, 1.0), 0.6, [BOX])[1] < 0.5, "it is an edge"
+    beam = Box((0.0, HEAD + SHOULDER + 0.2, 1.0), (2.0, 0.2, 0.2), 0.0)
+    assert np.array_equal(slide((0.0, 0.0), (0.0, 1.0), 0.0, [beam]), (0.0, 1.0))
