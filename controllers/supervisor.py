@@ -19,7 +19,7 @@ from .contract import CharacterState, Controller, Intent, Status, Unable
 class Duty:
     """Who is on duty. active: a controller's name. memory: its own. why: why it was chosen, in words.
 
-    refused: why what was asked last can't be done; empty if it can.
+    refused: why what was asked last can't be done, or goes wrong; empty if it can.
     """
 
     active: str
@@ -88,6 +88,7 @@ class Supervisor:
         hold = active.precondition(own, intent) if status.kind == "running" else 0.0
         bids = {name: other.precondition(own, intent)
                 for name, other in self.controllers.items() if name != duty.active}
+        gone_wrong = "" if status.kind == "done" else status.reason
         refused = "" if intent.leap is None else duty.refused
         for name in sorted(bids, key=bids.get, reverse=True):
             if bids[name] <= hold:
@@ -99,8 +100,8 @@ class Supervisor:
                 continue
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"
-            return Duty(name, entered.memory, why, status.reason if status.kind == "failed" else ""), entered
-        return replace(duty, refused=refused), own
+            return Duty(name, entered.memory, why, gone_wrong), entered
+        return replace(duty, refused=gone_wrong or refused), own
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
         """Who is on duty, and the state as that controller sees it."""

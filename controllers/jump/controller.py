@@ -13,7 +13,9 @@ from ..body.anatomy import centre_of_mass
 from ..body.rotations import log, wrap
 from ..contract import CharacterState, Intent, Status
 from ..navigation import floor_at, gap
+from .ballistics import along
 from .dynamics import GRAVITY, Physique
+from .fall import fall, struck
 from .path import Path, Start, landing_feet, path
 from .plan import Plan
 from .planner import plan
@@ -34,15 +36,19 @@ FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
+MOST_HITS = 3
+"""A body that still touches something after so many hits slips by."""
 
 
 @dataclass(frozen=True, eq=False)
 class Jumping:
-    """What a jumper remembers. time: [s] since the wind-up began. fault: what ended it in mid-air."""
+    """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
+    plan is a fall. hits: how often."""
 
     plan: Plan
     time: float = 0.0
     fault: str = ""
+    hits: int = 0
 
     @property
     def landed(self) -> bool:
@@ -180,21 +186,34 @@ class Jump:
         c, s = np.cos(heading), np.sin(heading)
         vx, _, vz = made.velocities[n]
         velocity = np.array([s * vx + c * vz, 0.0, c * vx - s * vz])
-        fault = jumping.fault
-        if made.take_off < time < made.touch_down and intent.around and not fault:
-            fault = self._struck(pose, intent.around, time, made)
         after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n].copy(),
-                        memory=Jumping(made, time, fault), floor=floor)
+                        memory=replace(jumping, time=time), floor=floor)
+        if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
+            after = self._hit(after, intent.around, dt)
         return after, pose
 
-    def status(self, state: CharacterState) -> Status:
-        """Running until it stands, or until something is struck in the air."""
+    def _hit(self, state: CharacterState, around: Sequence[Any], dt: float) -> CharacterState:
+        """The state as it is if it strikes nothing in the air, else at the beginning of a fall."""
         jumping: Jumping = state.memory
+        made, time = jumping.plan, jumping.time
+        flown, way = time - made.take_off, made.path
+        velocity = way.velocity + flown * self.gravity
+        hit = struck(self.skeleton, state.pose, along(way.leave, way.velocity, flown, self.gravity), velocity, around)
+        if hit is None:
+            return state
+        before = max(time - dt, 0.0)
+        start = self.start_of(replace(state, previous=made.at(before), elapsed=time - before))
+        fallen = fall(self.physique, replace(start, velocity=velocity), hit, around, self.gravity)
+        return replace(state, memory=Jumping(fallen, 0.0, hit.reason, jumping.hits + 1))
+
+    def status(self, state: CharacterState) -> Status:
+        """Running until it stands; one that struck something says so at once, and fails once it stands."""
+        jumping: Jumping = state.memory
+        if jumping.time < min(jumping.plan.through, jumping.plan.duration):
+            return Status("running", jumping.fault)
         if jumping.fault:
             return Status("failed", jumping.fault)
-        if jumping.time >= jumping.plan.through:
-            return Status("done", "it has landed and can't stop here")
-        return Status("done" if jumping.time >= jumping.plan.duration else "running")
+        return Status("done", "it has landed and can't stop here" if jumping.time >= jumping.plan.through else "")
 
     def _moment(self, state: CharacterState) -> bool:
         """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
@@ -228,14 +247,3 @@ class Jump:
             else:
                 low, found = middle, there
         return found
-
-    def _struck(self, pose: Pose, around, time: float, made: Plan) -> str:
-        """What the flying body strikes now, in words."""
-        positions, _ = forward_kinematics(self.skeleton, pose.root, pose.rotations)
-        feet = [self.skeleton.index(side + part) for side in ("Left", "Right") for part in ("Foot", "Toe")]
-        body = np.delete(positions, feet, 0)
-        for thing in around:
-            if gap(body, thing).min() < 0.0:
-                x, y, z = body[int(gap(body, thing).argmin())]
-                return f"it struck something in the air at ({x:.1f}, {y:.1f}, {z:.1f}) m"
-        return ""

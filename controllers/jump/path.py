@@ -22,8 +22,6 @@ from .windup import crouch_depth, strength
 
 HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
-FLEX = np.radians(38.0)
-"""How far a loaded ankle bends [rad]; times flexibility."""
 TAKE_OFF_REACH, TOUCH_REACH = 0.955, 0.93
 """How straight legs are, as shares of their length, as they take off and touch down."""
 MOST_LEAD = 0.60
@@ -74,8 +72,8 @@ class Start:
 @dataclass(frozen=True, eq=False)
 class Path:
     """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at
-    the lowest point and at take-off, the flight's and the wind-up's time [s], the push between;
-    strong: whether the muscles can."""
+    the lowest point and at take-off, the flight's and the wind-up's time [s], the push between,
+    None for a fall; strong: whether the muscles can."""
 
     low: np.ndarray
     leave: np.ndarray
@@ -85,7 +83,7 @@ class Path:
     airtime: float
     wind_up: float
     gravity: np.ndarray
-    push: Push
+    push: Push | None
     strong: bool = True
 
     @property

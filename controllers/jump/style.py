@@ -26,6 +26,9 @@ RUNNER_ARMS = np.radians([-84.0, -80.0])
 """How far a runner's arms are swung at take-off and in the middle of the flight."""
 ABSORB = np.radians([46.0, 26.0, -26.0, -34.0, 30.0, 40.0])
 
+FALL = np.radians([16.0, 12.0, -14.0, -40.0, 62.0, 46.0])
+"""Struck in the air: the arms go out to the sides."""
+
 
 def joints_of(skeleton: Skeleton) -> np.ndarray:
     """The joints that `carry_kernel` turns: three of the spine, neck, head, both arms, both elbows."""
@@ -60,12 +63,19 @@ def shapes(effort: float, fall: float, running: bool) -> np.ndarray:
     winds up.
     """
     crouch = min(max(effort / 2.8, 0.25), 1.15) * (0.35 if running else 1.0)
-    absorb = min(max(fall / 3.2, 0.25), 1.1)
     leave, air = TAKE_OFF.copy(), AIR.copy()
     if running:  # arms that swing against the legs have no time to rise above the head
         leave[3], air[3] = RUNNER_ARMS
-    return np.array([STAND, STAND + crouch * (CROUCH - STAND), leave, air, TOUCH,
-                     STAND + absorb * (ABSORB - STAND), STAND])
+    return np.array([STAND, STAND + crouch * (CROUCH - STAND), leave, air, TOUCH, _absorbing(fall), STAND])
+
+
+def falling(fall: float) -> np.ndarray:
+    """The keys (4, 6) of a body that was struck: from the hit to touch-down, lowest point, standing. fall: as above."""
+    return np.array([FALL, FALL, _absorbing(fall), STAND])
+
+
+def _absorbing(fall: float) -> np.ndarray:
+    return STAND + min(max(fall / 3.2, 0.25), 1.1) * (ABSORB - STAND)
 
 
 def keyed(times: np.ndarray, keys: np.ndarray) -> CubicHermiteSpline:

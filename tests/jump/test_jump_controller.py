@@ -126,17 +126,6 @@ def test_stronger_bodies_and_lighter_places_reach_further(standing):
     assert weak < usual < moon
 
 
-def test_what_comes_in_the_way_in_the_air_ends_the_jump_with_a_reason(jump, standing):
-    state = jump.enter(standing, leap(0.9))
-    made = state.memory.plan
-    while state.memory.time < made.take_off + 0.1:
-        state, _ = jump.step(state, Intent(), 1 / FPS)
-    assert jump.status(state).kind == "running"
-    late = Box((0.0, 1.4, 0.5), (2.0, 1.0, 0.6))
-    state, _ = jump.step(state, Intent(around=(late,)), 1 / FPS)
-    assert jump.status(state).kind == "failed" and "struck" in jump.status(state).reason
-
-
 def test_it_bids_only_for_a_jump_that_can_start_and_holds_on_to_one(jump, standing, running):
     assert jump.precondition(standing, Intent()) == 0.0
     assert jump.precondition(standing, leap(0.5)) > 0.5

@@ -8,7 +8,8 @@ from controllers.body import forward_kinematics
 from controllers.body.anatomy import centre_of_mass
 from controllers.jump import style
 from controllers.jump.dynamics import Physique
-from controllers.jump.path import FLEX, landing_feet, measures
+from controllers.jump.path import landing_feet, measures
+from controllers.jump.poise import FLEX
 from controllers.jump.posture import STRAIGHT, stand_kernel
 
 BODIES = (Physique(), Physique(30.0, 1.25), Physique(110.0, 1.85, 0.8, 0.8, "female"))

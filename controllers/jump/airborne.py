@@ -1,0 +1,164 @@
+"""A body in the air and on its feet again: what a planned jump and a fall share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..body.rotations import yaw
+from ..body.springs import settle
+from ..body.turning import exp_kernel
+from ..compiled import kernel
+from . import style
+from .dynamics import Physique, turns, vectors
+from .landing import TIME, absorb
+from .path import TOES_DOWN, Path, Start, measures, soles
+from .poise import FLEX
+from .posture import stand_kernel
+
+GROUND_RATE, AIR_RATE = 72.0, 90.0
+"""Poses a second over planted feet, in the air."""
+PLANT = 0.09
+"""From the toes' landing to the heels' [s]."""
+FADE = 0.14
+"""Half-life with which the start's pose gives way to the jump's [s]."""
+STEADY = 0.12
+"""Half-life with which the pelvis loses the turn it landed with [s]."""
+LOWEST = 0.28
+"""From touch-down to the lowest point of the landing [s]."""
+SAME = 5e-4
+"""The legs reach for a body turned to within this of how it lands [rad]."""
+
+
+class Airborne:
+    """One motion in the making, from the air to standing.
+
+    start: where it begins. way: its flight. landing: (2, 5) the feet on the floor. leave: when the flight
+    begins [s]. times, keys: (K,) [s], (K, 6) [rad] the carriage until touch-down; the landing's is added.
+    """
+
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float,
+                 times, keys: np.ndarray):
+        self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
+        self.landing, self.gravity, self.leave = landing, way.gravity, leave
+        self.joints = style.joints_of(physique.skeleton)
+        self.count = len(physique.skeleton)
+        self.flex = FLEX * physique.flexibility
+        self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
+        self.down = leave + way.airtime
+        self.carriage = style.keyed(np.append(times, [self.down, self.down + LOWEST, self.down + TIME]), keys)
+
+    def _differ(self, angles: np.ndarray) -> None:
+        """What the start's pose differs by from one carried by `angles` (6,): it fades, see `_left_over`."""
+        local = np.tile(np.eye(3), (self.count, 1, 1))
+        style.carry_kernel(angles, self.joints, local)
+        self.offset, self.offset_rate = vectors(self.start.rotations @ np.swapaxes(local, -1, -2)), self.start.rates
+
+    def _left_over(self, times: np.ndarray) -> np.ndarray:
+        """What is left (N, J, 3) [rad] of the start's pose at times (N,) [s], pelvis and legs apart."""
+        left = faded(self.offset, self.offset_rate, FADE, times)
+        left[:, 0] = left[:, self.legs] = 0.0
+        left[np.abs(left).max(-1) < 1e-6] = 0.0
+        return left
+
+    def _upright(self, lean: np.ndarray) -> np.ndarray:
+        """The pelvis' turns (N, 3, 3), facing where the jumper faces and leaning (N,) [rad]."""
+        return yaw(self.start.heading) @ turns(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
+
+    def _prepare_air(self) -> None:
+        """The flight's times, arc and carriage."""
+        way = self.way
+        self.flying = np.linspace(0.0, way.airtime, max(int(np.ceil(AIR_RATE * way.airtime)), 8) + 1)
+        t = self.flying[:, None]
+        self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
+        self.air_angles = self.carriage(self.leave + self.flying)
+        self.air = np.tile(np.eye(3), (len(t), self.count, 1, 1))
+        for angles, left, local in zip(self.air_angles, self._left_over(self.leave + self.flying), self.air):
+            carry_on_kernel(angles, self.joints, left, local)
+        self.air_roots, self.momentum = np.empty((len(t), 3)), np.empty(3)
+
+    def _miss(self, wanted: np.ndarray) -> np.ndarray:
+        """The rotation vector (3,) [rad] from how the body came down to how it should, somersaults counted."""
+        miss = vectors(wanted @ self.air[-1, 0].T)
+        across = yaw(self.start.heading)[:, 0]
+        turned = vectors(self.air[1:, 0] @ np.swapaxes(self.air[:-1, 0], -1, -2)) @ across
+        meant = vectors(wanted @ self.air[0, 0].T) @ across
+        return miss + 2.0 * np.pi * np.round((meant - turned.sum() - miss @ across) / (2.0 * np.pi)) * across
+
+    def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pelvis (3,) and local rotations at touch-down, the body turned `turn` (3, 3)."""
+        local = self.air[-1].copy()
+        local[0] = turn
+        root = self.way.land + [0.0, -0.05, 0.0]
+        feet = np.column_stack([self.landing[:, :4], np.full(2, TOES_DOWN), np.zeros(2)])
+        stand_kernel(self.body, self.way.land, feet, self.flex, root, local,
+                     np.empty((self.count, 3)), np.empty((self.count, 3, 3)))
+        return root, local
+
+    def _land(self):
+        """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of
+        mass's place, velocity and acceleration."""
+        way, body = self.way, self.body
+        after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
+        support = soles(self.landing, body)
+        goal = support.mean(0) + [0.0, measures(self.physique).stand, 0.0]
+        landing = absorb(way.land, way.falling, goal, support, -self.gravity[1])
+        c, v, a = landing.motion(after)
+        angles = self.carriage(self.down + after)
+        feet = np.ones((len(after), 2, 6))
+        feet[..., :5] = self.landing
+        feet[..., 4] = (TOES_DOWN * np.clip(1.0 - after / PLANT, 0.0, 1.0) ** 2)[:, None]
+        upright = self._upright(angles[:, 0])
+        rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
+        turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
+        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
+        ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
+                      self.air_roots[-1].copy(), roots, local)
+        return after, (roots, local, c, v, a), max(landing.until(after), PLANT + 0.02)
+
+
+def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
+    """Offsets (N, ...) at times (N,) [s] of one (...) that settles from its rate."""
+    return settle(offset, rate, halflife, times.reshape((-1,) + (1,) * np.ndim(offset)))[0]
+
+
+def hermite(times: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The cubic Hermite curve (N, ...) through values (K, ...) with slopes (K, ...) at times (K,)."""
+    n = np.clip(np.searchsorted(times, at, "right") - 1, 0, len(times) - 2)
+    width = (times[n + 1] - times[n]).reshape((-1,) + (1,) * (values.ndim - 1))
+    s = (at - times[n]).reshape(width.shape) / width
+    return (values[n] * (1.0 + 2.0 * s) * (1.0 - s) ** 2 + slopes[n] * width * s * (1.0 - s) ** 2
+            + values[n + 1] * s**2 * (3.0 - 2.0 * s) + slopes[n + 1] * width * s**2 * (s - 1.0))
+
+
+@kernel
+def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
+    """Poses over planted feet: angles (N, 6), what is left of the start (N, J, 3), the pelvis' turns
+    (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), whose pitch is written.
+
+    root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
+    """
+    count = local.shape[1]
+    positions, orientations = np.empty((count, 3)), np.empty((count, 3, 3))
+    for n in range(len(centres)):
+        carry_on_kernel(angles[n], joints, offsets[n], local[n])
+        local[n, 0] = turns[n]
+        if n > 0:
+            for i in range(3):
+                root[i] += centres[n, i] - centres[n - 1, i]
+        stand_kernel(body, centres[n], feet[n], flex, root, local[n], positions, orientations)
+        roots[n] = root
+
+
+@kernel
+def carry_on_kernel(angles, joints, offsets, local):
+    """Write the local rotations (J, 3, 3) of a body carried by `angles` (6,), what is left of the start (J, 3)
+    added; neither the pelvis nor, where nothing is left, joints that are not carried are touched."""
+    turn = np.empty((3, 3))
+    for j in range(1, len(local)):  # poses are made anew, whatever an earlier round left
+        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
+            exp_kernel(0.0, 0.0, 0.0, local[j])
+    style.carry_kernel(angles, joints, local)
+    for j in range(1, len(local)):
+        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
+            exp_kernel(offsets[j, 0], offsets[j, 1], offsets[j, 2], turn)
+            local[j] = turn @ local[j]

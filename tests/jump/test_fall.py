@@ -1,0 +1,134 @@
+"""Struck in the air: the hit alone changes the motion, the body comes down on its feet wherever the floor is, and says why."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from conftest import ahead
+from controllers.body import end_positions, forward_kinematics
+from controllers.body.anatomy import centre_of_mass
+from controllers.body.support import sole_corners
+from controllers.contract import Intent, Leap
+from controllers.jump.fall import Hit, struck
+from controllers.navigation import gap
+from controllers.supervisor import Supervisor
+from game.scene import Box
+
+FPS = 60
+HIGH = Box((0.0, 1.5, -1.0), (3.0, 3.0, 2.4))
+"""A platform to fall off: its edge lies 0.2 m ahead."""
+CASES = {"a wall": (0.0, 1.2, (), Box((0.0, 1.4, 0.75), (2.0, 1.0, 0.4)), 0.08),
+         "a beam": (0.0, 1.3, (), Box((0.0, 0.6, 0.75), (2.0, 0.7, 0.2)), 0.08),
+         "a roof": (0.0, 0.9, (), Box((0.0, 2.27, 0.4), (2.0, 1.0, 2.0)), 0.0),
+         "a wall beyond an edge": (3.0, 1.6, (HIGH, Box((0.0, 1.5, 2.0), (3.0, 3.0, 1.6))), Box((0.0, 4.5, 0.95), (2.0, 1.2, 0.4)), 0.08)}
+every = pytest.mark.parametrize("name", CASES)
+
+
+def played(jump, locomotion, name, wish=np.zeros(3)):
+    """States and centres of mass of a jump that something comes in the way of after take-off, and the frame of the hit."""
+    floor, far, props, late, when = CASES[name]
+    person = Supervisor({"locomotion": locomotion, "jump": jump})
+    state = person.start((0.0, 0.0, 0.0), floor)
+    leap = Leap(ahead(state, far))
+    states, hit = [], None
+    for _ in range(280):
+        jumps = state.memory.active == "jump"
+        now = state.memory.memory
+        there = bool(states) and (not jumps or now.hits > 0 or now.time > now.plan.take_off + when)
+        asks = not states or not jumps and hit is None
+        state, _ = person.step(state, Intent(wish, leap if asks else None, (*props, late) if there else props), 1 / FPS)
+        states.append(state)
+        if hit is None and state.memory.active == "jump" and state.memory.memory.fault:
+            hit = len(states) - 1
+    assert hit is not None, "nothing was struck"
+    return states, hit
+
+
+def bodies(jump, states):
+    """Positions, orientations and centres of mass of states."""
+    positions, turned = forward_kinematics(jump.skeleton, np.stack([s.pose.root for s in states]).astype(float),
+                                           np.stack([s.pose.rotations for s in states]).astype(float))
+    return positions, turned, centre_of_mass(jump.physique.anatomy, positions, turned)
+
+
+@every
+def test_nothing_pops_but_what_the_hit_takes(jump, locomotion, name):
+    states, hit = played(jump, locomotion, name)
+    positions, _, centre = bodies(jump, states)
+    velocity = np.diff(centre, axis=0) * FPS
+    change = np.diff(velocity, axis=0) - jump.gravity / FPS  # change[k] is at pose k + 1
+    down = next(k for k in range(hit, len(states)) if states[k].memory.memory.landed)
+    assert np.abs(change[hit - 3:hit - 1]).max() < 0.1 and np.abs(np.delete(change[hit - 1:down - 2], 0, 0)).max() < 0.1
+    assert np.linalg.norm(change[hit - 1]) > 0.3
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=-1)
+    assert steps[hit - 1:].max() < 0.22  # hands, 13 m/s
+    jerk = np.linalg.norm(np.diff(positions, 2, axis=0), axis=-1)[:, 0]
+    assert jerk[hit + 1:].max() < 0.05  # the pelvis, 7 m/s caught on toes, and as it walks on
+
+
+@every
+def test_it_ends_on_its_feet_on_the_floor_below_clear_of_what_it_struck(jump, locomotion, name):
+    states, _ = played(jump, locomotion, name)
+    positions, turned, centre = bodies(jump, states[-1:])
+    corners = sole_corners(jump.skeleton, positions, turned)[0]
+    assert float(states[-1].floor) == 0.0 and states[-1].contacts.all()
+    assert np.abs(corners[:, 1]).max() < 0.02
+    assert abs(turned[0, 0, 1, 1]) > 0.95 and centre[0, 1] > 0.9
+    for thing in (*CASES[name][2], CASES[name][3]):
+        assert gap(positions[0], thing).min() > 0.0
+
+
+@every
+def test_it_says_why_while_it_falls_and_after(jump, locomotion, name):
+    states, hit = played(jump, locomotion, name)
+    assert states[hit - 1].memory.refused == "" and "struck something" in states[hit].memory.memory.fault
+    while_falling = [s for s in states[hit + 1:] if s.memory.active == "jump"]
+    assert while_falling and all("struck something" in s.memory.refused for s in while_falling)
+    first = next(s for s in states[hit:] if s.memory.active == "locomotion")
+    assert "struck something" in first.memory.refused and "struck something" in first.memory.why
+
+
+def test_somebody_who_wants_to_walk_on_gets_up_first(jump, locomotion):
+    states, hit = played(jump, locomotion, "a wall", np.array([-0.8, 0.0, 0.0]))
+    back = next(k for k in range(hit, len(states)) if states[k].memory.active == "locomotion")
+    landed = next(k for k in range(hit, len(states)) if states[k].memory.memory.landed)
+    assert back - landed > 0.4 * FPS and states[-1].ground[1] < states[back].ground[1] - 0.3
+
+
+def test_legs_reach_for_the_floor_and_hold_the_limits(jump, locomotion):
+    states, hit = played(jump, locomotion, "a wall beyond an edge")
+    falling = [s for s in states[hit:] if s.memory.active == "jump" and not s.memory.memory.landed]
+    assert len(falling) > 0.5 * FPS, "three metres"
+    positions, turned, centre = bodies(jump, falling)
+    toes = end_positions(jump.skeleton, positions, turned)[-1, [jump.skeleton.end_index[s + "Toe"] for s in ("Left", "Right")]]
+    assert toes[:, 1].max() < 0.25 and centre[-1, 1] - toes[:, 1].max() > 0.7
+    knees = turned[:, jump.skeleton.index("LeftLeg")], turned[:, jump.skeleton.index("LeftUpLeg")]
+    bend = np.arcsin(np.clip(np.einsum("nj,nj->n", knees[1][:, :, 2], knees[0][:, :, 1]), -1.0, 1.0))
+    assert bend.min() > -0.02
+
+
+vectors = st.tuples(*[st.floats(-6.0, 6.0)] * 3).map(np.array)
+
+
+@given(vectors, vectors)
+def test_a_hit_gives_no_energy_and_lets_nobody_further_in(velocity, normal):
+    assume(np.linalg.norm(normal) > 0.1)
+    normal = normal / np.linalg.norm(normal)
+    after = Hit(np.zeros(3), normal).after(velocity)
+    assert np.linalg.norm(after) <= np.linalg.norm(velocity) + 1e-12
+    assert after @ normal >= min(0.0, velocity @ normal * 0.0) - 1e-12
+    if velocity @ normal >= 0.0:
+        np.testing.assert_allclose(after, velocity, atol=1e-12)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_only_what_it_moves_into_is_struck(jump, standing, x, z):
+    wall = Box((0.0, 1.0, 0.6), (4.0, 4.0, 1.2))  # its face passes through the body
+    assume(abs(z) > 0.1)
+    hit = struck(jump.skeleton, standing.pose, np.array([0.0, 0.9, -0.02]), np.array([x, 0.0, z]), (wall,))
+    if z <= 0.0:
+        assert hit is None
+    elif z > 0.41:
+        np.testing.assert_allclose(hit.normal, [0.0, 0.0, -1.0], atol=1e-6)
