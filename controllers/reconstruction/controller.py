@@ -33,6 +33,8 @@ FAR = 1.5
 """Points that are farther from the body than this on the average [m] can't be taken hold of."""
 APART = 2.5
 """No two points of a standard body are farther apart [m]."""
+CLOSE = 0.3
+"""Nobody walks to points that are so close [m]."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 FADE = 0.15
@@ -75,14 +77,16 @@ class Following:
 class Reconstruction:
     """Moves a whole body as a few points on it go.
 
-    method: whose poses. controls: the points, as the method has them. starts: where to begin from points alone. height: of the body [m]; the performer's points
+    method: whose poses. controls: the points, as the method has them. height: of the body [m]; the performer's points
     are taken to be as far apart as on a body of this height. dt: seconds between the method's frames.
+    starts: poses to begin from where the body's own is not like the points; without them it begins from its own.
     Pre-condition: a point is seen, and those seen are within reach. Post-condition: the body is where the points were
     and moves as it last did. Expected performance: a point is seen every now and then.
     Characters come singly.
     """
 
-    def __init__(self, method: Reconstructor, controls: Controls, starts: Starts, height: float = STATURE, dt: float = 1 / 60):
+    def __init__(self, method: Reconstructor, controls: Controls, height: float = STATURE, dt: float = 1 / 60,
+                 starts: Starts | None = None):
         self.method, self.controls, self.starts, self.dt = method, controls, starts, dt
         self.factor, self.skeleton = height / STATURE, human(height)
         self._sole = contact_height(self.skeleton)
@@ -109,8 +113,9 @@ class Reconstruction:
         away = self._possible(seen, self._points(pose))
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, state.floor)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else _difference(pose, past) / state.elapsed
-        own = _past(pose, past, state.elapsed, self.dt)
-        begun = self._frame(self._begun(*(own if away <= ANEW else self.starts.find(seen)), seen, self.dt), seen)
+        alike = away <= ANEW or self.starts is None
+        frames, tracks = _past(pose, past, state.elapsed, self.dt) if alike else self.starts.find(seen)
+        begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen)
         # what the body would do next by itself is where the fading begins
         offset = _difference(_moved(pose, rate * self.dt), begun.pose)
         return replace(state, memory=replace(begun, ahead=self.dt, offset=offset))
@@ -118,7 +123,7 @@ class Reconstruction:
     def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0) -> CharacterState:
         """A body out of nothing, in a pose that has these points (n, 3) [m], which move at velocities (n, 3) [m/s].
 
-        Both NaN where not known. Unable if no point is seen, or none of this body's.
+        Both NaN where not known. Unable if no point is seen, or none of this body's; it needs `starts`.
         """
         nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
         seen = self._seen(nobody, Intent(points=points))
@@ -231,6 +236,23 @@ class Reconstruction:
 
     def _grown(self, pose: Pose, floor: float) -> Pose:
         return Pose(pose.root * self.factor + [0.0, float(floor), 0.0], pose.rotations)
+
+
+def towards(state: CharacterState, points: np.ndarray) -> np.ndarray:
+    """The velocity (3,) with which a walker goes to points (n, 3) [m] that are too far away to be taken hold of.
+
+    Zero where none is seen, or close by.
+    """
+    there = points[np.isfinite(points).all(-1)]
+    if not len(there):
+        return np.zeros(3)
+    x, z, heading = (float(v) for v in state.ground)
+    way = there.mean(0)[[0, 2]] - [x, z]
+    distance = float(np.hypot(*way))
+    if distance < CLOSE:
+        return np.zeros(3)
+    bearing = float(wrap(np.arctan2(way[0], way[1]) - heading))
+    return np.array([min(1.4, distance) * max(np.cos(bearing), 0.0), np.clip(2.0 * bearing, -2.0, 2.0), 0.0])
 
 
 def _difference(to: Pose, start: Pose) -> np.ndarray:

@@ -10,21 +10,21 @@ from __future__ import annotations
 import re
 import socket
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from pythonosc.osc_packet import OscPacket, ParseError
 
 from .chart import SKELETON
-from .controls import NAMES, Controls, parse
+from .controls import Controls, parse
 from .placing import Placement
 
 PORT = 39539
 """The port that VMC programs send to unless told otherwise. VRChat's is 9000."""
 STALE = 0.15
 """A tracker that was silent for so long [s] is lost."""
-USUAL = {"hmd": "head+0/0.09/0.09", "head": "head+0/0.09/0.09", "1": "root", "2": "lankle", "3": "rankle"}
+USUAL = {"hmd": "head+0/0.09/0.09", "1": "root", "2": "lankle", "3": "rankle"}
 """Which point a tracker is on unless somebody says so: a head-set is in front of the eyes, and VRChat's first three
 trackers are waist, left and right foot."""
 _VMC = re.compile(r"/VMC/Ext/(Hmd|Con|Tra)/Pos")
@@ -167,7 +167,7 @@ def read_map(path: str | Path) -> dict[str, str]:
     return trackers
 
 
-def usual_map(names: tuple[str, ...] | list[str]) -> dict[str, str]:
-    """Which tracker is on each of some points, where nobody says so: see USUAL."""
-    usual = {point.split("+")[0]: (serial, point) for serial, point in USUAL.items() if serial != "head"}
-    return dict(usual.get(name, (name, name)) for name in names)
+def usual_map(names: Sequence[str] = ()) -> dict[str, str]:
+    """Which tracker is on each of some points where nobody says so, see USUAL; the usual four where none is named."""
+    usual = {point.partition("+")[0]: (serial, point) for serial, point in USUAL.items()}
+    return dict(usual.get(name, (name, name)) for name in names or usual)
