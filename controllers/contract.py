@@ -17,12 +17,13 @@ from .body import Pose
 
 @dataclass(frozen=True, eq=False)
 class Leap:
-    """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land.
+    """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land, or
+    None for where it is now: straight up.
 
     airtime: [s], or None for the least effort.
     """
 
-    place: np.ndarray
+    place: np.ndarray | None
     airtime: float | None = None
 
 

@@ -23,8 +23,7 @@ from controllers.jump.muscles import POINTED, bend_kernel, muscle, spring_force
 from controllers.jump.controller import RUNNING
 from controllers.jump.path import Path, Start
 from controllers.jump.plan import Plan
-from controllers.jump.reach import fault
-from controllers.navigation import floor_at, gap
+from controllers.navigation import floor_at
 
 from .input.aim import Aim
 from .scene import Arrow, Dot, Figure, Goal, Line, Overlays, Patch, Prop, Sketch
@@ -87,11 +86,9 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop]) -> Preview | 
 def previewed(jump: Jump, character: Character, leap: Leap, props: Sequence[Prop]) -> Preview:
     """A jump as it would be made from here."""
     state = character.controller.active(character.state)[1]
-    place, floor = np.asarray(leap.place, float), float(state.floor)
-    solid = [prop for prop in props if not isinstance(prop, Goal)]
-    way = jump.path(_pushing(jump.start_of(state)), place, floor, leap.airtime)
-    inside = any(gap(place[None] + [0.0, 0.05, 0.0], prop)[0] < 0.0 for prop in solid)
-    why = "the target is inside something solid" if inside else fault(jump.physique, way, solid, floor)
+    start, floor = _pushing(jump.start_of(state)), float(state.floor)
+    place = jump.middle(start, floor) if leap.place is None else np.asarray(leap.place, float)
+    way, why = jump.survey(start, place, floor, leap.airtime, [prop for prop in props if not isinstance(prop, Goal)])
     arc, beads = _flight(way)
     return Preview(place, arc, beads, why)
 

@@ -16,10 +16,10 @@ from ..navigation import floor_at, gap
 from .ballistics import along
 from .dynamics import GRAVITY, Physique
 from .fall import fall, struck
-from .path import Path, Start, landing_feet, path
+from .path import Path, Start, landing_feet, path, soles
 from .plan import Plan
 from .planner import plan
-from .reach import Refused, fault
+from .reach import HANDS, Refused, fault
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -102,44 +102,67 @@ class Jump:
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
         """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
         leap = intent.leap
-        place = np.asarray(leap.place, float)
+        start, floor = self.start_of(state), float(state.floor)
+        here = self.middle(start, floor)
+        place = here if leap.place is None else np.asarray(leap.place, float)
         if place.shape != (3,) or not np.isfinite(place).all():
             raise Refused(f"the target must be three finite numbers, got {leap.place!r}")
         if leap.airtime is not None and not 0.05 <= leap.airtime <= 10.0:
             raise Refused(f"the airtime must be within 0.05 … 10 s, got {leap.airtime!r}")
-        start = self.start_of(state)
-        around = [thing for thing in intent.around if not hasattr(thing, "place")]
-        for thing in around:
-            if gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0:
-                raise Refused("the target is inside something solid", self._nearest(state, start, place, leap.airtime, around))
+        way, reason = self.survey(start, place, floor, leap.airtime, intent.around)
+        if reason and leap.airtime is not None:
+            other, why = self.survey(start, place, floor, None, intent.around)
+            if not why:
+                raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.airtime else 'short'}: "
+                              f"{reason}; by itself it would take {other.airtime:.2f} s")
+        if reason:
+            raise Refused(reason, self._nearest(start, here, place, leap.airtime, intent.around), here)
+        return plan(self.physique, start, way, place, floor)
+
+    def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
+               around: Sequence[Any] = ()) -> tuple[Path, str]:
+        """The path to a place (3,) off a floor [m], and why it can't be gone, if so: a look at the place, then `arc`."""
+        around = [thing for thing in around if not hasattr(thing, "place")]
+        if any(gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0 for thing in around):
+            return self.path(start, place, floor, airtime), "that place is inside something solid"
         below = floor_at(place[0], place[2], around, place[1] + FLUSH)
         if around and below < place[1] - FLUSH:
-            raise Refused(f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m")
-        way, reason = self.arc(start, place, float(state.floor), leap.airtime, around)
-        if reason:
-            raise Refused(reason, self._nearest(state, start, place, leap.airtime, around))
-        return plan(self.physique, start, way, place, float(state.floor))
+            return (self.path(start, place, floor, airtime),
+                    f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m")
+        return self.arc(start, place, floor, airtime, around)
 
     def arc(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
             around: Sequence[Any] = ()) -> tuple[Path, str]:
-        """The path to a place and why it can't be gone, if so. Without an airtime, an arc that something
-        is in the way of is tried higher."""
-        way = self.path(start, place, floor, airtime)
-        reason = fault(self.physique, way, around, floor)
-        if reason and airtime is None and way.strong:
-            for higher in HIGHER:
-                other = self.path(start, place, floor, way.airtime * higher)
-                if not fault(self.physique, other, around, floor):
-                    return other, ""
-        return way, reason
+        """The path to a place and why it can't be gone, if so. If hands are in the way the arms stay down; without an
+        airtime, an arc that something is in the way of is tried higher."""
+        first, reason = None, ""
+        for higher in (1.0, *HIGHER):
+            flight = airtime if first is None else first.airtime * higher
+            for low in (False, True):
+                way = self.path(start, place, floor, flight, low)
+                why = fault(self.physique, way, around, floor)
+                if not why.startswith(HANDS):
+                    break
+            if not why:
+                return way, ""
+            if first is None:
+                first, reason = way, why
+            if airtime is not None or not first.strong:
+                break
+        return first, reason
 
-    def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None) -> Path:
+    def middle(self, start: Start, floor: float) -> np.ndarray:
+        """The middle (3,) of both soles as they come to stand on a floor [m]: where a jump straight up lands."""
+        body = self.physique.tables
+        return soles(start.planted(floor, body), body).mean(0) * [1.0, 0.0, 1.0] + [0.0, floor, 0.0]
+
+    def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, low_arms: bool = False) -> Path:
         """The path estimate alone: the arc to draw while aiming."""
         body = self.physique.tables
         feet = start.planted(floor, body)
         pushing = feet if start.single is None else feet[start.single:start.single + 1]
         return path(self.physique, start, pushing, landing_feet(place, start.heading, body), floor,
-                    self.gravity, airtime)
+                    self.gravity, airtime, low_arms)
 
     def start_of(self, state: CharacterState) -> Start:
         """What a jump needs to know of a state."""
@@ -233,16 +256,14 @@ class Jump:
         standing = np.asarray(state.contacts).reshape(2, 2).any(1)
         return int(np.argmax(standing)) if standing.sum() == 1 else None
 
-    def _nearest(self, state, start, place, airtime, around) -> np.ndarray | None:
+    def _nearest(self, start: Start, here: np.ndarray, place: np.ndarray, airtime, around) -> np.ndarray | None:
         """The farthest place on the way to the target that can be reached, by bisection; None if none can."""
-        here = np.append(start.feet[:, :3].mean(0)[[0, 2]], 0.0)[[0, 2, 1]]
-        here[1] = float(state.floor)
         low, high, found = 0.0, 1.0, None
         for _ in range(7):
             middle = 0.5 * (low + high)
             there = here + middle * (place - here)
             there[1] = floor_at(there[0], there[2], around, max(place[1], here[1]) + 1e-6) if around else there[1]
-            if self.arc(start, there, float(state.floor), airtime, around)[1]:
+            if self.survey(start, there, here[1], airtime, around)[1]:
                 high = middle
             else:
                 low, found = middle, there

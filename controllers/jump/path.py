@@ -73,7 +73,8 @@ class Start:
 class Path:
     """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at
     the lowest point and at take-off, the flight's and the wind-up's time [s], the push between,
-    None for a fall; strong: whether the muscles can."""
+    None for a fall; strong: whether the muscles can. far, up: how far and how much higher the feet land [m]. heading
+    [rad]. low_arms: the arms stay down."""
 
     low: np.ndarray
     leave: np.ndarray
@@ -85,6 +86,10 @@ class Path:
     gravity: np.ndarray
     push: Push | None
     strong: bool = True
+    far: float = 0.0
+    up: float = 0.0
+    heading: float = 0.0
+    low_arms: bool = False
 
     @property
     def falling(self) -> np.ndarray:
@@ -104,12 +109,15 @@ class Measures:
 
 
 @lru_cache(maxsize=64)
-def measures(physique: Physique) -> Measures:
+def measures(physique: Physique, low_arms: bool = False) -> Measures:
     """The heights of the centre of mass of a body over its own feet."""
     feet = landing_feet(np.zeros(3), 0.0, physique.tables)
+    leave, touch = style.TAKE_OFF.copy(), style.TOUCH.copy()
+    if low_arms:
+        leave[3], touch[3] = style.LOW_ARMS[[0, 2]]
     found = []
-    for angles, pitch, share in ((style.STAND, 0.0, STAND_REACH), (style.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH),
-                                 (style.TOUCH, TOES_DOWN, TOUCH_REACH)):
+    for angles, pitch, share in ((style.STAND, 0.0, STAND_REACH), (leave, HEEL_UP, TAKE_OFF_REACH),
+                                 (touch, TOES_DOWN, TOUCH_REACH)):
         found.append(_height(physique, angles, pitch, share, feet))
     return Measures(*found, 1.022 * found[1])
 
@@ -154,12 +162,12 @@ def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndar
 
 
 def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray, floor: float,
-         gravity: np.ndarray, airtime: float | None = None) -> Path:
+         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False) -> Path:
     """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
 
-    airtime: [s], or None for the least effort. The crouch is as deep as the muscles need it (`windup`).
+    airtime: [s], or None for the least effort. low_arms: with the arms down. The crouch is as deep as the muscles need it (`windup`).
     """
-    body, heights = physique.tables, measures(physique)
+    body, heights = physique.tables, measures(physique, low_arms)
     size = body.sole / 0.02
     ground = soles(feet, body)
     middle, goal = ground.mean(0), soles(landing, body).mean(0)
@@ -219,7 +227,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             wind_up = 0.34 + 0.9 * np.sqrt(max(start.centre[1] - low[1], 0.0) / max(g, 3.0))
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
-                push(leave - low, passing, velocity, gravity), strong)
+                push(leave - low, passing, velocity, gravity), strong, far, float(goal[1]) - floor, start.heading, low_arms)
 
 
 def _over(height: float, aside: float) -> float:

@@ -42,7 +42,7 @@ class _Draft(Airborne):
         self.planted, self.off = planted, way.wind_up
         leave = self.off + way.push.duration
         super().__init__(physique, start, way, landing, leave, [0.0, self.off, leave, leave + 0.45 * way.airtime], style.shapes(
-            np.linalg.norm(way.velocity - way.passing), np.linalg.norm(way.falling), start.single is not None))
+            np.linalg.norm(way.velocity - way.passing), np.linalg.norm(way.falling), start.single is not None, way.low_arms))
 
     def plan(self) -> Plan:
         """Everything, in order."""

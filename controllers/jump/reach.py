@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..body import end_positions, forward_kinematics
+from ..body.anatomy import centre_of_mass
+from ..body.human import STATURE
+from ..body.rotations import yaw
 from ..contract import Unable
 from ..navigation import gap
+from . import style
 from .ballistics import along
-from .dynamics import Physique
+from .dynamics import Physique, turns
 from .path import Path, measures
 from .windup import strongest
 
@@ -16,16 +21,21 @@ RUNNER = 4.2
 STOPS = 6.0, 0.5
 """What legs give as they stop a fall, in an adult's weights on Earth at strength 1, and over which way [m], at
 standard height."""
-CLEAR = 0.05
-"""How near to something a flying body may come [m]."""
+GRAZE = 0.05
+"""So much of its flesh a flying body may graze things with [m]."""
+HANDS = "its hands would hit something"
+"""How the reason begins that lower arms help against."""
 
 
 class Refused(Unable):
-    """A jump that this body can't make. nearest: a place (3,) [m] that it can reach, if one was found."""
+    """A jump that this body can't make. nearest: a place (3,) [m] on the way there that it can reach from
+    `here` (3,), if one was found."""
 
-    def __init__(self, reason: str, nearest: np.ndarray | None = None):
-        super().__init__(reason if nearest is None else
-                         f"{reason}; it can reach ({nearest[0]:.2f}, {nearest[1]:.2f}, {nearest[2]:.2f})")
+    def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None):
+        if nearest is not None:
+            reason += "; it reaches " + ("" if here is None else f"{np.linalg.norm((nearest - here)[[0, 2]]):.1f} m that way, to ")
+            reason += f"({nearest[0]:.2f}, {nearest[1]:.2f}, {nearest[2]:.2f})"
+        super().__init__(reason)
         self.nearest = nearest
 
 
@@ -34,44 +44,67 @@ def fault(physique: Physique, way: Path, around, floor: float) -> str:
     if not all(np.isfinite(part).all() for part in (way.low, way.leave, way.land, way.velocity)):
         return "there is no such arc"
     if not way.strong:
-        most = strongest(physique, way.leave[1] - floor - measures(physique).stand, way.gravity)
-        return (f"it would have to take off with {np.linalg.norm(way.velocity):.1f} m/s, "
-                f"{way.velocity[1]:.1f} of them upward; this body reaches {most:.1f} m/s straight up")
+        return _weak(physique, way, floor)
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
     if way.passing.any() and force > RUNNER * 9.81 * physique.strength:
-        return (f"the push needs {force / 9.81:.1f} times this body's weight on Earth; "
-                f"its leg has {RUNNER * physique.strength:.1f}")
+        return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
+                f"where this one has {RUNNER * physique.strength:.1f}")
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
-    size, down = physique.height / 1.741, -float(way.falling[1])
+    size, down = physique.height / STATURE, -float(way.falling[1])
     spare = STOPS[0] * 9.81 * physique.strength + float(way.gravity[1])
     stops = np.sqrt(2.0 * STOPS[1] * size * max(spare, 0.0))
     if down > stops:
-        return f"it would land with {down:.1f} m/s downward; its legs stop {stops:.1f} m/s"
+        return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s"
     return blocked(physique, way, around)
 
 
+def _weak(physique: Physique, way: Path, floor: float) -> str:
+    """What is missing where the muscles are too weak."""
+    if strongest(physique, way.leave[1] - floor - measures(physique).stand, way.gravity) <= 0.0:
+        return "this body is too weak to jump here at all"
+    if way.up > 0.05:
+        return f"too {'high' if way.up > 0.35 * way.far else 'far'}: {way.far:.1f} m away and {way.up:.1f} m up"
+    return f"too far: {way.far:.1f} m" if way.far > 0.05 else "too high"
+
+
 def blocked(physique: Physique, way: Path, around) -> str:
-    """What the flying body would hit: "" or "its head hits a box at (x, y, z)" and the like."""
+    """What the flying body would hit: "" or "its head would hit something at (x, y, z) m" and the like."""
     if not len(around):
         return ""
-    size = physique.height / 1.741
-    time = np.linspace(0.0, way.airtime, 25)
+    size, time = physique.height / STATURE, np.linspace(0.0, way.airtime, 25)
     centre = along(way.leave, way.velocity, time, way.gravity)
     # legs are tucked in the middle of the flight
     tucked = np.interp(time / way.airtime, (0.0, 0.3, 0.75, 1.0), (1.0, 0.72, 0.72, 0.96))
-    points, names = [], []
-    for name, above, radius in (("head", 0.62, 0.12), ("trunk", 0.28, 0.16), ("hips", -0.05, 0.16),
-                                ("legs", None, 0.08)):
-        offset = above * size if above is not None else -(measures(physique).stand - 0.12 * size) * tucked
-        points.append(centre + np.multiply.outer(offset * np.ones(len(time)), [0.0, 1.0, 0.0]))
-        names.append((name, radius * size))
-    for place, (name, radius) in zip(points, names):
-        # the soles may touch what they leave and where they land
-        inner = slice(4, -4) if name == "legs" else slice(1, None)
+    upward = np.array([0.0, 1.0, 0.0])
+    head, hands = _upper(physique, way, time)
+    # the soles may touch what they leave and where they land
+    for name, offset, radius, inner in (
+            ("head", head, 0.11, slice(1, None)), ("trunk", 0.28 * size * upward, 0.16, slice(1, None)),
+            ("hips", -0.05 * size * upward, 0.16, slice(1, None)),
+            ("legs", -(measures(physique).stand - 0.12 * size) * tucked[:, None] * upward, 0.08, slice(4, -4)),
+            ("hands", hands, 0.10, slice(0, None))):
+        places = (centre + offset)[..., inner, :].reshape(-1, 3)
         for thing in around:
-            near = gap(place[inner], thing)
-            if near.min() < radius - CLEAR:
-                x, y, z = place[inner][int(near.argmin())]
+            near = gap(places, thing)
+            if near.min() < radius * size - GRAZE:
+                x, y, z = places[int(near.argmin())]
                 return f"its {name} would hit something at ({x:.1f}, {y:.1f}, {z:.1f}) m"
     return ""
+
+
+def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the head's middle (N, 3) and fingers, wrists and elbows (6, N, 3) are from the centre of mass, as it is carried."""
+    skeleton, running = physique.skeleton, bool(way.passing.any())
+    keys = style.shapes(0.0, float(np.linalg.norm(way.falling)), running, way.low_arms)[2:5]
+    angles = style.keyed(np.array([0.0, 0.45, 1.0]) * way.airtime, keys)(time)
+    local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
+    for one, posed in zip(angles, local):
+        style.carry_kernel(one, style.joints_of(skeleton), posed)
+    local[:, 0] = yaw(way.heading) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    positions, turned = forward_kinematics(skeleton, np.zeros((len(time), 3)), local)
+    positions -= centre_of_mass(physique.anatomy, positions, turned)[:, None]
+    ends = end_positions(skeleton, positions, turned)
+    head = 0.5 * (positions[:, skeleton.index("Head")] + ends[:, skeleton.end_index["Head"]])
+    return head, np.stack([ends[:, skeleton.end_index[side + "Hand"]] if part == "" else positions[:, skeleton.index(side + part)]
+                           for side in ("Left", "Right") for part in ("", "Hand", "ForeArm")])

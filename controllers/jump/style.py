@@ -24,6 +24,8 @@ AIR = np.radians([14.0, 10.0, -6.0, -96.0, 24.0, 44.0])
 TOUCH = np.radians([20.0, 14.0, -8.0, -62.0, 26.0, 36.0])
 RUNNER_ARMS = np.radians([-84.0, -80.0])
 """How far a runner's arms are swung at take-off and in the middle of the flight."""
+LOW_ARMS = np.radians([-22.0, -26.0, -30.0])
+"""How far arms are swung that something is above or before: at take-off, in the middle of the flight, at touch-down."""
 ABSORB = np.radians([46.0, 26.0, -26.0, -34.0, 30.0, 40.0])
 
 FALL = np.radians([16.0, 12.0, -14.0, -40.0, 62.0, 46.0])
@@ -55,18 +57,21 @@ def carry_kernel(angles, joints, local):
         exp_kernel(0.0, -sign * angles[5], 0.0, local[joints[7 + k]])
 
 
-def shapes(effort: float, fall: float, running: bool) -> np.ndarray:
+def shapes(effort: float, fall: float, running: bool, low: bool = False) -> np.ndarray:
     """The keys (7, 6) of a jump: start, lowest point, take-off, middle of the flight, touch-down, lowest
     point of the landing, standing.
 
     effort: the velocity that the push gives, fall: the velocity of the landing [m/s]. A runner hardly
-    winds up.
+    winds up. low: the arms stay down.
     """
     crouch = min(max(effort / 2.8, 0.25), 1.15) * (0.35 if running else 1.0)
     leave, air = TAKE_OFF.copy(), AIR.copy()
     if running:  # arms that swing against the legs have no time to rise above the head
         leave[3], air[3] = RUNNER_ARMS
-    return np.array([STAND, STAND + crouch * (CROUCH - STAND), leave, air, TOUCH, _absorbing(fall), STAND])
+    flight = np.array([leave, air, TOUCH])
+    if low:
+        flight[:, 3] = LOW_ARMS
+    return np.array([STAND, STAND + crouch * (CROUCH - STAND), *flight, _absorbing(fall), STAND])
 
 
 def falling(fall: float) -> np.ndarray:

@@ -94,9 +94,8 @@ class Aim:
             return None
         floor = float(state.floor)
         if not self.moving and math.hypot(*self.offset) < NEAR:
-            here = np.array([state.ground[0], floor, state.ground[1]])
             airtime = min(AIRTIME + CHARGE * self.held, LONGEST) * math.sqrt(9.81 / gravity)
-            return Leap(here, airtime)
+            return Leap(None, airtime)
         x, z = float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1]
         return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]))
 

@@ -154,7 +154,7 @@ class Script:
             ready = True
         if not ready:
             return self, intent
-        return replace(self, asked=self.asked + 1), replace(intent, leap=Leap(place, jump.airtime))
+        return replace(self, asked=self.asked + 1), replace(intent, leap=Leap(None if jump.place is None else place, jump.airtime))
 
 
 def jumping(state: CharacterState) -> Any:

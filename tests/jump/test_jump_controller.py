@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from controllers.body import end_positions, forward_kinematics
 from controllers.contract import Intent, Leap
 from controllers.jump.controller import Jump, Jumping
 from controllers.jump.dynamics import Physique
 from controllers.jump.reach import Refused
+from controllers.navigation import gap
+from controllers.supervisor import Supervisor
 from game.scene import Box, Goal, Pillar
 
 FPS = 60
@@ -81,11 +84,11 @@ def test_a_step_must_be_one(jump, standing, dt):
     (Physique(), leap(1.3, around=(Pillar((0.0, 0.0, 0.8)),)), "would hit"),
     (Physique(), leap(1.2, around=(ROOF,)), "head would hit"),
     (Physique(), leap(0.4, 0.3, around=(Box((0.0, 0.1, 3.0), (1.0, 0.2, 1.0)),)), "nothing to land on"),
-    (Physique(), leap(8.0), "take off with"),
-    (Physique(), leap(0.8, 2.0), "take off with"),
-    (Physique(strength=0.15), leap(1.0), "take off with"),
-    (Physique(), leap(0.5, airtime=2.0), "take off with"),
-    (Physique(), leap(1.0, -30.0), "land with"),
+    (Physique(), leap(8.0), "too far: 8.0 m; it reaches .* m that way"),
+    (Physique(), leap(0.8, 2.0), "too high: 0.8 m away and 2.0 m up"),
+    (Physique(strength=0.15), leap(1.0), "too weak"),
+    (Physique(), leap(0.5, airtime=2.0), "2 s in the air is too long"),
+    (Physique(), leap(1.0, -30.0), "too deep"),
 ], ids=lambda v: v if isinstance(v, str) else "")
 def test_what_can_t_be_is_refused_before_the_wind_up_and_says_why(standing, physique, intent, reason):
     with pytest.raises(Refused, match=reason):
@@ -133,3 +136,47 @@ def test_it_bids_only_for_a_jump_that_can_start_and_holds_on_to_one(jump, standi
     assert jump.precondition(aloft, leap(0.5)) == 0.0
     inside = jump.enter(standing, leap(0.5))
     assert jump.precondition(inside, Intent(np.array([1.0, 0.0, 0.0]))) > jump.precondition(standing, leap(0.5))
+
+
+def reaches(jump, made, around):
+    """How near head, hands and elbows come to things in flight [m]."""
+    skeleton = jump.skeleton
+    shown = [made.at(t) for t in np.linspace(made.take_off, made.touch_down, 30)]
+    positions, turned = forward_kinematics(skeleton, np.stack([p.root for p in shown]), np.stack([p.rotations for p in shown]))
+    ends = end_positions(skeleton, positions, turned)
+    points = np.concatenate([ends[:, [skeleton.end_index[n] for n in ("Head", "LeftHand", "RightHand")]],
+                             positions[:, [skeleton.index(n) for n in ("LeftForeArm", "RightForeArm")]]], 1)
+    return min(gap(points.reshape(-1, 3), thing).min() for thing in around)
+
+
+@pytest.mark.parametrize(("far", "bottom"), [(0.7, 2.05), (0.5, 2.02), (1.0, 2.07)])
+def test_arms_stay_down_where_a_roof_is_above_them(jump, standing, far, bottom):
+    roof = Box((0.0, bottom + 0.5, 0.4), (3.0, 1.0, 3.0))
+    free, under = jump.plan(standing, leap(far)), jump.plan(standing, leap(far, around=(roof,)))
+    assert reaches(jump, free, (roof,)) < 0.0 < reaches(jump, under, (roof,))
+    state = jump.enter(standing, leap(far, around=(roof,)))
+    states = played(jump, state, Intent(around=(roof,)))
+    assert not any(s.memory.fault for s in states), "nor is anything struck"
+
+
+def test_a_jump_straight_up_under_an_open_sky_raises_the_arms(jump, standing):
+    made = jump.plan(standing, Intent(leap=Leap(None, 0.5)))
+    roof = Box((0.0, 2.6, 0.0), (3.0, 1.0, 3.0))
+    assert reaches(jump, made, (roof,)) < 0.0 and not made.path.low_arms
+
+
+def test_ten_jumps_straight_up_stay_where_they_are(jump, locomotion):
+    person = Supervisor({"locomotion": locomotion, "jump": jump})
+    state, places, jumps = person.start(), [], 0
+    for _ in range(1600):
+        at_rest = state.memory.active == "locomotion" and not np.abs(state.velocity).max() > 0.02
+        before = state.memory.active
+        state, _ = person.step(state, Intent(leap=Leap(None, 0.5) if at_rest and jumps < 10 else None), 1 / FPS)
+        if before == "locomotion" and state.memory.active == "jump":
+            jumps += 1
+            places.append(jump.middle(jump.start_of(replace(state, memory=None)), 0.0))
+        if jumps == 10 and state.memory.active == "locomotion":
+            break
+    assert jumps == 10
+    places.append(jump.middle(jump.start_of(replace(state, memory=None)), 0.0))
+    assert np.linalg.norm(np.array(places) - places[0], axis=1).max() < 0.02
