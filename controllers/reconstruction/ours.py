@@ -1,62 +1,174 @@
-"""Our own way to reconstruct: a network that sees the points' last half second, and what the nearest recordings say."""
+"""Our own way to reconstruct: networks that see the points' last half second, and what they were off by before.
+
+What the networks are off by hardly changes from frame to frame: a part of it fades within a sixth of a second, and
+more than half of its variance stays as long as a take lasts, since it is how this body is held and its sensors sit.
+So the newest error, known from the body's own output, is expected again (an autoregressive model of the error). The
+solver corrects that by what the points say, and the correction in turn is kept.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ..body import Pose, Skeleton
-from .baselines.regressors import Layers, network
-from .baselines.windows import Samples
-from .chart import SKELETON
+from .beliefs import Gaussian
+from .chart import FORWARD, LEFTWARD, SKELETON, WIDTH, YAW_RATE, decode
 from .controls import Controls
 from .database import Database
-from .method import Fused, Local, LocalRegression, Memory, Method
+from .filters import Motion, noise
+from .learning import LAGS, WORLD, Networks, learn, placed, seen_from, view
+from .baselines.windows import Samples
+from .method import SPAN, Memory, Method
 from .neighbours_cells import Cells
-from .prior import Regression
+from .prior import FLOOR
 from .segments import Segments
 from .solver import Solver
+from .solver_kernel import FAR
 from .store import kept
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is, and of how much."""
-_SOURCES = ("ours.py", "chart.py", "baselines/regressors.py", "baselines/windows.py")
-_BATCHES = 6000
+FADING = 0.9
+"""What is left of an error's fading part a frame later."""
+LASTING = 0.6
+"""Which share of the mean error in the known half second is taken to last: as good a guess as so short a time allows."""
+KEPT = 0.999
+"""What is left of the lasting part a frame later: half of it after twelve seconds."""
+LOOSENING = 100.0
+"""How much larger than on recordings that were learnt the errors may be: the points are met."""
+ACCELERATION = 10.0
+"""How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
+ROUGH = 0.003
+"""How unsteady poses are even where the points are not [m, rad]."""
+_RECENT = 15  # frames that tell the noise
+_JUMP = 1.0  # rad or m, beyond which the chart has jumped, as it does upside down: nothing to be smoothed
+_SOURCES = ("chart.py", "learning.py", "solver_kernel.py", "baselines/regressors.py", "baselines/windows.py")
 
 
-def cells(database: Database, controls: Controls, m: int = 3, stride: int = 4) -> Cells:
-    """A database's segments with these points, to search; made on the first call."""
-    segments = Segments.of(database, m, stride, controls.joints)
-    return kept("cells", database, (m, stride, controls.joints.tolist()), lambda: Cells(segments), Cells.save,
-                lambda path: Cells.load(path, segments),
-                ("chart.py", "segments.py", "features.py", "neighbours.py", "neighbours_cells.py"))
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """What the networks made of a frame. pose: (D,) placed, seen from ground (3,). lasting: (D,) error that stays."""
+
+    pose: np.ndarray
+    ground: np.ndarray
+    lasting: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Expectation:
+    """The prior: the networks' pose, off by what it was off by. dt: seconds between frames."""
+
+    networks: Networks
+    dt: float
+
+    def known(self, frames: np.ndarray, tracks: np.ndarray, points: np.ndarray) -> Expected:
+        """The hint after known frames (T, D) with tracks (T, 3) and points (T, n, 3), newest first; two or more."""
+        at = np.arange(len(frames) - 1)
+        past = np.minimum(at[:, None] + LAGS, len(points) - 1)
+        inputs, ground = view(points[past], tracks[at + 1, 2])
+        poses = self.networks.predict(inputs).astype(float)
+        off = _error(seen_from(ground, placed(frames[at], tracks[at]), WORLD), poses)
+        lasting = LASTING * off.mean(0)
+        lasting[YAW_RATE] = 0.0  # a heading's error does not last
+        return Expected(poses[0], ground[0], lasting)
+
+    def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
+        """See `method.Prior`."""
+        points = np.concatenate([seen[None], memory.points])[LAGS]
+        inputs, ground = view(points, memory.track[2])
+        pose, off, lasting = self.networks.predict(inputs).astype(float), np.zeros(WIDTH), np.zeros(WIDTH)
+        if memory.hint is not None:
+            last: Expected = memory.hint
+            lasting = KEPT * last.lasting
+            error = _error(seen_from(last.ground, placed(memory.frames[0], memory.track), WORLD), last.pose)
+            off = lasting + FADING * (error - lasting)
+        mean = seen_from(memory.track, pose + off, ground)
+        mean[YAW_RATE:] /= self.dt
+        errors = self.networks.errors.copy()
+        errors[:, YAW_RATE:] /= self.dt
+        return Gaussian(mean, FLOOR ** 2, errors).loosened(LOOSENING), Expected(pose, ground, lasting)
+
+
+def _error(poses, expected):
+    """Placed poses (..., D) less expected ones."""
+    off = poses - expected
+    off[..., YAW_RATE] = (off[..., YAW_RATE] + np.pi) % (2 * np.pi) - np.pi
+    return off
+
+
+@dataclass(frozen=True, eq=False)
+class Remembered:
+    """method: what the method remembers. recent: (T, n, 3) [m] points as they were seen last, NaN where they were not,
+    newest last. points, pose: filtered; the pose is placed in the world."""
+
+    method: Memory
+    recent: np.ndarray
+    points: Motion
+    pose: Motion
 
 
 @dataclass(frozen=True, eq=False)
 class Ours:
-    """What is offered: a method, like any other. method: what it does."""
+    """The method with its filters. steady: whether points are filtered as far as they are noisy, and poses a little.
+
+    method: its prior is an `Expectation`.
+    """
 
     method: Method
+    steady: bool = True
 
-    def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Memory:
+    def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Remembered:
         """See `Method.begin`."""
-        return self.method.begin(frames, tracks)
+        memory = self.method.begin(frames, tracks)
+        which = np.maximum(np.arange(len(frames) - 1, len(frames) - 1 - SPAN, -1), 0)
+        known = self.method.prior.known(memory.frames, np.asarray(tracks, float)[which], memory.points)
+        pose = placed(memory.frames[:2], np.asarray(tracks, float)[which[:2]])
+        return Remembered(replace(memory, hint=known), memory.points[_RECENT - 1::-1],
+                          Motion(memory.points[0], memory.points[0] - memory.points[1]), Motion(pose[0], _error(*pose)))
 
-    def step(self, memory: Memory, points: np.ndarray) -> tuple[Memory, Pose]:
+    def step(self, memory: Remembered, points: np.ndarray) -> tuple[Remembered, Pose]:
         """See `Method.step`."""
-        return self.method.step(memory, points)
+        points = np.array(points, float)
+        points[~(np.abs(points) < FAR).all(-1)] = np.nan
+        if not self.steady:
+            after, pose = self.method.step(memory.method, points)
+            return replace(memory, method=after), pose
+        recent = np.concatenate([memory.recent[1:], points[None]])
+        level, reach = noise(recent), ACCELERATION * self.method.solver.dt ** 2
+        filtered = memory.points.towards(points, reach / level if level > 0.0 else np.inf)
+        after, _ = self.method.step(memory.method, np.where(np.isfinite(points), filtered.place, np.nan))
+        found = placed(after.frames[0], after.track)
+        if np.abs(found - memory.pose.place).max() > _JUMP:
+            pose = Motion(found, np.zeros(WIDTH))
+        else:
+            pose = memory.pose.towards(found, reach / (ROUGH + 2.0 * level))
+        frame = pose.place
+        return Remembered(after, recent, filtered, pose), Pose(*decode(frame, frame[[LEFTWARD, FORWARD, YAW_RATE]]))
 
 
-def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETON, progress: Progress | None = None) -> Ours:
-    """The method for some control points, learnt from a database on the first call, and kept on disk."""
-    solver = Solver(controls, 1 / database.fps, skeleton=skeleton)
+def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETON, steady: bool = True,
+         progress: Progress | None = None) -> Ours:
+    """The method for some control points, learnt from a database on the first call, and kept on disk.
 
-    def learn():
-        told = None if progress is None else lambda batch, _: progress("learning", batch + 1, _BATCHES)
-        return network(Samples.of(database, Solver(controls, 1 / database.fps)), batches=_BATCHES, progress=told)
-    told = (controls.joints.tolist(), controls.offsets.tolist())
-    net = kept("network", database, told, learn, Layers.save, Layers.load, _SOURCES)
-    near = Local(LocalRegression(Regression(covariance="full")), cells(database, controls))
-    return Ours(Method(Fused((near, net)), solver))
+    skeleton: whose poses are made, if its lengths are not the standard human's. steady: see `Ours`.
+    """
+    plain = Solver(controls, 1 / database.fps)
+
+    def make():
+        told = None if progress is None else lambda done, total: progress("learning", done, total)
+        return learn(Samples.of(database, plain), progress=told)
+    networks = kept("networks", database, (controls.joints.tolist(), controls.offsets.tolist()), make, Networks.save,
+                    Networks.load, _SOURCES)
+    return Ours(Method(Expectation(networks, 1 / database.fps), replace(plain, skeleton=skeleton)), steady)
+
+
+def cells(database: Database, controls: Controls, m: int = 3, stride: int = 4) -> Cells:
+    """A database's segments to search, with these points; made on the first call, and kept on disk."""
+    segments = Segments.of(database, m, stride, controls.joints)
+    return kept("cells", database, (m, stride, segments.joints), lambda: Cells(segments), Cells.save,
+                lambda path: Cells.load(path, segments),
+                ("chart.py", "segments.py", "features.py", "neighbours.py", "neighbours_cells.py"))

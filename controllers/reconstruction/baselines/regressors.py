@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -35,7 +36,7 @@ class Layers:
 
     def predict(self, inputs: np.ndarray) -> np.ndarray:
         """Frames (..., D) for inputs (..., P)."""
-        return _forward(self.weights, self.biases, (inputs - self.ins[0]) / self.ins[1])[-1] * self.outs[1] + self.outs[0]
+        return forward(self.weights, self.biases, (inputs - self.ins[0]) / self.ins[1])[-1] * self.outs[1] + self.outs[0]
 
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`."""
@@ -86,27 +87,45 @@ def network(samples: Samples, hidden: tuple[int, ...] = (384, 384), batches: int
     rng = np.random.default_rng(seed)
     ins, outs = (a.astype(np.float32) for a in _standard(samples, learnt, rng))
     widths = (len(ins[0]), *hidden, len(outs[0]))
-    weights = [rng.normal(0, np.sqrt(2 / a), (a, b)).astype(np.float32) for a, b in zip(widths, widths[1:], strict=False)]
-    weights[-1] *= 0.1
-    values = [*weights, *(np.zeros(b, np.float32) for b in widths[1:])]
-    first, second = ([np.zeros_like(v) for v in values] for _ in range(2))
-    count = len(weights)
+    values = starting(widths, rng)
+    count, adam = len(widths) - 1, Adam(values, batches, rate)
     for batch in range(batches):
         x, y = samples.draw(rng.choice(learnt, size), rng)
         x, y = ((x - ins[0]) / ins[1]).astype(np.float32), ((y - outs[0]) / outs[1]).astype(np.float32)
-        found = _forward(values[:count], values[count:], x)
+        found = forward(values[:count], values[count:], x)
         error = found[-1] - y
-        now = rate * 0.5 * (1 + np.cos(np.pi * batch / batches))
-        for i, slope in enumerate(_backward(values[:count], found, error * (2 / error.size))):
-            first[i] += 0.1 * (slope - first[i])
-            second[i] += 0.001 * (slope * slope - second[i])
-            values[i] -= (now / (1 - 0.9 ** (batch + 1))) * first[i] / (np.sqrt(second[i] / (1 - 0.999 ** (batch + 1))) + 1e-8)
+        adam.step(backward(values[:count], found, error * (2 / error.size)))
         if progress is not None:
             progress(batch, float(np.mean(error ** 2)))
     return _judged(samples, rest, Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.eye(widths[-1])))
 
 
-def _forward(weights, biases, x):
+class Adam:
+    """Kingma & Ba 2015, at a rate that falls along a cosine to nothing in `batches` steps. values: changed in place."""
+
+    def __init__(self, values: list[np.ndarray], batches: int, rate: float = 1e-3):
+        self.values, self.batches, self.rate, self.batch = values, batches, rate, 0
+        self._first, self._second = ([np.zeros_like(value) for value in values] for _ in range(2))
+
+    def step(self, slopes: list[np.ndarray]) -> None:
+        """Go on by the loss's derivatives by all values."""
+        now = self.rate * 0.5 * (1 + math.cos(math.pi * self.batch / self.batches))
+        self.batch += 1
+        share, scale = now / (1 - 0.9 ** self.batch), 1 - 0.999 ** self.batch
+        for value, slope, first, second in zip(self.values, slopes, self._first, self._second, strict=True):
+            first += 0.1 * (slope - first)
+            second += 0.001 * (slope * slope - second)
+            value -= share * first / (np.sqrt(second / scale) + 1e-8)
+
+
+def starting(widths: tuple[int, ...], rng: np.random.Generator) -> list[np.ndarray]:
+    """The weights and then the biases of layers before any learning (He et al. 2015), the last ones small."""
+    weights = [rng.normal(0, np.sqrt(2 / a), (a, b)).astype(np.float32) for a, b in zip(widths, widths[1:], strict=False)]
+    weights[-1] *= 0.1
+    return [*weights, *(np.zeros(b, np.float32) for b in widths[1:])]
+
+
+def forward(weights, biases, x):
     """What each layer gives out, the input first."""
     found = [x]
     for i, (w, b) in enumerate(zip(weights, biases, strict=True)):
@@ -115,7 +134,7 @@ def _forward(weights, biases, x):
     return found
 
 
-def _backward(weights, found, slope):
+def backward(weights, found, slope):
     """Derivatives of the loss by all weights, then all biases, from that by the output (B, D)."""
     by_weights, by_biases = [], []
     for i in range(len(weights) - 1, -1, -1):
