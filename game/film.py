@@ -19,13 +19,19 @@ from controllers.navigation import floor_at, in_world
 from controllers.person import built
 
 from .camera import CameraSettings, Follow, Orbit, between
+from .follow import beginning, follower_of
 from .input import Wish
 from .input.script import Script
 from .jumping import broken, explained
+from .methods import Progress, methods
+from .pointing import pointed, rows
 from .rail import dolly, fixed
+from .recorded import Recorded
 from .scenario import Scenario
 from .scene import Camera, Caption, Overlays, Scene
 from .shots import CameraTable, ShotTable, overlays, parts
+from .study import GHOST
+from .tables import ActorTable
 from .world import DT, RATE, Character, World, figures
 
 TITLE = (0.4, 3.4)
@@ -58,16 +64,40 @@ class Frame:
 
 
 def opening(scenario: Scenario, controller: Any) -> World:
-    """The world before the first step, every actor under the same controller, each in its own body."""
-    props, cast = scenario.stage(), []
+    """The world before the first step, every actor under the same controller, each in its own body.
+
+    Who plays a clip stands behind the actors. Followers' methods are learnt if they were not yet (`learn`).
+    """
+    props, cast = scenario.stage(), {}
     for actor in scenario.actors:
-        someone, jumper = controller, actor.jumper(scenario.gravity)
-        if actor.body is not None or jumper.gravity[1] != EARTH:
-            someone = built(controller, jumper.physique, jumper.gravity)
-        x, z, heading = actor.start
-        state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
-        cast.append(Character(actor.name, someone, tint=actor.tint, state=state))
-    return World(tuple(cast), props)
+        if actor.follows is None:
+            someone, jumper = controller, actor.jumper(scenario.gravity)
+            if actor.body is not None or jumper.gravity[1] != EARTH:
+                someone = built(controller, jumper.physique, jumper.gravity)
+            x, z, heading = actor.start
+            state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
+            cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor))
+    clips = {table.performer: table.clip for _, table in scenario.followers if table.clip is not None}
+    for name, clip in clips.items():
+        someone = Recorded.load(clip, controller)
+        cast[name] = Character(name, someone, state=someone.start())
+    for actor, table in scenario.followers:
+        performer, follows = cast[table.performer], table.follows()
+        someone = follower_of(performer.controller, table.method, table.points, methods(scenario.database))
+        state = beginning(someone, performer.state, follows.beside)
+        cast[actor.name] = Character(actor.name, someone, tint=actor.colour, state=state, follows=follows, opacity=_opacity(actor))
+    order = [actor.name for actor in scenario.actors] + list(clips)
+    return World(tuple(cast[name] for name in order), props)
+
+
+def _opacity(actor: ActorTable) -> float:
+    return GHOST if actor.ghost else 1.0
+
+
+def learn(scenario: Scenario, progress: Progress | None = None) -> None:
+    """Have all methods of a scenario ready before it begins."""
+    for name, points in dict.fromkeys((table.method, table.points) for _, table in scenario.followers):
+        methods(scenario.database)(name, points, progress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +118,7 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
     """The run before the first step and after every one, without end."""
     world, props = opening(scenario, controller), scenario.stage()
     scripts = tuple(actor.script(actor.jumper(scenario.gravity), props) for actor in scenario.actors)
+    scripts += (Script(()),) * (len(world.characters) - len(scripts))
     while True:
         yield Act(world, scripts)
         moves = [script.step(character.state, DT) for script, character in zip(scripts, world.characters)]
@@ -113,6 +144,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
     shown: replaces the overlays of the scenario and all its shots.
     """
     told: dict[str, float] = {}
+    legend: Any = None
     for number, (first, old), (second, new), alpha in _sampled(takes(scenario, controller), scenario):
         before, after = first.world, second.world
         frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused)
@@ -130,9 +162,17 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
             corner = part[0] == 0.0 and part[1] == lowest
             title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
             text = ((title,) if title else ()) + (why if not made else ())
-            made.append(Scene(camera, explained(drawn, before, after, alpha, over), after.props, over,
-                              text, caption=caption if corner else None, part=part))
+            people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
+            made.append(Scene(camera, people, after.props, over, text, caption=caption if corner else None, part=part))
+        if any(scene.overlays.errors for scene in made) and (lines := rows(before)):
+            if legend is None:
+                from .hud.legend import Legend  # loads ImGui, for those only who show errors
+
+                legend = Legend()
+            made[0] = replace(made[0], ink=legend.ink(lines, scenario.size))
         yield frame, tuple(made)
+    if legend is not None:
+        legend.release()
 
 
 @dataclass(frozen=True, eq=False)

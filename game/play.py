@@ -14,16 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from . import session, settings
+from . import session, settings, study
 from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
 from .ink import PANELS
-from .input import (DEFAULT, Bindings, Keyboard, Wish, drivers, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
+from .input import (DEFAULT, HOLDING, Bindings, Keyboard, Wish, drivers, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
                     player_of, wheel_wish, wishes)
 from .input.names import key_label
 from .input.script import jumping
 from .jumping import broken
 from .keeper import Keeper
 from .log import Log, LogWriter, strayed
+from .methods import Methods
+from .pointing import rows
+from .reach import Reach
 from .rewind import Look
 from .scene import OVERLAYS, Camera, Overlays, Scene
 from .session import Moment, Timeline, refused
@@ -45,15 +48,17 @@ class Play:
     moment: the one that is shown, present or past; history: the last half minute up to it.
     look: how one looks back; None while one plays. panels: what is shown of `PANELS`. kept: what
     is kept of it all. tape: a log that is watched, until somebody walks. clock, held: the time that was
-    dropped, and spent in help, past or halt [s].
+    dropped, and spent in help, past or halt [s]. reach: what pointer and stream do with the points of a study.
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
-                 log: LogWriter | None = None, studio: Studio | None = None, tape: Log | None = None):
-        self.timeline = Timeline(session.opening(controller, players) if world is None else
-                                 session.begin(world, players))
+                 log: LogWriter | None = None, studio: Studio | None = None, tape: Log | None = None,
+                 learnt: Methods | None = None, stream: Any = None):
+        self.timeline = Timeline(session.opening(controller, players, learnt) if world is None else
+                                 session.begin(world, players, learnt))
         self.bindings, self.kept, self.tape = bindings, Keeper(log, studio), tape
-        self.overlays, self.panels = Overlays(path=True, jump=True), frozenset()
+        self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
+        self.reach = Reach(self.now.methods, stream)
         self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
@@ -100,6 +105,8 @@ class Play:
         if self.panels and self.hud is not None and self.hud.handle(event):
             return
         rewound = self.look is not None
+        if not (rewound or self.tape or self.helping) and self._reached(event):
+            return
         match event:
             case KeyEvent(key, True):
                 self.keyboard = self.keyboard.press(key)
@@ -120,6 +127,17 @@ class Play:
                 for action in pad_pressed(before, pad, self.bindings, mode):
                     self.do(action, player_of(slot, self.pads, self.players))
 
+    def _reached(self, event: Event) -> bool:
+        """Take an event that is about a point under the pointer; whether it was."""
+        match event:
+            case MouseMove(x, y, dx, dy):
+                return self.reach.move(x, y, dx, dy, self.keyboard.held("run", self.bindings))
+            case Scroll(dy=notches):
+                return self.reach.scroll(notches)
+            case KeyEvent(key, pressed) if any(row.action == "study_grab" for row in self.bindings.rows_of(key, mode=HOLDING)):
+                return self.reach.grab(self.now) if pressed else self.reach.let_go()
+        return False
+
     def do(self, action: str, player: int = 0) -> None:
         """Do what pressing the key or button of an action does, or set "name=value"."""
         if action in SHOWS:
@@ -136,8 +154,13 @@ class Play:
             self.helping = not self.helping
         elif action == "full_screen":
             self.full_screen = not self.full_screen
+        elif action == "quit" and not self.helping and self.now.study is not None and self.now.study.pins is not None:
+            self.do("study_hands")
         elif action == "quit":
             self.done, self.helping = not self.helping, False
+        elif action.startswith("study_") or action == "study":
+            asked, said = self.reach.asked(action, self.now)
+            self._ask(asked, 0) if asked else self.kept.say(said)
         elif action == "screenshot":
             self.wants_picture = True
         elif action == "film":
@@ -149,7 +172,7 @@ class Play:
 
     def _ask(self, action: str, player: int) -> None:
         """Something that the next tick is to do, unless one looks back or watches."""
-        if "=" in action:
+        if "=" in action and action.partition("=")[0] not in study.ACTIONS:
             try:
                 settings.read(action)
             except settings.SettingError as error:
@@ -183,6 +206,8 @@ class Play:
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
         self.undrawn = self.undrawn + seconds if self.panels else 0.0
         self.kept.tend(seconds)
+        if due := self.reach.learnt():
+            self._ask(due, 0) if not due.startswith("!") else self.kept.say(due[1:])
         if self.helping:
             self.held += seconds
         else:
@@ -197,6 +222,9 @@ class Play:
         asked = any(wish.pressed for wish in self.pending.values())
         if self.look is None and not asked and self.timeline.past and self._holds("rewind"):
             self.look = Look()
+        if self.look is None and self.tape is None:
+            for action in self.reach.actions(self.now, self.now.number * DT):
+                self._wish(Wish(pressed=(action,)))
         asked_for = self._wishes()
         if self.look is not None:
             self._look(self.look, asked_for[0])
@@ -284,6 +312,7 @@ class Play:
         if self.hud is not None:
             self.hud.release()
             self.hud = None
+        self.reach.close()
 
     def _overlays(self) -> list[str]:
         return [name for name in OVERLAYS if getattr(self.overlays, name)]
@@ -292,6 +321,8 @@ class Play:
         """What to draw now, one scene for each player; size: of the frame in pixels."""
         moment, fraction, cameras = self._shown(self.clock.alpha)
         views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment))
+        self.reach.look(cameras[0], size[0] / (len(views) * size[1]))
+        views = (replace(views[0], figures=self.reach.marked(views[0].figures, moment)), *views[1:])
         if self.helping:
             sheet = help_sheet(self.bindings, self.keyboard, self.pads, self.players)
             views = tuple(replace(view, text=()) for view in views)
@@ -300,6 +331,8 @@ class Play:
             views = tuple(replace(view, text=()) for view in views)
         if self.panels and not self.helping:
             views = (self._with_panels(views[0], size), *views[1:])
+        elif self.overlays.errors and not self.helping and (lines := rows(moment.after)):
+            views = (replace(views[0], ink=self.reach.legend(lines, size, moment.study)), *views[1:])
         return views[0] if len(views) == 1 else views
 
     def _with_panels(self, view: Scene, size: tuple[int, int]) -> Scene:
@@ -310,7 +343,8 @@ class Play:
             self.hud = Hud()
         seconds, self.undrawn = self.undrawn, 0.0
         moment, behind = self.moment, self.look.behind if self.look else 0
-        ink, actions = self.hud.frame(self.panels, self.history, self.now, behind, len(self.timeline.past), size, seconds)
+        told = rows(moment.after) if self.overlays.errors else ()
+        ink, actions = self.hud.frame(self.panels, self.history, self.now, behind, len(self.timeline.past), size, seconds, told)
         for action in actions:
             self.do(action, self.hud.who)
         # the strip tells of looking back, pause and slow motion
@@ -341,7 +375,7 @@ class Play:
             lines.append(f"paused: {self._key('pause')} goes on, {self._key('step')} makes one step")
         if moment.slow > 1:
             lines.append(f"slow motion 1/{moment.slow}")
-        told = (*lines, *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
+        told = (*lines, *self.reach.status(moment, self._key), *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
         return ((*own[0], *told), *own[1:])
 
     def _moving(self, moment: Moment, who: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path as File
 from typing import Annotated, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from assets import path as asset
 
@@ -16,7 +16,7 @@ from .rail import on_rail
 from .scene import Prop
 from .shots import ShotTable, Shown
 from .stage import STAGES
-from .tables import PROPS, ActorTable, PropTable
+from .tables import PROPS, ActorTable, FollowsTable, PropTable, beside_the_file
 
 
 class ScenarioError(ValueError):
@@ -28,7 +28,8 @@ class Scenario(Table):
 
     title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
     pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. stage: what
-    stands there beside its own props. poster: the moment [s] that stands for the film.
+    stands there beside its own props. poster: the moment [s] that stands for the film. database: what the methods of
+    those who follow points learn from; Gambol's own motion by default.
     """
 
     title: str
@@ -40,6 +41,7 @@ class Scenario(Table):
     gravity: Gravity = 9.81
     stage_name: Literal[tuple(STAGES)] | None = Field(None, alias="stage")
     poster: Moment | None = None
+    database: Annotated[str, AfterValidator(beside_the_file)] | None = None
     shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
     props: tuple[PropTable, ...] = ()
     actors: Annotated[tuple[ActorTable, ...], Field(min_length=1)]
@@ -54,6 +56,8 @@ class Scenario(Table):
             raise ValueError(f"shots must begin at = 0 and then rise; got {', '.join(f'{t:g}' for t in times)}")
         if self.poster is not None and self.poster >= self.duration:
             raise ValueError(f"poster is a moment of the film, before its end at {self.duration:g} s; got {self.poster:g}")
+        _check_followers(self.actors)
+        names += dict.fromkeys(table.performer for _, table in self.followers if table.clip is not None)
         solid = self.stage()
         for i, shot in enumerate(self.shots):
             for j, camera in enumerate(shot.cameras):
@@ -69,6 +73,11 @@ class Scenario(Table):
         return STAGES.get(self.stage_name or "", ()) + tuple(prop.prop() for prop in self.props)
 
     @property
+    def followers(self) -> tuple[tuple[ActorTable, FollowsTable], ...]:
+        """Those who follow points, and whose."""
+        return tuple((actor, actor.follows) for actor in self.actors if actor.follows is not None)
+
+    @property
     def frames(self) -> int:
         """How many frames the film has."""
         return max(round(self.duration * self.fps), 1)
@@ -80,6 +89,18 @@ class Scenario(Table):
     def at_size(self, size: tuple[int, int]) -> Scenario:
         """The same run filmed in pictures of `size` pixels."""
         return self.model_copy(update={"size": size})
+
+
+def _check_followers(actors: tuple[ActorTable, ...]) -> None:
+    """Whom one follows has a will."""
+    wills = [actor.name for actor in actors if actor.follows is None]
+    for i, actor in enumerate(actors):
+        table = actor.follows
+        if table is not None and table.actor is not None and table.actor not in wills:
+            raise ValueError(f"actors[{i}].follows.actor: nobody with moves is called {table.actor!r}; "
+                             f"there {'are ' + ', '.join(wills) if wills else 'is nobody'}")
+        if table is not None and table.clip is not None and any(table.performer.casefold() == a.name.casefold() for a in actors):
+            raise ValueError(f"actors[{i}].follows.clip: its performer is called {table.performer!r}, as an actor is; rename that one")
 
 
 def _check_rail(where: str, camera, props: tuple[Prop, ...], given: int) -> None:
@@ -113,7 +134,7 @@ def load(name: str | File) -> Scenario:
     file = locate(name)
     tables = toml.read(file, ScenarioError)
     try:
-        return Scenario.model_validate(tables)
+        return Scenario.model_validate(tables, context={"folder": file.parent})
     except ValidationError as error:
         faults = error.errors()
         # a list whose items are faulty also counts as too short: that line would only mislead

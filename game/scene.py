@@ -56,7 +56,8 @@ class Arrow:
 
 @dataclass(frozen=True, eq=False)
 class Dot:
-    """A disc that faces the camera, or lies flat. quartered: the sign of a centre of mass."""
+    """A disc that faces the camera, or lies flat. quartered: the sign of a centre of mass. look: "ball" for a small
+    sphere, "ring" for a hollow one."""
 
     layer: str
     place: np.ndarray
@@ -65,6 +66,8 @@ class Dot:
     flat: bool = False
     quartered: bool = False
     through: bool = False
+    look: str = "disc"
+    opacity: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,7 @@ class Figure:
     tint: (3,) linear RGB. contacts: (4,) bool, left heel, left ball, right heel, right ball.
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
     body: what it wears (`game.render.mesh.Body`); None for Gambol's mannequin. sketches: what
-    explains its motion, each in a layer of its own.
+    explains its motion, each in a layer of its own. opacity: less than 1 for a ghost, which casts no shadow.
     """
 
     positions: np.ndarray
@@ -100,6 +103,7 @@ class Figure:
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     body: Any = None
     sketches: tuple[Sketch, ...] = ()
+    opacity: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -155,6 +159,8 @@ class Overlays:
     jump: bool = False
     balance: bool = False
     forces: bool = False
+    points: bool = False
+    errors: bool = False
 
 
 OVERLAYS = tuple(part.name for part in fields(Overlays))

@@ -8,7 +8,7 @@ window, a film of a log and the tests play the same game, to the bit.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,15 +17,17 @@ import numpy as np
 from controllers.contract import Intent
 from controllers.navigation import Steering, in_world, slide
 
-from . import settings
+from . import settings, study
 from .camera import Follow, PlayerCamera, between, cycled
 from .input.aim import Aim
 from .input.pilot import STEERING, Pilot
 from .input.script import jumping
 from .input.wish import Wish
 from .jumping import jump_of
+from .methods import Methods, methods
 from .scene import TINT, Camera, Figure
 from .stage import COURSE
+from .study import Study
 from .world import DT, RATE, Character, World, figures, ground_between
 
 KEPT = 30 * RATE
@@ -37,7 +39,7 @@ APART = 1.2
 TINTS = (TINT, (0.20, 0.46, 0.72))
 """What tells the players apart."""
 ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"))
-"""What `advance` does of a wish's `pressed`, beside "back=N" and settings, "name=value"."""
+"""What `advance` does of a wish's `pressed`, beside "back=N", settings, "name=value", and `study.ACTIONS`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,8 @@ class Moment:
     before, after: the worlds that the last step of the simulation led from and to; player i moves
     character i. opening: the world that a reset returns to. number: ticks since the session began,
     whatever became of the world meanwhile. slow: ticks that a step of the world takes. phase: those
-    made since the last step.
+    made since the last step. study: what is reconstructed of the first player, by characters that come last in the
+    worlds; methods: where what they need is learnt.
     """
 
     before: World
@@ -79,6 +82,8 @@ class Moment:
     paused: bool = False
     slow: int = 1
     phase: int = 0
+    study: Study | None = None
+    methods: Methods = field(default_factory=methods)
 
     def fraction(self, alpha: float) -> float:
         """How far from `before` to `after` the world is, `alpha` of the way through the last tick."""
@@ -93,14 +98,18 @@ class Moment:
         return settings.value(owners(self, player), name)
 
 
-def opening(controller: Any, players: int = 1) -> Moment:
-    """The first moment: so many players side by side, with a course to jump on to their left."""
-    return begin(World(tuple(_newcomer(controller, n, np.zeros(3)) for n in range(players)), COURSE), players)
+def opening(controller: Any, players: int = 1, learnt: Methods | None = None) -> Moment:
+    """The first moment: so many players side by side, with a course to jump on to their left.
+
+    learnt: the methods of its studies; those over Gambol's own motion by default.
+    """
+    return begin(World(tuple(_newcomer(controller, n, np.zeros(3)) for n in range(players)), COURSE), players, learnt)
 
 
-def begin(world: World, players: int = 1) -> Moment:
+def begin(world: World, players: int = 1, learnt: Methods | None = None) -> Moment:
     """The first moment in a world, whose first characters the players move."""
-    return Moment(world, world, tuple(Player.behind(c) for c in world.characters[:players]), world)
+    return Moment(world, world, tuple(Player.behind(c) for c in world.characters[:players]), world,
+                  methods=methods() if learnt is None else learnt)
 
 
 def advance(moment: Moment, wishes: Sequence[Wish], past: Sequence[Moment] = ()) -> Moment:
@@ -151,7 +160,8 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
         leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
         intents.append(replace(command.intent(state, player.steering), leap=leap))
-    intents += [Intent()] * (len(moment.after.characters) - len(intents))
+    held = None if moment.study is None else moment.study.goals
+    intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
 
 
@@ -181,6 +191,8 @@ def _done(moment: Moment, who: int, action: str) -> Moment:
     """The moment once `action` is done; what means nothing here changes nothing."""
     name, equals, _ = action.partition("=")
     player = moment.players[who]
+    if name in study.ACTIONS:
+        return _studied(moment, action)
     if equals and name != "back":
         return _tuned(moment, who, action)
     if name == "pause":
@@ -216,7 +228,31 @@ def _reset(moment: Moment) -> Moment:
     for old, character in zip(moment.players, world.characters):
         camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
         players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim()))
-    return replace(moment, before=world, after=world, players=tuple(players), phase=0)
+    return _studying(replace(moment, before=world, after=world, players=tuple(players), phase=0),
+                     None if moment.study is None else replace(moment.study, pins=None))
+
+
+def _studied(moment: Moment, action: str) -> Moment:
+    """The moment with a study opened or closed, or its points held otherwise. SettingError for what can't be."""
+    if action.startswith("study="):
+        wanted, now = study.opened(action), moment.study
+        if wanted is not None and now is not None:
+            wanted = replace(wanted, beside=now.beside, pins=now.pins if wanted.points == now.points else None)
+        return _studying(moment, wanted, {one.name: one for one in moment.after.characters if one.follows is not None})
+    if moment.study is None:
+        raise settings.SettingError(f"{action}: no study is open")
+    now, after = study.pinned(moment.study, action, moment.after)
+    return replace(moment, study=now, after=after)
+
+
+def _studying(moment: Moment, wanted: Study | None, kept: Mapping[str, Character] = {}) -> Moment:
+    """The moment with another study, or none. Followers that were not `kept` begin as the first player stands and moves."""
+    followers: tuple[Character, ...] = ()
+    if wanted is not None:
+        wanted, followers = study.joined(wanted, moment.after.characters[0], moment.methods, kept)
+    def among(world: World) -> World:
+        return replace(world, characters=tuple(c for c in world.characters if c.follows is None) + followers)
+    return replace(moment, before=among(moment.before), after=among(moment.after), study=wanted)
 
 
 def _joined(moment: Moment) -> Moment:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
 
 from controllers.body.human import STATURE
 from controllers.contract import Intent
@@ -15,10 +16,14 @@ from controllers.jump import Physique
 from controllers.jump.ballistics import apex_airtime
 from controllers.jump.path import measures
 from controllers.navigation import floor_at
+from controllers.reconstruction.chart import SKELETON
+from controllers.reconstruction.controls import parse
 
-from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, Length, Mass, Metres, Pace, Point,
+from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, Length, Mass, Metres, Moment, Pace, Point,
                      Point3, Seconds, Stature, Strength, Table, Velocity)
+from .follow import Follows, Hidden
 from .input.script import Jump, Move, Script
+from .methods import METHODS, TINTS
 from .scene import TINT, Box, Goal, Pillar, Prop
 
 
@@ -108,18 +113,105 @@ class BodyTable(Table):
         return Physique(mass, self.height, self.strength, self.flexibility, self.sex)
 
 
+def beside_the_file(name: str, info: ValidationInfo) -> str:
+    """The path of a file that a scenario names: beside the scenario's own, or from where one stands."""
+    for path in ((info.context or {}).get("folder", Path()) / name, Path(name)):
+        if path.is_file():
+            return str(path)
+    raise ValueError(f"there is no file {name!r} beside the scenario")
+
+
+def _points(text: str) -> str:
+    parse(text, SKELETON)  # says what there is
+    return text
+
+
+Points = Annotated[str, BeforeValidator(lambda v: str(v) if isinstance(v, int) and not isinstance(v, bool) else v),
+                   AfterValidator(_points)]
+
+
+class HiddenTable(Table):
+    """Points that are not seen from one moment to another [s]."""
+
+    points: Points
+    start: Moment = Field(alias="from")
+    end: Seconds = Field(alias="to")
+
+    @model_validator(mode="after")
+    def _in_order(self):
+        if self.start >= self.end:
+            raise ValueError(f"`from` comes before `to`; got {self.start:g} and {self.end:g}")
+        return self
+
+
+class FollowsTable(Table):
+    """Whose points an actor follows: those of another `actor`, or of a `clip`, a .bvh or .amc file that plays from the origin.
+
+    points: the paper's sets "2" … "6", or names with commas. method: who makes a body of them. beside: x, y, z [m]
+    from the performer to the actor. hidden: what is not seen, and when. noise: of the points [m]; seed: of that.
+    """
+
+    actor: str | None = None
+    clip: Annotated[str, AfterValidator(beside_the_file)] | None = None
+    points: Points = "4"
+    method: Literal[tuple(METHODS)] = "ours"
+    beside: Point3 = (0.0, 0.0, 0.0)
+    hidden: tuple[HiddenTable, ...] = ()
+    noise: Annotated[float, Field(ge=0, le=0.5, allow_inf_nan=False)] = 0.0
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _one_performer(self):
+        if (self.actor is None) == (self.clip is None):
+            raise ValueError('needs either actor = "…", another actor, or clip = "….bvh"')
+        names = parse(self.points, SKELETON).names
+        for number, hidden in enumerate(self.hidden):
+            for name in parse(hidden.points, SKELETON).names:
+                if name not in names:
+                    raise ValueError(f"hidden[{number}].points: {name} is none of the points that are followed, {', '.join(names)}")
+        return self
+
+    @property
+    def performer(self) -> str:
+        """The name of whom it follows."""
+        return Path(self.clip).stem if self.actor is None else self.actor
+
+    def follows(self) -> Follows:
+        """The same for the world."""
+        controls = parse(self.points, SKELETON)
+        hidden = tuple(Hidden(np.isin(controls.names, parse(table.points, SKELETON).names), table.start, table.end)
+                       for table in self.hidden)
+        return Follows(self.method, controls, self.performer, np.array(self.beside), hidden, self.noise, self.seed)
+
+
 class ActorTable(Table):
     """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
 
-    body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default.
+    body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
+    points it follows instead of moves of its own. ghost: one sees through it.
     """
 
     name: FileName = "A"
     tint: Colour = TINT
+    ghost: bool = False
+    follows: FollowsTable | None = None
     start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
     body: BodyTable | None = None
     gravity: Gravity | None = None
     moves: tuple[MoveTable, ...] = ()
+
+    @model_validator(mode="after")
+    def _own_will_or_points(self):
+        if self.follows is not None:
+            for name in ("start", "body", "gravity", "moves"):
+                if name in self.model_fields_set:
+                    raise ValueError(f"who follows points has no {name}: that is the performer's")
+        return self
+
+    @property
+    def colour(self) -> tuple[float, float, float]:
+        """Its tint; that of its method where none is given."""
+        return self.tint if self.follows is None or "tint" in self.model_fields_set else TINTS[self.follows.method]
 
     def jumper(self, gravity: float) -> JumpController:
         """Its jumps, where the scenario has that gravity."""

@@ -7,6 +7,7 @@ from typing import Any
 
 from .jumping import broken, explained, preview
 from .log import Log, replay, strayed
+from .pointing import pointed
 from .scene import Camera, Overlays, Scene
 from .session import Moment
 from .world import RATE, figures
@@ -22,6 +23,7 @@ def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays:
     before, after, width = moment.before, moment.after, 1.0 / len(cameras)
     aimed = [preview(character, player.aim, after.props) for player, character in zip(moment.players, after.characters)]
     people = explained(figures(before, after, fraction), before, after, fraction, overlays, aimed)
+    people = pointed(people, before, after, fraction, overlays)
     text = tuple(text) or ((),) * len(cameras)
     text = tuple((*lines, *broken(f"no jump: {seen.fault}")) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))

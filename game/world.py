@@ -17,7 +17,9 @@ from controllers.body import Pose, forward_kinematics
 from controllers.body.rotations import wrap
 from controllers.contract import CharacterState, Intent
 from controllers.navigation import drift
+from controllers.reconstruction.controller import towards
 
+from .follow import KEPT, Follows, errors
 from .scene import TINT, Figure, Prop
 
 RATE = 60
@@ -39,6 +41,8 @@ class Character:
     controller: keeps `controllers.contract.Controller` and has the `skeleton` that it moves; one with a
     `body` (`game.render.mesh.Body`) is drawn in it.
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
+    follows: whose points it follows, None for somebody with a will. told: (N, 4) its `follow.errors`, oldest first.
+    opacity: 1 for a body, less for a ghost.
     """
 
     name: str
@@ -47,6 +51,15 @@ class Character:
     tint: tuple[float, float, float] = TINT
     intent: Intent = field(default_factory=Intent)
     trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    follows: Follows | None = None
+    told: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    opacity: float = 1.0
+
+    @property
+    def joints(self) -> tuple[np.ndarray, np.ndarray]:
+        """World positions (J, 3) [m] and orientations (J, 3, 3) of its body."""
+        pose = self.state.pose
+        return forward_kinematics(self.controller.skeleton, pose.root, np.asarray(pose.rotations, float))
 
     @property
     def level(self) -> float:
@@ -64,6 +77,18 @@ class Character:
             trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
         return replace(self, state=state, intent=intent, trail=trail)
 
+    def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
+        """One step on of a follower, whose performer has made that step."""
+        seen, truth = intent.points, None
+        if performer is not None:
+            there = performer.joints
+            seen, truth = self.follows.seen(*there, number / RATE), there[0]
+        if seen is None:
+            return self.step(intent, number)
+        made = self.step(replace(intent, velocity=towards(self.state, seen), points=seen), number)
+        told = errors(self.follows, made.joints, truth, seen)
+        return replace(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
+
 
 @dataclass(frozen=True, eq=False)
 class World:
@@ -79,13 +104,19 @@ class World:
         return self.number / RATE
 
     def step(self, intents: Sequence[Intent]) -> World:
-        """The world one sixtieth of a second later; one intent for each character, in order."""
+        """The world one sixtieth of a second later; one intent for each character, in order.
+
+        Followers come last: they see where their performer is now.
+        """
         if len(intents) != len(self.characters):
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
+        intents = [replace(intent, around=self.props) for intent in intents]
+        made = [None if one.follows else one.step(intent, number) for one, intent in zip(self.characters, intents)]
+        performers = {one.name: one for one in made if one is not None}
         return replace(self, number=number, characters=tuple(
-            character.step(replace(intent, around=self.props), number)
-            for character, intent in zip(self.characters, intents)))
+            new or old.after(performers.get(old.follows.performer), intent, number)
+            for new, old, intent in zip(made, self.characters, intents)))
 
     def index(self, name: str) -> int:
         """The number of a character. KeyError, naming it, if there is none."""
@@ -162,5 +193,5 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         drawn.append(Figure(positions, orientations, new.tint, contacts,
                             np.concatenate([old.trail, here]),
                             np.stack([ahead[:, 0], np.full(len(ahead), lift), ahead[:, 1]], -1),
-                            getattr(new.controller, "body", None)))
+                            getattr(new.controller, "body", None), opacity=new.opacity))
     return tuple(drawn)

@@ -3,7 +3,8 @@ in vec4 v_tint;
 in vec3 v_shape;    // z: what it is; xy: place in it, −1 … 1, or along x in dashes
 out vec4 colour;
 
-const float DISC = 0.0, BAND = 1.0, DASHES = 2.0, RIMMED = 3.0, HEAD = 4.0, DOT = 5.0, QUARTERS = 6.0, FILL = 7.0;
+const float DISC = 0.0, BAND = 1.0, DASHES = 2.0, RIMMED = 3.0, HEAD = 4.0, DOT = 5.0, QUARTERS = 6.0, FILL = 7.0,
+    BALL = 8.0, RING = 9.0;
 
 void main() {
     float x = v_shape.x, y = abs(v_shape.y), r = length(v_shape.xy);
@@ -24,6 +25,14 @@ void main() {
             tint = mix(vec3(0.01), tint, even);
         }
         tint = mix(tint, dark, clamp((r - 0.80) / wr + 0.5, 0.0, 1.0));
+    } else if (kind == BALL) {
+        cover = clamp((1.0 - r) / wr, 0.0, 1.0);
+        vec3 n = vec3(v_shape.xy, sqrt(max(1.0 - r * r, 0.0)));  // lit from over the left shoulder
+        float facing = dot(n, vec3(-0.40, 0.66, 0.63));
+        tint = tint * (0.35 + 0.75 * max(facing, 0.0)) + 0.5 * pow(max(facing, 0.0), 24.0);
+        tint = mix(tint, dark, clamp((r - 0.88) / wr + 0.5, 0.0, 1.0));
+    } else if (kind == RING) {
+        cover = clamp((1.0 - r) / wr, 0.0, 1.0) * clamp((r - 0.66) / wr + 0.5, 0.12, 1.0);
     } else if (kind != FILL) {
         cover = clamp((1.0 - y) / wy, 0.0, 1.0) * min(2.0 / wy, 1.0);
         if (kind == DASHES) {

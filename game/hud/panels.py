@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from ..hosts.events import Event
 from ..ink import PANELS, Ink
+from ..pointing import Row
 from ..scene import Figure
 from ..session import Moment
-from . import meter, plots, sliders, space, transport
+from . import legend, meter, plots, sliders, space, transport
 from .canvas import Canvas
 from .ghost import ghost
 from .toolkit import imgui
@@ -39,11 +40,11 @@ class Hud:
         return self.canvas is not None and self.canvas.handle(event)
 
     def frame(self, open: Collection[str], history: Sequence[Moment], now: Moment, behind: int, kept: int,
-              size: tuple[int, int], seconds: float) -> tuple[Ink, list[str]]:
+              size: tuple[int, int], seconds: float, told: Sequence[Row] = ()) -> tuple[Ink, list[str]]:
         """The panels named in `open` over a picture of `size` pixels, and the actions their user asks for.
 
         history: the moments up to the one shown, `behind` steps before `now`; of the `kept` that one
-        can go back. seconds: since the last frame. The actions are the game's own ("pause", "step",
+        can go back. seconds: since the last frame. told: the legend of those who follow points. The actions are the game's own ("pause", "step",
         "slowmo", "resume", "NAME_panel", "name=value"), and "look=N": show the moment N steps before now.
         """
         if self.canvas is None:
@@ -69,6 +70,11 @@ class Hud:
             imgui.end()
             if not stays:
                 actions.append(f"{name}_panel")
+        if told:
+            _place(places["legend"], moved)
+            imgui.begin("reconstruction", None, imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_nav)
+            legend.draw(told, scale)
+            imgui.end()
         _place(places["strip"], moved)
         imgui.begin("time", None, imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize
                     | imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_nav)
@@ -109,6 +115,7 @@ def layout(size: tuple[int, int], scale: float) -> dict[str, tuple[float, float,
               "quality": (gap, height - gap - quality, left, quality),
               "space": (width - right - gap, tops[1], right, upper),
               "plots": (width - right - gap, tops[1] + upper + gap, right, height - tops[1] - upper - 2 * gap),
+              "legend": (left + 2 * gap, height - gap - 190.0, max(min(between, 400.0), 250.0), 190.0),
               "strip": strip}
     return {name: tuple(scale * v for v in (*place[:2], *(max(side, LEAST) for side in place[2:])))
             for name, place in places.items()}

@@ -16,6 +16,10 @@ JOINING = "joining"
 """The mode of a device that could bring in a second player."""
 
 
+HOLDING = "holding"
+"""The mode while the pointer is over a point that can be held."""
+
+
 @dataclass(frozen=True)
 class Binding:
     """What does one thing. held: it acts while it is down; else once, when it is pressed.
@@ -134,6 +138,14 @@ DEFAULT = Bindings((
         Binding("scrub_on", "rewound: back, on", ("RIGHT",), ("RIGHT",), held=True, mode=REWOUND),
         Binding("resume", "rewound: go on from here", ("ENTER",), ("START",), mode=REWOUND),
         Binding("reset", "start again", ("R",), ("BACK",)),
+    )),
+    ("Reconstruct", (
+        Binding("study", "from a few points, beside", ("X",)),
+        Binding("study_points", "2 … 6 points; ghosts", ("N",)),
+        Binding("study_ghosts", "2 … 6 points; ghosts", ("G",)),
+        Binding("study_hands", "hold the points: drag them", ("B",)),
+        Binding("study_grab", "hold the points: drag them", ("LEFT_BUTTON",), held=True, mode=HOLDING),
+        Binding("study_hide", "one under the pointer: unseen", ("U",)),
     )),
     ("Show and keep", (
         Binding("mesh", _SHOW, ("1",)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -58,21 +58,26 @@ class Figures:
         self.block = ctx.buffer(reserve=BATCH * (len(skin.NAMES) * 32 + 16), dynamic=True)
         self.wardrobes: dict[Body, Wardrobe] = {}
         self.batches: list[tuple[Body, str, bytes, int]] = []
+        self.ghosts: list[tuple[tuple[Body, str, bytes, int], float]] = []
         self._wardrobe(mannequin())
 
     def prepare(self, figures: Sequence[Figure], eye: np.ndarray, origin: np.ndarray, ranges: Sequence[float]) -> None:
         """Pose what will be drawn, all of it `drawable`. ranges: how far each finer mesh serves [m]."""
-        self.batches = []
         groups: dict[Body, list[Figure]] = {}
         for figure in figures:
             groups.setdefault(figure.body or mannequin(), []).append(figure)
+        solid = {body: [figure for figure in group if figure.opacity >= 1.0] for body, group in groups.items()}
+        ghosts = [figure for figure in figures if 0.0 < figure.opacity < 1.0]
+        ghosts.sort(key=lambda figure: -np.linalg.norm(figure.positions[0] - eye))
         for body in [body for body in self.wardrobes if body not in groups and body is not mannequin()][KEPT:]:
             self.wardrobes.pop(body).release()
-        for body, group in groups.items():
+        for body in groups:
             self._wardrobe(body)
-            self._pose(body, group, eye, origin, ranges)
+        self.batches = [batch for body, group in solid.items() if group for batch in self._posed(body, group, eye, origin, ranges)]
+        self.ghosts = [(batch, figure.opacity) for figure in ghosts
+                       for batch in self._posed(figure.body or mannequin(), [figure], eye, origin, ranges)]
 
-    def _pose(self, body: Body, figures: list[Figure], eye, origin, ranges) -> None:
+    def _posed(self, body: Body, figures: list[Figure], eye, origin, ranges) -> list[tuple[Body, str, bytes, int]]:
         positions = np.stack([f.positions for f in figures]).astype(float)
         orientations = np.stack([f.orientations for f in figures])
         if body is mannequin():
@@ -82,6 +87,7 @@ class Figures:
         motion = skin.motions(positions - origin, orientations, scale, body.joints)
         look = np.concatenate([np.array([f.tint for f in figures]), scale[:, None]], 1).astype(np.float32)
         levels = np.searchsorted(ranges, np.linalg.norm(positions[:, 0] - eye, axis=1))
+        batches = []
         for k, level in enumerate(LEVELS):
             chosen = np.flatnonzero(levels == k)
             for start in range(0, len(chosen), BATCH):
@@ -91,7 +97,8 @@ class Figures:
                 data[:len(part)] = motion[part].reshape(len(part), -1, 4)
                 looks = np.zeros((BATCH, 4), np.float32)
                 looks[:len(part)] = look[part]
-                self.batches.append((body, level, data.tobytes() + looks.tobytes(), len(part)))
+                batches.append((body, level, data.tobytes() + looks.tobytes(), len(part)))
+        return batches
 
     def _wardrobe(self, body: Body) -> None:
         if body not in self.wardrobes:
@@ -102,19 +109,38 @@ class Figures:
                                                              "shadow": self.programs["shadow"]})
 
     def draw(self, kind: str) -> None:
-        """Draw the prepared figures: "body", or "shadow" (into the shadow map, always coarse)."""
-        for body, level, data, count in self.batches:
-            wardrobe = self.wardrobes[body]
-            self.block.orphan()
-            self.block.write(data)
-            self.block.bind_to_uniform_block(gl.FIGURES)
-            if wardrobe.pictures is not None and kind == "body":
+        """Draw the prepared figures but the ghosts: "body", or "shadow" (into the shadow map, always coarse)."""
+        for batch in self.batches:
+            self._draw(batch, kind)
+
+    def draw_ghosts(self, target: Callable[[bool], Any]) -> None:
+        """Draw the ghosts over all else, the farthest first. target: told whether colour is to be written.
+
+        Of each only the front is seen: its depth comes first, then its colour where nothing of it is nearer.
+        """
+        for number, (batch, opacity) in enumerate(self.ghosts):
+            # a little behind whoever stands at the very same place
+            self.ctx.polygon_offset = 2.0 + 2.0 * number, 8.0 + 8.0 * number
+            for colour in (False, True):
+                target(colour)
+                self._draw(batch, "body", opacity)
+        self.ctx.polygon_offset = 0.0, 0.0
+
+    def _draw(self, batch: tuple[Body, str, bytes, int], kind: str, opacity: float = 1.0) -> None:
+        body, level, data, count = batch
+        wardrobe = self.wardrobes[body]
+        self.block.orphan()
+        self.block.write(data)
+        self.block.bind_to_uniform_block(gl.FIGURES)
+        if kind == "body":
+            self.programs["painted" if wardrobe.pictures is None else "pictured"]["opacity"] = opacity
+            if wardrobe.pictures is not None:
                 wardrobe.pictures.use(gl.PICTURES)
-            if body.thin:
-                self.ctx.disable(self.ctx.CULL_FACE)
-            wardrobe.arrays["far" if kind == "shadow" else level, kind].render(instances=count)
-            if body.thin:
-                self.ctx.enable(self.ctx.CULL_FACE)
+        if body.thin:
+            self.ctx.disable(self.ctx.CULL_FACE)
+        wardrobe.arrays["far" if kind == "shadow" else level, kind].render(instances=count)
+        if body.thin:
+            self.ctx.enable(self.ctx.CULL_FACE)
 
     def release(self) -> None:
         for part in (*self.wardrobes.values(), *self.programs.values(), self.block):

@@ -86,14 +86,15 @@ class Renderer:
         figures = tuple(figure for figure in scene.figures if drawable(figure))
         solids = tuple(prop for prop in scene.props if not isinstance(prop, Goal))
         shown = figures if scene.overlays.mesh else ()
-        boxes = figures_box(camera, shown, self.preset.shadow_size), solids_box(camera, solids, STAGE_TEXELS)
+        bodies = tuple(figure for figure in shown if figure.opacity >= 1.0)  # ghosts darken nothing
+        boxes = figures_box(camera, bodies, self.preset.shadow_size), solids_box(camera, solids, STAGE_TEXELS)
         projection = view.perspective(camera.fov, size[0] / size[1])
         matrix = projection @ view.look_at(eye, np.asarray(camera.target, float) - origin, camera.up)
         self._frame(matrix, eye, origin, boxes, view.clear_air(camera), size)
         metre = size[1] / (2.0 * np.tan(0.5 * camera.fov))  # pixels, one metre away
         self.figures.prepare(shown, camera.eye, origin, [metre / least for least in self.preset.detail])
         self.solids.prepare(solids, origin)
-        self.occluders.prepare(camera, shown if boxes[0] else (), solids, origin)
+        self.occluders.prepare(camera, bodies if boxes[0] else (), solids, origin)
         self._shadows(solids, *boxes)
         ctx.enable_only(ctx.DEPTH_TEST | ctx.CULL_FACE)
         ctx.cull_face, ctx.depth_func = "back", "<="
@@ -107,7 +108,7 @@ class Renderer:
         if scene.overlays.skeleton:
             self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
-        self.ground.draw(touched_floor(shown if boxes[0] else (), solids, origin), np.linalg.inv(matrix))
+        self.ground.draw(touched_floor(bodies if boxes[0] else (), solids, origin), np.linalg.inv(matrix))
         self._over(scene, figures, origin, inside, metre)
 
     def read(self, out: np.ndarray | None = None) -> np.ndarray:
@@ -171,11 +172,12 @@ class Renderer:
 
     def _over(self, scene: Scene, figures: tuple[Figure, ...], origin: np.ndarray, inside: view.Rectangle,
               metre: float) -> None:
-        """Marks on the floor, then text over everything."""
+        """Ghosts, marks on the floor, then text over everything."""
         ctx = self.ctx
         ctx.enable(ctx.BLEND)
-        ctx.disable(ctx.CULL_FACE)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
+        self.figures.draw_ghosts(lambda colour: self.target.masked(colour=colour, viewport=inside))
+        ctx.disable(ctx.CULL_FACE)
         self.target.masked(depth=False, viewport=inside)
         self.overlays.draw_marks(figures, scene.overlays, origin, scene.camera, metre)
         self.goals.draw([prop for prop in scene.props if isinstance(prop, Goal)], origin)

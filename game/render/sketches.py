@@ -11,7 +11,7 @@ import numpy as np
 
 from ..scene import Arrow, Camera, Dot, Figure, Line, Overlays, Patch
 
-DASHES, RIMMED, HEAD, DOT, QUARTERS, FILL = 2.0, 3.0, 4.0, 5.0, 6.0, 7.0
+DASHES, RIMMED, HEAD, DOT, QUARTERS, FILL, BALL, RING = 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0
 """What a mark is; see mark.frag."""
 LEAST = 2.2
 """No line is drawn thinner than this [pixels]."""
@@ -106,7 +106,8 @@ def _dot(dot: Dot, eye: np.ndarray, metre: float) -> np.ndarray:
         up = _unit(np.cross(sight, right)[None])[0]
     radius = max(dot.radius, LEAST * float(np.linalg.norm(sight)) / metre)
     at = place + radius * (_SQUARE[:, :1] * right + _SQUARE[:, 1:] * up)
-    return _rows(at, dot.tint, 1.0, _SQUARE, QUARTERS if dot.quartered else DOT)
+    kind = QUARTERS if dot.quartered else {"disc": DOT, "ball": BALL, "ring": RING}[dot.look]
+    return _rows(at, dot.tint, dot.opacity, _SQUARE, kind)
 
 
 def _unit(v: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from game.cli import app
 from game.hosts.events import PadState
-from game.input import DEFAULT, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, names
+from game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, names
 from game.input.remap import BindingsError, as_toml, clashes, load, remapped, user_file
 
 
@@ -36,7 +36,7 @@ def test_the_shipped_table_is_sound():
     assert len(set(actions)) == len(actions)
     for row in DEFAULT:
         assert set(row.keys) <= names.KEYS and set(row.buttons) <= names.BUTTONS
-        assert row.mode in ("", JOINING, REWOUND) and DEFAULT.row(row.action) is row
+        assert row.mode in ("", HOLDING, JOINING, REWOUND) and DEFAULT.row(row.action) is row
     assert not clashes(DEFAULT, "keys") and not clashes(DEFAULT, "buttons")
     assert DEFAULT.pressed_by("P") == ("pause",) and DEFAULT.pressed_by("W") == () and DEFAULT.pressed_by("NOTHING") == ()
     assert [row.action for row in DEFAULT.rows_of("SPACE")] == ["jump"]
