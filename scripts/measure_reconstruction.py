@@ -24,24 +24,27 @@ import numpy as np  # noqa: E402
 from controllers.compiled import cache_folder  # noqa: E402
 from controllers.reconstruction.database import DatabaseError  # noqa: E402
 from controllers.reconstruction.method import SPAN  # noqa: E402
-from reconstruction_bench import Bench, Course, courses, lost_from  # noqa: E402
+from reconstruction_bench import Bench, Course, Courses, lost_from  # noqa: E402
 from reconstruction_figures import PRINTED, PRINTED_SIZES, Figures, against, bars, figures, lines, table  # noqa: E402
 from reconstruction_rivals import BASE, OURS, RIVALS  # noqa: E402
 
 SETS = ("2", "3", "4", "5", "6", "liu")
 NOISE, HIDDEN = 0.01, 0.5
 """Of the points' coordinates [m]; how long each point is lost [s]."""
+HEAD = ("", "cm", "ours - this [95 %]", "/ LPCR", "aligned cm", "joint deg", "dof deg", "points cm", "jitter", "lag",
+        "worst cm", "lost %")
+"""What the long tables tell of a method; see `Figures`."""
 
 
 class Study:
     """The sections, each a text; figures are made of outcomes when they are asked for."""
 
-    def __init__(self, bench: Bench, on: dict[str, Course], methods: list[str], sets: list[str], out: Path | None):
+    def __init__(self, bench: Bench, on: Courses, methods: list[str], sets: list[str], out: Path | None):
         self.bench, self.on, self.methods, self.sets, self.out = bench, on, methods, sets, out
 
     def of(self, name: str, course: str, points: str, **more) -> Figures:
         """A method's figures on a course."""
-        return figures(self.bench.outcomes(name, self.on[course], points, **more), points)
+        return figures(self.bench.outcomes(name, getattr(self.on, course), points, **more), points)
 
     def row(self, name: str, found: Figures, ours: Figures, base: Figures) -> list[str]:
         """What Table 1 says of a method."""
@@ -51,9 +54,6 @@ class Study:
                 f"{found.shake:.1f}", f"{found.lag.mean():+.1f}", f"{found.worst.max():.0f}",
                 f"{100 * found.lost.sum() / found.frames.sum():.1f}"]
 
-    HEAD = ("", "cm", "ours - this [95 %]", "/ LPCR", "aligned cm", "joint deg", "dof deg", "points cm", "jitter",
-            "lag", "worst cm", "lost %")
-
     def table1(self) -> str:
         """Methods by control points."""
         parts, means = [], {name: [] for name in self.methods}
@@ -61,7 +61,7 @@ class Study:
             found = {name: self.of(name, "seen", points) for name in self.methods}
             for name in self.methods:
                 means[name].append(float(found[name].position.mean()))
-            parts.append(f"### {_points(points)}\n\n" + table(self.HEAD, [
+            parts.append(f"### {_points(points)}\n\n" + table(HEAD, [
                 self.row(name, found[name], found[OURS], found[BASE]) for name in self.methods]))
         numbered = [k for k, points in enumerate(self.sets) if points.isdigit()]
         ratios = []
@@ -81,21 +81,21 @@ class Study:
     def table2(self) -> str:
         """A small database against a large one."""
         parts = []
-        for pair, points in ((("actions", "actions, large"), "6"), (("actions", "actions, large"), "4"),
-                             (("seen", "seen, large"), "4")):
+        for pair, points in ((("actions", "actions_large"), "6"), (("actions", "actions_large"), "4"),
+                             (("seen", "seen_large"), "4")):
             rows = []
             for name in self.methods:
                 small, large = (self.of(name, course, points).position for course in pair)
                 printed = PRINTED_SIZES.get(RIVALS[name].printed)
                 rows.append([name, f"{small.mean():.2f}", f"{large.mean():.2f}", against(large, small),
                              f"{large.mean() / small.mean():.2f}", f"{printed[1] / printed[0]:.2f}" if printed else ""])
-            head = ["", *(f"{len(self.on[course].learnt):,} poses" for course in pair), "difference [95 %]", "ratio", "paper's ratio"]
-            parts.append(f"### {_points(points)}, {self.on[pair[0]].name}\n\n" + table(head, rows))
+            head = ["", *(f"{len(getattr(self.on, course).learnt):,} poses" for course in pair), "difference [95 %]", "ratio", "paper's ratio"]
+            parts.append(f"### {_points(points)}, {getattr(self.on, pair[0]).name}\n\n" + table(head, rows))
         return "\n\n".join([self.about("actions"), *parts])
 
     def figure3(self) -> str:
         """Methods by action."""
-        actions = [take.action for take in self.on["actions"].takes]
+        actions = [take.action for take in self.on.actions.takes]
         names, parts = list(dict.fromkeys(actions)), [self.about("actions")]
         for points in ("6", "4"):
             means = {}
@@ -110,10 +110,10 @@ class Study:
 
     def subjects(self) -> str:
         """People nothing was learnt from."""
-        held = sorted({take.subject for take in self.on["strangers"].takes})
+        held = sorted({take.subject for take in self.on.strangers.takes})
         found = {name: self.of(name, "strangers", "4") for name in self.methods}
         return f"{self.about('strangers')} Held out: {', '.join(held)}.\n\n" + table(
-            self.HEAD, [self.row(name, one, found[OURS], found[BASE]) for name, one in found.items()])
+            HEAD, [self.row(name, one, found[OURS], found[BASE]) for name, one in found.items()])
 
     def noise(self) -> str:
         """Points that shake."""
@@ -127,8 +127,9 @@ class Study:
 
     def long(self) -> str:
         """A minute on a method's own output."""
-        takes = ", ".join(take.clip for take in self.on["minute"].takes)
-        rows = []
+        takes, rows = ", ".join(take.clip for take in self.on.minute.takes), []
+        if not takes:
+            return "No take is that long."
         for name in self.methods:
             found = self.of(name, "minute", "4")
             rows.append([name, f"{found.position.mean():.2f}", f"{int(found.lost.sum())}", f"{found.worst.max():.0f}"])
@@ -137,7 +138,7 @@ class Study:
 
     def dropout(self) -> str:
         """Points that are lost for a while, and come back."""
-        course, rows = self.on["seen"], []
+        course, rows = self.on.seen, []
         for name in self.methods:
             whole, torn = (self.bench.outcomes(name, course, "4", hidden=hidden) for hidden in (0.0, HIDDEN))
             during, after, calm = [], [], []
@@ -152,6 +153,8 @@ class Study:
                     during.append(other.errors[lost].mean())
                     after.append(other.errors[back].mean())
                     calm.append(one.errors[lost | back].mean())
+            if not calm:
+                return "No take is long enough."
             rows.append([name, *(f"{100 * np.mean(values):.2f}" for values in (calm, during, after))])
         return (f"Each of 4 points is lost once for {HIDDEN} s, at a time of its own; {len(calm)} takes are long enough.\n\n"
                 + table(["cm", "none lost", "while some are", "half a second after"], rows))
@@ -175,17 +178,17 @@ class Study:
         rows = []
         for name in self.methods:
             cells = [name]
-            for course in ("seen", "seen, large"):
+            for course in ("seen", "seen_large"):
                 for points in ("4", "6"):
-                    times = 1e3 * self.bench.times(name, self.on[course], points)
+                    times = 1e3 * self.bench.times(name, getattr(self.on, course), points)
                     cells.append(f"{np.median(times):.2f} ({np.quantile(times, 0.99):.2f})")
             rows.append(cells)
-        sizes = [f"{len(self.on[course].learnt):,} poses, {points} points" for course in ("seen", "seen, large") for points in ("4", "6")]
+        sizes = [f"{len(getattr(self.on, course).learnt):,} poses, {points} points" for course in ("seen", "seen_large") for points in ("4", "6")]
         return "Milliseconds of a frame on one thread: the median, and what one in a hundred is beyond.\n\n" + table(["", *sizes], rows)
 
     def about(self, course: str) -> str:
         """What a course is."""
-        on = self.on[course]
+        on: Course = getattr(self.on, course)
         return f"{len(on.takes)} takes, {on.name}; {len(on.learnt):,} poses to learn from, mirror images included."
 
 
@@ -228,7 +231,7 @@ def main() -> None:
     try:
         with bench.progress:
             main_, large = bench.database(options.motion), bench.database(options.large or options.motion)
-            study = Study(bench, courses(main_, large, options.takes, options.seed), methods, sets, options.out)
+            study = Study(bench, Courses(main_, large, options.takes, options.seed), methods, sets, options.out)
             for name in wanted:
                 text = f"## {SECTIONS[name]}\n\n{getattr(study, name)()}\n"
                 print(f"\n{text}", flush=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +51,7 @@ class Bench:
     def __post_init__(self):
         self.cache.mkdir(parents=True, exist_ok=True)
         self.progress = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
-                                 console=Console(stderr=True))
+                                 console=Console(stderr=True), redirect_stdout=False)
 
     def database(self, where: Path) -> Database:
         """A database from its file, or built from a folder of motion files."""
@@ -146,35 +146,60 @@ def lost_from(frames: int, count: int, number: int, hidden: float, dt: float, se
     return rng.integers(SPAN, max(SPAN + 1, frames - 2 * round(hidden / dt)), count)
 
 
-def courses(main: Database, large: Database, takes: int, seed: int) -> dict[str, Course]:
-    """All that is measured on, by name. large: a database with all of main's clips, or main itself.
+class Courses:
+    """All that is measured on, each made when it is asked for. large: a database with all of main's clips, or main itself."""
 
-    DatabaseError where main has too little.
-    """
-    clips = {take.clip for take in main.takes}
-    main = large.only([take for take in large.takes if take.clip in clips])
-    if {take.clip for take in main.takes} != clips:
-        raise DatabaseError(f"{large.path}: lacks takes of {main.path}; the large database must hold the small one's, too")
-    true = main.only([take for take in main.takes if not take.interpolated])
-    core = trials.split(true, takes, takes // 2, seed)
-    actions = trials.split_actions(main, seed=seed, avoid=core.validation)
-    strangers = trials.split_subjects(true, _strangers(true, seed), takes, seed)
-    minutes = trials.long_takes(large)
-    return {
-        "seen": Course("seen subjects", core.learnt, core.test),
-        "validation": Course("validation", core.learnt, core.validation, 300),
-        "actions": Course("five actions", actions.learnt, actions.test),
-        "strangers": Course("unseen subjects", strangers.learnt, strangers.test),
-        "seen, large": Course("seen subjects, large database", trials.without(large, core.test), core.test),
-        "actions, large": Course("five actions, large database", trials.without(large, actions.test), actions.test),
-        "minute": Course("a minute", trials.without(large, minutes), minutes, 3600),
-    }
+    def __init__(self, main: Database, large: Database, takes: int, seed: int):
+        self.large, self.takes, self.seed = large, takes, seed
+        clips = {take.clip for take in main.takes}
+        self.main = large.only([take for take in large.takes if take.clip in clips])
+        if {take.clip for take in self.main.takes} != clips:
+            raise DatabaseError(f"{large.path}: lacks takes of {main.path}; the large database must hold the small one's, too")
+        self.true = self.main.only([take for take in self.main.takes if not take.interpolated])
 
+    @cached_property
+    def seen(self) -> Course:
+        """Takes of subjects others of whose takes are learnt from."""
+        return Course("seen subjects", self._core.learnt, self._core.test)
 
-def _strangers(database, seed) -> Sequence[str]:
-    """Every third subject."""
-    subjects = sorted({take.subject for take in database.takes})
-    return sorted(np.random.default_rng(seed).permutation(subjects)[:max(1, len(subjects) // 3)].tolist())
+    @cached_property
+    def validation(self) -> Course:
+        """Others of the same, to tune on."""
+        return Course("validation", self._core.learnt, self._core.validation, 300)
+
+    @cached_property
+    def actions(self) -> Course:
+        """The paper's five actions, interpolated takes among them; they alone are learnt from."""
+        split = trials.split_actions(self.main, seed=self.seed, avoid=self._core.validation)
+        return Course("five actions", split.learnt, split.test)
+
+    @cached_property
+    def strangers(self) -> Course:
+        """Takes of every third subject, none of whom is learnt from."""
+        subjects = sorted({take.subject for take in self.true.takes})
+        drawn = np.random.default_rng(self.seed).permutation(subjects)[:max(1, len(subjects) // 3)]
+        split = trials.split_subjects(self.true, sorted(drawn.tolist()), self.takes, self.seed)
+        return Course("unseen subjects", split.learnt, split.test)
+
+    @cached_property
+    def seen_large(self) -> Course:
+        """As `seen`, all else learnt from."""
+        return Course("seen subjects, large database", trials.without(self.large, self.seen.takes), self.seen.takes)
+
+    @cached_property
+    def actions_large(self) -> Course:
+        """As `actions`, all else learnt from."""
+        return Course("five actions, large database", trials.without(self.large, self.actions.takes), self.actions.takes)
+
+    @cached_property
+    def minute(self) -> Course:
+        """The longest takes there are, a minute of each, all else learnt from; maybe none."""
+        takes = trials.long_takes(self.large)
+        return Course("a minute", trials.without(self.large, takes), takes, 3600)
+
+    @cached_property
+    def _core(self):
+        return trials.split(self.true, self.takes, self.takes // 2, self.seed)
 
 
 def _code(rival: Rival) -> str:

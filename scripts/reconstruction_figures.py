@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -117,7 +118,11 @@ def _look(name):
 
 
 def _plot(path, draw: Callable) -> None:
-    import matplotlib
+    try:
+        import matplotlib
+    except ImportError:
+        print(f"{path.name} is not drawn: matplotlib is missing, which the extra `report` brings", file=sys.stderr)
+        return
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 

@@ -243,3 +243,102 @@ def test_the_truth_has_no_error(database):
     on = _trial(database)
     truth = trials.Outcome(on, on.positions[SPAN:], on.rotations[SPAN:])
     np.testing.assert_array_equal(truth.errors, 0.0)
+
+
+# ---- the script, from end to end
+
+@pytest.fixture(scope="module")
+def five(tmp_path_factory) -> Database:
+    """A database of the paper's five actions, by three subjects."""
+    path, rng = tmp_path_factory.mktemp("five") / "five.gambolmotion", np.random.default_rng(0)
+    with Writer(path) as writer:
+        for number in range(20):
+            action, count = ("walk", "run", "jump", "punch", "swing")[number % 5], 64 + 36 * (number % 5 == 0)
+            writer.add(f"take{number:02}", f"subject{number % 2}", action, made_up(rng, count, number % 4), np.ones(count, bool),
+                       interpolated=number % 5 > 2)
+    return Database.open(path)
+
+
+@pytest.fixture
+def script(monkeypatch, tmp_path):
+    """The script with three quick rows and few tries; what it learns is kept apart."""
+    import measure_reconstruction as script
+    import reconstruction_rivals as rivals
+    from controllers.reconstruction import store
+
+    monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "kernels")
+    monkeypatch.setattr(rivals, "TRIES", 2)
+    for name in set(rivals.RIVALS) - {"LPCR", "nearest + IK"}:
+        monkeypatch.delitem(rivals.RIVALS, name)
+    mended = rivals.Rival(rivals._mended, settings={"ridge": 0.1, "loosening": 100.0})
+    monkeypatch.setitem(rivals.RIVALS, "ours", mended)
+    return script
+
+
+def _run(script, monkeypatch, database, tmp_path, *more):
+    arguments = [database.path, "--takes", "3", "--cache", tmp_path / "cache", "--out", tmp_path / "out", *more]
+    monkeypatch.setattr(sys, "argv", ["measure_reconstruction.py", *map(str, arguments)])
+    script.main()
+
+
+def _rows(text):
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
+    return {row[0]: row[1:] for row in cells}
+
+
+def test_the_script_measures_every_section_once(script, five, monkeypatch, tmp_path, capsys):
+    """What it prints is what the methods did; started again it learns nothing; a changed setting costs its own row alone."""
+    from reconstruction_bench import Bench, Courses
+    from reconstruction_rivals import RIVALS
+
+    pytest.importorskip("matplotlib")
+    sections = [name for name in script.SECTIONS if name != "time"]
+    chosen = ("--only", ",".join(sections), "--points", "4")
+    _run(script, monkeypatch, five, tmp_path, *chosen)
+    printed = capsys.readouterr().out
+    assert all(f"## {script.SECTIONS[name]}" in printed for name in sections) and "nan" not in printed
+    assert "No take is that long" in printed
+    for name in (*(f"{name}.md" for name in sections), "table1.png", "figure3_4.png", "figure3_6.png"):
+        assert (tmp_path / "out" / name).stat().st_size > 20
+
+    bench, on = Bench(tmp_path / "other"), Courses(five, five, 3, 0)
+    method = bench.learn("LPCR", on.seen, "4")
+    error = np.mean([trials.run(method, trial).errors.mean() for trial in bench.trials(on.seen, "4")])
+    row = _rows((tmp_path / "out" / "table1.md").read_text().split("### 4 points")[1].split("###")[0])["LPCR"]
+    assert float(row[0]) == pytest.approx(100 * error, abs=0.006)
+
+    learnt = []
+    learn = Bench.learn
+    monkeypatch.setattr(Bench, "learn", lambda self, name, *rest: learnt.append(name) or learn(self, name, *rest))
+    _run(script, monkeypatch, five, tmp_path, *chosen)
+    assert capsys.readouterr().out == printed and not learnt
+    monkeypatch.setitem(RIVALS, "LPCR", replace(RIVALS["LPCR"], settings={**RIVALS["LPCR"].settings, "share": 0.9}))
+    _run(script, monkeypatch, five, tmp_path, "--only", "table1", "--points", "4")
+    assert learnt == ["LPCR"]
+    _run(script, monkeypatch, five, tmp_path, "--only", "time")
+    assert "Milliseconds" in capsys.readouterr().out
+
+
+def test_spoilt_points_are_spoilt_as_told():
+    from reconstruction_bench import lost_from, spoilt
+
+    points = np.random.default_rng(0).normal(size=(200, 4, 3))
+    np.testing.assert_array_equal(spoilt(points, 0, 0.0, 0.0, 1 / 60), points)
+    noisy = spoilt(points, 0, 0.01, 0.0, 1 / 60)
+    np.testing.assert_array_equal(noisy[:SPAN], points[:SPAN])
+    assert np.std(noisy[SPAN:] - points[SPAN:]) == pytest.approx(0.01, rel=0.05)
+    np.testing.assert_array_equal(spoilt(points, 0, 0.01, 0.0, 1 / 60), noisy)
+    assert not np.array_equal(spoilt(points, 1, 0.01, 0.0, 1 / 60), noisy)
+    torn = np.isnan(spoilt(points, 0, 0.0, 0.5, 1 / 60)).all(-1)
+    assert np.all(torn.sum(0) == 30) and not torn[:SPAN].any()
+    assert np.array_equal(np.argmax(torn, 0), lost_from(200, 4, 0, 0.5, 1 / 60))
+
+
+def test_the_script_names_what_is_wrong(script, five, database, monkeypatch, tmp_path):
+    for wrong, told in ((("--only", "table9"), "no section 'table9'"), (("--points", "7"), "no set of points '7'"),
+                        (("--methods", "magic"), "no method 'magic'"), (("--large", database.path), "lacks takes")):
+        with pytest.raises(SystemExit, match=told):
+            _run(script, monkeypatch, five, tmp_path, *wrong)
+    monkeypatch.setattr(sys, "argv", ["measure_reconstruction.py", str(tmp_path / "nothing"), "--cache", str(tmp_path / "cache")])
+    with pytest.raises(SystemExit, match="can't be read"):
+        script.main()
