@@ -23,7 +23,7 @@ from .follow import beginning, follower_of
 from .input import Wish
 from .input.script import Script
 from .jumping import broken, explained
-from .methods import Progress, methods
+from .methods import methods
 from .pointing import pointed, rows
 from .rail import dolly, fixed
 from .recorded import Recorded
@@ -66,7 +66,7 @@ class Frame:
 def opening(scenario: Scenario, controller: Any) -> World:
     """The world before the first step, every actor under the same controller, each in its own body.
 
-    Who plays a clip stands behind the actors. Followers' methods are learnt if they were not yet (`learn`).
+    Who plays a clip stands behind the actors. Followers' methods are learnt if they were not yet.
     """
     props, cast = scenario.stage(), {}
     for actor in scenario.actors:
@@ -92,12 +92,6 @@ def opening(scenario: Scenario, controller: Any) -> World:
 
 def _opacity(actor: ActorTable) -> float:
     return GHOST if actor.ghost else 1.0
-
-
-def learn(scenario: Scenario, progress: Progress | None = None) -> None:
-    """Have all methods of a scenario ready before it begins."""
-    for name, points in dict.fromkeys((table.method, table.points) for _, table in scenario.followers):
-        methods(scenario.database)(name, points, progress)
 
 
 @dataclass(frozen=True, eq=False)

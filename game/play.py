@@ -127,6 +127,11 @@ class Play:
                 for action in pad_pressed(before, pad, self.bindings, mode):
                     self.do(action, player_of(slot, self.pads, self.players))
 
+    def open(self, wanted: study.Study) -> None:
+        """Open a study; what it needs is learnt first, if it was not yet."""
+        asked, said = self.reach.open(wanted)
+        self._ask(asked, 0) if asked else self.kept.say(said)
+
     def _reached(self, event: Event) -> bool:
         """Take an event that is about a point under the pointer; whether it was."""
         match event:
@@ -222,7 +227,7 @@ class Play:
         asked = any(wish.pressed for wish in self.pending.values())
         if self.look is None and not asked and self.timeline.past and self._holds("rewind"):
             self.look = Look()
-        if self.look is None and self.tape is None:
+        if not (asked or self.look or self.tape):  # what is pressed may change whose the points are
             for action in self.reach.actions(self.now, self.now.number * DT):
                 self._wish(Wish(pressed=(action,)))
         asked_for = self._wishes()

@@ -51,6 +51,8 @@ class Reach:
             return self.open(Study()) if open_ is None else ("study=", "")
         if open_ is None:
             return "", "nothing is reconstructed yet"
+        if self.stream is not None and action != "study_ghosts":
+            return "", "the points are the stream's"
         if action == "study_points":
             return self.open(open_.more_points())
         if action == "study_ghosts":

@@ -78,6 +78,11 @@ class Scenario(Table):
         return tuple((actor, actor.follows) for actor in self.actors if actor.follows is not None)
 
     @property
+    def wanted(self) -> tuple[tuple[str, str], ...]:
+        """The methods, name and points, that its followers need, so that they can be learnt before."""
+        return tuple(dict.fromkeys((table.method, table.points) for _, table in self.followers))
+
+    @property
     def frames(self) -> int:
         """How many frames the film has."""
         return max(round(self.duration * self.fps), 1)

@@ -8,12 +8,14 @@ wish, so that a log has all of it: "study=ours lpcr@4" opens, "study=" closes; "
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .follow import Follows, beginning, follower_of
+from .input.wish import Wish
 from .methods import METHODS, NAMES, TINTS, Methods
 from .settings import SettingError
 from .world import Character, World
@@ -77,6 +79,16 @@ def opened(action: str) -> Study | None:
     if not at or not methods or len(set(methods)) < len(methods) or not set(methods) <= set(METHODS):
         raise SettingError(f"{action}: needs methods of {', '.join(METHODS)}, then @ and points")
     return Study(methods, points)
+
+
+def wanted(ticks: Iterable[Iterable[Wish]]) -> tuple[tuple[str, str], ...]:
+    """The methods, name and points, that wishes open studies with, so that they can be learnt before."""
+    found = {}
+    for action in (action for wishes in ticks for wish in wishes for action in wish.pressed if action.startswith("study=")):
+        with suppress(SettingError):  # told of where it is played
+            open_ = opened(action)
+            found |= {(name, open_.points): None for name in (open_.methods if open_ is not None else ())}
+    return tuple(found)
 
 
 def joined(study: Study, performer: Character, methods: Methods, before: Mapping[str, Character]

@@ -6,6 +6,7 @@ import functools
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
@@ -86,6 +87,31 @@ def person_of(library: Path | None, character: Path | None = None) -> Any:
     from ..embodied import Embodied
 
     return Embodied.of(somebody, load(character))
+
+
+def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None) -> None:
+    """Have methods, (name, points) each, learnt by another program where they were not yet, told of as it goes; and read them."""
+    if not wanted:
+        return
+    from ..methods import Learning, methods
+
+    with progress_bar() as bar:
+        tasks: dict[str, Any] = {}
+
+        def progress(what: str, done: int, total: int) -> None:
+            if what not in tasks:
+                tasks[what] = bar.add_task(what)
+            bar.update(tasks[what], completed=done, total=total)
+        learning = Learning(wanted, None if database is None else Path(database), progress)
+        try:
+            learning.wait()
+        except BaseException:
+            learning.stop()
+            raise
+    if learning.fault:
+        raise Mistake(learning.fault)
+    for name, points in wanted:
+        methods(database)(name, points)
 
 
 def pixels_of(text: str) -> tuple[int, int]:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .base import (Library, Mistake, Preset, Quality, Wearing, app, overlays_of, person_of, pixels_of, plainly,
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, learn, overlays_of, person_of, pixels_of, plainly,
                    progress_bar, say)
 from .motion import write_motion
 
@@ -23,7 +23,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
            size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
-           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path, jump, balance, forces.")] = None,
+           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path, jump, balance, forces, points, errors.")] = None,
            library: Library = None, character: Wearing = None,
            background: Annotated[bool, typer.Option("--background", hidden=True, help="Yield to other programs; print progress as lines.")] = False) -> None:
     """Film a scenario or an input log without a display, or write a scenario's motion as BVH."""
@@ -57,6 +57,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     film = film if size is None else film.at_size(pixels_of(size))
     shown = None if overlay is None else overlays(overlays_of(overlay))
     controller = person_of(library, character)
+    learn(film.wanted, film.database)
     refused: dict[str, None] = {}
 
     def drawn():
@@ -72,6 +73,7 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
               preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
     from ..log import of_library, read
     from ..shots import overlays
+    from ..study import wanted
     from ..views import filmed, frames
 
     log = read(file)
@@ -80,6 +82,7 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
         raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
     shown = overlays(overlays_of(overlay or "mesh"))
     of_library(log, controller)
+    learn(wanted(log.ticks))
 
     def stray() -> None:
         say(f"gambol: {file} was played with another version of Gambol, which walks another way: "
@@ -132,7 +135,9 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
 
     output_file(out, ".png")
     pixels = pixels_of(size)
-    made = poses(scenarios.load(scenario), person_of(library, character), count, overlays(overlays_of(overlay)), pixels,
+    film, controller = scenarios.load(scenario), person_of(library, character)
+    learn(film.wanted, film.database)
+    made = poses(film, controller, count, overlays(overlays_of(overlay)), pixels,
                  start, end, actor)
     try:
         with Offscreen(pixels, Preset.full.value) as stage, named(out):
@@ -176,6 +181,8 @@ def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scen
     controller = person_of(library)
     plans = plan(names or shipped(), out, controller, preset.value, None if size is None else pixels_of(size), force)
     todo = [one for one in plans if not one.fresh]
+    for one in todo:
+        learn(one.film.wanted, one.film.database)
     write_page(out)
 
     from ..hosts import GraphicsError, Offscreen

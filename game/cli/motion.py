@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Wearing, app, person_of, plainly, progress_bar, say
+from .base import Library, Wearing, app, learn, person_of, plainly, progress_bar, say
 
 
 @app.command()
@@ -19,6 +19,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
     """Write the motion of a scenario or an input log for other programs."""
     from ..export import checked, sampled, takes, write
     from ..log import SUFFIX, of_library, read, replay
+    from ..study import wanted
 
     checked(out)
     if not what.lower().endswith(SUFFIX):
@@ -29,6 +30,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
         return
     log, controller = read(what), person_of(library, character)
     of_library(log, controller)
+    learn(wanted(log.ticks))
     with progress_bar() as bar:
         moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)
         done = takes(sampled(moments, fps or 60))
@@ -42,6 +44,7 @@ def write_motion(film: Any, out: str | Path, controller: Any) -> None:
     from ..film import run
 
     checked(out, [actor.name for actor in film.actors])
+    learn(film.wanted, film.database)
     with progress_bar() as bar:
         done = takes((frame.before, frame.after, frame.alpha)
                      for frame in bar.track(run(film, controller), film.frames, description=film.title))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, Wearing, app, person_of, pixels_of, plainly, say
+from .base import Library, Mistake, Preset, Quality, Wearing, app, learn, person_of, pixels_of, plainly, say
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -28,17 +28,26 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     pixels, hands = pixels_of(size), load_bindings(bindings)
     controller = person_of(library, character)
 
-    from ..hosts import DisplayError, run_window
     from ..log import LogWriter, of_library, read
     from ..play import Play
     from ..studio import OUT, Studio, log_file
+    from ..study import wanted
 
     tape = None if replay is None else of_library(read(replay), controller)
+    if tape is not None:
+        learn(wanted(tape.ticks))
     players = players if tape is None else tape.players
     log = LogWriter(log_file(record), controller, players)
     studio = Studio(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
     game = Play(controller, players, bindings=hands, log=log, studio=studio, tape=tape)
+    show(game, pixels, preset, log, studio)
+
+
+def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, studio: Any = None) -> None:
+    """Run a game in a window until it is over; exit code NO_DISPLAY where none can be opened."""
+    from ..hosts import DisplayError, run_window
+
     try:
         run_window(game, pixels, preset.value)
     except DisplayError as error:
@@ -46,9 +55,38 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         raise typer.Exit(NO_DISPLAY) from None
     finally:
         game.close()
-        if log.begun:
+        if log is not None and log.begun:
             say(f"{log.path}: {game.now.number / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
-        studio.finish(say)
+        if studio is not None:
+            studio.finish(say)
+
+
+def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
+          size: str = "1280x720", preset: Preset = Preset.full) -> None:
+    """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
+
+    stream: a `controllers.reconstruction.sources.Source` of these points, placed where the first player's would be.
+    A log is kept of all but clips.
+    """
+    pixels = pixels_of(size)
+    wanted = tuple(dict.fromkeys([method, *(() if stream is not None else ("lpcr", "lpca"))]))
+    controller = person_of(None)
+    learn([(name, points) for name in wanted], database)
+
+    from ..input.remap import load as load_bindings
+    from ..log import LogWriter
+    from ..methods import methods
+    from ..play import Play
+    from ..recorded import Recorded
+    from ..studio import OUT, Studio, log_file
+    from ..study import Study
+
+    performer = controller if clip is None else Recorded.load(clip, controller)
+    log = LogWriter(log_file(None), performer, 1) if clip is None else None
+    studio = Studio(OUT)
+    game = Play(performer, bindings=load_bindings(), log=log, studio=studio, learnt=methods(database), stream=stream)
+    game.open(Study(wanted, points))
+    show(game, pixels, preset, log, studio)
 
 
 @app.command()
