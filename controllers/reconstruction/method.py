@@ -66,6 +66,11 @@ class Method:
 
     def step(self, memory: Memory, points: np.ndarray) -> tuple[Memory, Pose]:
         """The pose a frame later, for control points (n, 3) [m] in the world, NaN where one is not seen."""
+        memory = self.follow(memory, points)
+        return memory, Pose(*decode(memory.frames[0], memory.track))
+
+    def follow(self, memory: Memory, points: np.ndarray) -> Memory:
+        """As `step`, for those who want no pose: it is the memory's newest frame."""
         goals = on_ground(np.asarray(points, float), memory.track)
         lost = ~np.isfinite(goals).all(-1)
         seen = np.array(points, float)
@@ -78,7 +83,7 @@ class Method:
         if lost.any():
             seen[lost] = self._places(frame, track)[lost]
         return Memory(np.concatenate([frame[None], memory.frames[:-1]]), track,
-                      np.concatenate([seen[None], memory.points[:-1]]), hint), Pose(*decode(frame, track))
+                      np.concatenate([seen[None], memory.points[:-1]]), hint)
 
     def _places(self, frame, track):
         """World places (n, 3) of the points of a frame at its track."""

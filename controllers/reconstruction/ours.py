@@ -140,7 +140,7 @@ class Ours:
         recent = np.concatenate([memory.recent[1:], points[None]])
         level, reach = noise(recent), ACCELERATION * self.method.solver.dt ** 2
         filtered = memory.points.towards(points, reach / level if level > 0.0 else np.inf)
-        after, _ = self.method.step(memory.method, np.where(np.isfinite(points), filtered.place, np.nan))
+        after = self.method.follow(memory.method, np.where(np.isfinite(points), filtered.place, np.nan))
         found = placed(after.frames[0], after.track)
         if np.abs(found - memory.pose.place).max() > _JUMP:
             pose = Motion(found, np.zeros(WIDTH))

@@ -12,6 +12,7 @@ from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -38,8 +39,7 @@ def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], sa
          load: Callable[[Path], T], sources: tuple[str, ...] = ()) -> T:
     """What `make` makes of a database, made only if it does not lie on disk already.
 
-    settings: all else that it depends on, of a telling repr. save, load: write it to a file and read it, OSError or
-    ValueError for a damaged one. sources: modules of this folder whose change makes it stale. It lies beside the
+    settings: all else that it depends on, of a telling repr. save, load: write it to a path and read it. sources: modules of this folder whose change makes it stale. It lies beside the
     folders of compiled kernels; what nobody wanted for two months is removed.
     """
     name = hashlib.sha1(f"{identity(database)} {settings!r} {_stamp(sources)}".encode()).hexdigest()[:16]
@@ -49,7 +49,7 @@ def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], sa
         found = load(path)
         os.utime(path)
         return found
-    except (OSError, ValueError, EOFError):
+    except (OSError, ValueError, EOFError, KeyError, BadZipFile):  # the latter for a file cut short
         pass
     made = make()
     try:
@@ -59,6 +59,8 @@ def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], sa
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
         own = folder / f"{os.getpid()}-{path.name}"  # another process may be at it, too
         save(made, own)
+        if path.is_dir():  # a damaged one, which no file system replaces by itself
+            shutil.rmtree(path)
         own.replace(path)
     except OSError:  # a full or locked disk: learnt anew next time
         pass

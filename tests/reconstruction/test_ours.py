@@ -1,0 +1,255 @@
+"""Our method: what it learns, what it remembers of its errors, that it keeps on disk what it should, and harms nobody."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from trajectories import KINDS, frames as made_up
+
+from controllers.body import forward_kinematics
+from controllers.reconstruction import learning, metrics, ours as module, store
+from controllers.reconstruction.baselines.windows import Samples
+from controllers.reconstruction.chart import FORWARD, HEIGHT, JOINTS, LEFTWARD, WIDTH, YAW_RATE, SKELETON, advance, decode
+from controllers.reconstruction.controls import parse
+from controllers.reconstruction.database import Database, DatabaseError, Writer
+from controllers.reconstruction.learning import LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view
+from controllers.reconstruction.method import SPAN, Method
+from controllers.reconstruction.ours import KEPT, LASTING, FADING, Expectation, Ours, cells, ours
+from controllers.reconstruction.solver import Solver
+
+DT = 1 / 60
+GROUNDS = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3)).map(np.array)
+
+
+@pytest.fixture(scope="module")
+def world(tmp_path_factory):
+    """A database of made-up motion at a third of its pace, so that it accelerates like a body; a solver for four points; samples."""
+    path, rng = tmp_path_factory.mktemp("motion") / "made.gambolmotion", np.random.default_rng(0)
+    with Writer(path, mirrors=False) as writer:
+        for number in range(6):
+            quick = made_up(rng, 90, number % KINDS)
+            frames = np.stack([np.interp(np.arange(0, 89, 1 / 3), np.arange(90), column) for column in quick.T], -1)
+            frames[:, YAW_RATE:] /= 3.0
+            writer.add(f"clip{number}", "nobody", "walk", frames, np.ones(len(frames), bool))
+    database = Database.open(path)
+    solver = Solver(parse("4", SKELETON), DT)
+    return database, solver, Samples.of(database, solver)
+
+
+@pytest.fixture(scope="module")
+def method(world):
+    """Ours with a small network that has learnt that motion."""
+    networks = learn(world[2], seeds=1, batches=2500, hidden=(128, 128))
+    return Ours(Method(Expectation(networks, DT), world[1]))
+
+
+@pytest.fixture(scope="module")
+def performance(world):
+    """A take of the database somewhere in the world: frames, tracks, joints and points."""
+    database, solver, _ = world
+    take = database.takes[2]
+    frames, tracks = database.frames[take.start:take.start + 150].astype(float), [np.array([5.0, -3.0, 2.0])]
+    for frame in frames[1:]:
+        tracks.append(advance(tracks[-1], frame, DT))
+    positions, orientations = forward_kinematics(SKELETON, *decode(frames, np.stack(tracks)))
+    return frames, np.stack(tracks), positions, solver.controls.on(positions, orientations)
+
+
+def run(method, performance, points, start=SPAN):
+    """Joint positions (T, J, 3) that a method makes of points (T, n, 3) from frame `start` on."""
+    memory, found = method.begin(performance[0][:start], performance[1][:start]), []
+    for seen in points[start:]:
+        memory, pose = method.step(memory, seen)
+        found.append(forward_kinematics(SKELETON, pose.root, pose.rotations)[0])
+    assert np.isfinite(found).all()
+    return np.stack(found)
+
+
+@given(GROUNDS, GROUNDS, st.integers(0, 99))
+def test_grounds_are_left_and_reached_again(one, other, seed):
+    """There and back is nothing, and the body stays where it is in the world."""
+    pose = np.random.default_rng(seed).normal(0, 0.5, WIDTH)
+    there = seen_from(other, pose, one)
+    assert np.allclose(seen_from(one, there, other), pose)
+    roots = [decode(seen_from(WORLD, p, g), seen_from(WORLD, p, g)[[LEFTWARD, FORWARD, YAW_RATE]]) for p, g in ((pose, one), (there, other))]
+    assert np.allclose(roots[0][0], roots[1][0]) and np.allclose(roots[0][1], roots[1][1])
+
+
+@given(GROUNDS, st.integers(0, 99))
+def test_what_is_seen_depends_neither_on_place_nor_heading(ground, seed):
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(len(LAGS), 4, 3))
+    moved = learning.in_world(points, np.broadcast_to(ground, (len(LAGS), 3)))
+    assert np.allclose(view(points, np.float64(0.3))[0], view(moved, 0.3 + ground[2])[0])
+
+
+@pytest.mark.parametrize("rng", [None, np.random.default_rng(3)])
+def test_samples_show_the_points_of_the_pose_to_be_learnt(world, rng):
+    _, solver, samples = world
+    inputs, poses = draw(samples, np.arange(0, len(samples), 11), rng)
+    newest, plain = inputs.reshape(len(poses), len(LAGS), 4, 3)[:, 0], Solver(solver.controls, 1.0)
+    assert np.allclose([plain.points(pose)[0] for pose in poses], newest, atol=1e-5)
+
+
+def test_the_misfit_is_derived_rightly(world):
+    """Against differences; nothing where there is no error; and it is the distances and angles that it says."""
+    rng = np.random.default_rng(0)
+    truth = draw(world[2], np.array([40, 500, 900]))[1]
+    found = truth + rng.normal(0, 0.1, truth.shape)
+    loss, slopes = misfit(found, truth)
+    steps = 1e-6 * np.eye(found.size).reshape(-1, *found.shape)
+    told = np.array([(misfit(found + s, truth)[0] - misfit(found - s, truth)[0]) / 2e-6 for s in steps])
+    assert np.allclose(told, slopes.ravel(), atol=1e-5)
+    assert misfit(truth, truth)[0] == 0.0 and not misfit(truth, truth)[1].any()
+    places = [forward_kinematics(SKELETON, *decode(p, p[:, [LEFTWARD, FORWARD, YAW_RATE]]))[0][:, JOINTS] for p in (found, truth)]
+    apart = np.sum((places[0] - places[1]) ** 2) / learning.DISTANCE ** 2
+    turned = np.sum((np.delete(found - truth, [HEIGHT, YAW_RATE, FORWARD, LEFTWARD], 1) / learning.ANGLE) ** 2)
+    assert np.isclose(loss, 0.5 * (apart + turned) / (3 * len(JOINTS)))
+
+
+def test_the_same_seed_learns_the_same(world, tmp_path):
+    samples = world[2]
+    one, two = (learn(samples, seeds=2, batches=5, hidden=(16,)) for _ in range(2))
+    inputs = draw(samples, np.arange(7))[0]
+    assert np.array_equal(one.predict(inputs), two.predict(inputs)) and np.array_equal(one.errors, two.errors)
+    assert not np.array_equal(one.members[0].predict(inputs), one.members[1].predict(inputs))
+    one.save(tmp_path / "networks")
+    again = Networks.load(tmp_path / "networks")
+    assert np.array_equal(again.predict(inputs), one.predict(inputs)) and np.array_equal(again.errors, one.errors)
+
+
+def test_progress_is_told_to_the_end(world):
+    told = []
+    learn(world[2], seeds=2, batches=3, hidden=(8,), progress=lambda *about: told.append(about))
+    assert told == [(k, 6) for k in range(1, 7)]
+
+
+class Biased:
+    """Networks that know the truth, pose by pose in the order of `known` and `believe`, but for a constant."""
+
+    errors = np.eye(WIDTH)
+
+    def __init__(self, poses, bias):
+        self.poses, self.bias = list(poses), bias
+
+    def predict(self, inputs):
+        asked = [self.poses.pop(0) for _ in range(len(inputs) if inputs.ndim > 1 else 1)]
+        return np.array(asked if inputs.ndim > 1 else asked[0]) + self.bias
+
+
+def test_what_was_off_is_expected_to_be_off_again(world, performance):
+    """The lasting part is told from the known frames; the newest error fades towards it."""
+    frames, tracks, _, points = performance
+    solver = world[1]
+    memory = Method(None, solver).begin(frames[:SPAN], tracks[:SPAN])
+    newest = np.arange(SPAN - 1, -1, -1)
+    bias = np.random.default_rng(5).normal(0, 0.05, WIDTH)
+    grounds = [view(points[np.maximum(t - LAGS, 0)], tracks[t - 1, 2])[1] for t in range(1, SPAN + 1)]
+    truth = [seen_from(ground, placed(frames[t], tracks[t]), WORLD) for t, ground in enumerate(grounds, 1)]
+    prior = Expectation(Biased([*truth[SPAN - 2::-1], truth[SPAN - 1]], bias), DT)
+    known = prior.known(memory.frames, tracks[newest], memory.points)
+    expected = -LASTING * bias
+    expected[YAW_RATE] = 0.0
+    assert np.allclose(known.lasting, expected)
+    belief, hint = prior.believe(replace(memory, hint=known), points[SPAN], points[SPAN])
+    assert np.allclose(hint.lasting, KEPT * expected)
+    off = bias + KEPT * expected + FADING * (-bias - KEPT * expected)
+    there = seen_from(tracks[SPAN - 1], truth[SPAN - 1] + off, grounds[SPAN - 1])
+    assert np.allclose(belief.mean[:YAW_RATE], there[:YAW_RATE]) and np.allclose(belief.mean[YAW_RATE:] * DT, there[YAW_RATE:])
+
+
+def test_a_clip_of_the_database_is_followed_closely(method, performance):
+    """Within 3 cm all along on its own output; standing still is farther off at once."""
+    found = run(method, performance, performance[3])
+    off = metrics.position_error(found, performance[2][SPAN:])
+    assert off.mean() < 0.02 and off.max() < 0.05, off
+
+
+def test_filters_leave_what_is_clean_and_calm_what_is_not(method, performance):
+    """Clean: within 3 mm of the unfiltered. 1 cm of noise: an eighth of its jitter, at a little error."""
+    rough, truth = replace(method, steady=False), performance[2][SPAN:]
+    assert np.abs(run(method, performance, performance[3]) - run(rough, performance, performance[3])).mean() < 0.003
+    points = performance[3] + np.random.default_rng(2).normal(0, 0.01, performance[3].shape)
+    calm, wild = run(method, performance, points), run(rough, performance, points)
+    assert metrics.jitter(calm[15:], DT) < metrics.jitter(wild[15:], DT) / 8
+    assert metrics.position_error(calm, truth).mean() < metrics.position_error(wild, truth).mean() + 0.01
+    assert abs(metrics.lag(run(method, performance, performance[3]), truth)) < 1.0
+
+
+def test_lost_points_do_no_harm(method, performance):
+    """Single ones, then all, then wild ones; half a second after they are back so is the body."""
+    points = performance[3].copy()
+    points[40:60, 1] = np.nan
+    points[70:80] = np.nan
+    points[85, 2] = [np.inf, 1e30, np.nan]
+    points[90, 0] = 1e30
+    found = run(method, performance, points)
+    off = metrics.position_error(found, performance[2][SPAN:])
+    assert off[120 - SPAN:].max() < 0.06, off
+    assert np.linalg.norm(np.diff(found, axis=0), axis=-1).max() < 0.6
+
+
+@settings(max_examples=5)
+@given(st.integers(0, 1000))
+def test_points_that_no_body_can_have_give_a_body_still(method, performance, seed):
+    rng = np.random.default_rng(seed)
+    points = performance[3] + rng.normal(0, 3.0, performance[3].shape)
+    run(method, performance, np.where(rng.random(points.shape) < 0.2, np.nan, points))
+
+
+def test_few_known_frames_are_enough(method, performance):
+    assert metrics.position_error(run(method, performance, performance[3], 1)[:20], performance[2][1:21]).max() < 0.3
+
+
+@pytest.fixture
+def disk(tmp_path, monkeypatch):
+    """Networks are learnt in three batches and kept in a folder of the test's own; the list of what was learnt."""
+    learnt, learn_ = [], module.learn
+    monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "kernels")
+    monkeypatch.setattr(module, "learn", lambda samples, progress: learnt.append(1) or learn_(samples, 1, 3, (8,), progress))
+    return learnt
+
+
+def test_what_was_learnt_is_kept_for_the_same_takes_and_points_alone(world, disk):
+    database, _, samples = world
+    four, inputs = parse("4", SKELETON), draw(samples, np.arange(5))[0]
+    one, two = (ours(database, four).method.prior.networks.predict(inputs) for _ in range(2))
+    assert len(disk) == 1 and np.array_equal(one, two)
+    ours(database.hold_out([database.takes[0].clip])[0], four)
+    assert len(disk) == 2
+    ours(database, parse("lwrist,rwrist,lankle,rankle+0/0/0.1", SKELETON))
+    assert len(disk) == 3
+    other = replace(database, frames=database.frames + np.float32(0.01))
+    ours(other, four)
+    assert len(disk) == 4
+    ours(database, parse("4", SKELETON), steady=False)
+    assert len(disk) == 4
+
+
+def test_what_is_damaged_on_disk_is_learnt_anew(world, disk, tmp_path):
+    database, four = world[0], parse("4", SKELETON)
+    ours(database, four)
+    for kept in (tmp_path / "learnt").rglob("*.npz"):
+        kept.write_bytes(kept.read_bytes()[:100])
+    ours(database, four)
+    ours(database, four)
+    assert len(disk) == 2
+
+
+def test_a_full_disk_is_no_harm(world, disk, monkeypatch):
+    monkeypatch.setattr(Networks, "save", lambda *_: (_ for _ in ()).throw(OSError("no space left")))
+    assert np.isfinite(ours(world[0], parse("4", SKELETON)).method.prior.networks.errors).all()
+
+
+def test_cells_from_disk_find_the_same(world, disk, monkeypatch):
+    database, solver, _ = world
+    made = cells(database, solver.controls)
+    monkeypatch.setattr(module, "Cells", type("Never", (), {"save": None, "load": module.Cells.load}))
+    again = cells(database, solver.controls)
+    for feature in made.segments.features(np.array([3, 400, 900])):
+        for one, two in zip(made.query(feature, 20), again.query(feature, 20), strict=True):
+            assert np.array_equal(one, two)
+    with pytest.raises(DatabaseError):
+        cells(database.only([]), solver.controls)
