@@ -37,8 +37,10 @@ CLOSE = 0.3
 """Nobody walks to points that are so close [m]."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
+LEAP = 0.15
+"""A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind."""
 FADE = 0.15
-"""Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
+"""Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
 _FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
 _SMOOTH = 0.1  # s, half-life of the ground frame's heading and of its velocity
 
@@ -183,7 +185,13 @@ class Reconstruction:
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
-        return replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
+        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
+        step = _difference(following.pose, following.before)
+        ahead = _moved(following.pose, step)
+        if np.linalg.norm(_joints(pose) - _joints(ahead), axis=-1).max() <= LEAP:
+            return after
+        # the body goes on as it did, and what it would have leapt fades
+        return replace(after, before=_moved(pose, -step), offset=_difference(_moved(ahead, following.offset), pose))
 
     def _after(self, state: CharacterState, pose: Pose, following: Following, dt: float) -> CharacterState:
         """The state with a new pose: its ground frame, velocity and contacts are told from the body."""
@@ -253,6 +261,11 @@ def towards(state: CharacterState, points: np.ndarray) -> np.ndarray:
         return np.zeros(3)
     bearing = float(wrap(np.arctan2(way[0], way[1]) - heading))
     return np.array([min(1.4, distance) * max(np.cos(bearing), 0.0), np.clip(2.0 * bearing, -2.0, 2.0), 0.0])
+
+
+def _joints(pose: Pose) -> np.ndarray:
+    """Where (J, 3) [m] a standard body has its joints."""
+    return forward_kinematics(SKELETON, pose.root, pose.rotations)[0]
 
 
 def _difference(to: Pose, start: Pose) -> np.ndarray:

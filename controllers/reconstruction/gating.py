@@ -24,6 +24,8 @@ REACH = 1.5
 """And beyond this [m] it is never believed."""
 EASE = 0.1
 """Half-life with which a point that is back comes to where it is seen [s]."""
+SLIP = 3.0
+"""It is taken to move at most so much faster or slower than it is seen to [m/s]: else it would swing past."""
 _RATE = 0.03  # s, half-life of the velocity that is told from places
 
 
@@ -71,10 +73,14 @@ class Gate:
         back = (believed & ~self.trusted)[:, None]
         offset, slip = settle(self.offset, self.slip, EASE, dt)
         offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
-        slip = np.where(believed[:, None], np.where(back, motion - smooth, slip), 0.0)
+        slip = np.where(believed[:, None], np.where(back, _at_most(motion - smooth, SLIP), slip), 0.0)
         after = replace(self, raw=seen, rate=rate, smooth=smooth, steady=steady, trusted=believed, offset=offset, slip=slip)
         return after, np.where(believed[:, None], seen + offset, np.nan)
 
 
 def _length(vectors):
     return np.linalg.norm(vectors, axis=-1)
+
+
+def _at_most(vectors, length):
+    return vectors * np.minimum(1.0, length / np.maximum(_length(vectors), 1e-9))[:, None]

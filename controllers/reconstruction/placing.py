@@ -78,12 +78,10 @@ def placed(seen: np.ndarray, controls: Controls, height: float | None = None) ->
     """
     found = [_align(seen, stance, None if height is None else STATURE / height) for stance in stances(controls)]
     away, placement = min(found, key=lambda one: one[0])
-    size = 1.0 / placement.scale
-    if not SIZES[0] <= size <= SIZES[1]:
-        raise ValueError(f"these points are of a body {size * STATURE:.2f} m tall; stand upright in T-pose, or say the height")
-    if away > LIKE:
-        raise ValueError(f"these points are {100 * away:.0f} cm from those of a body that stands in T-pose or with the arms "
-                         "down: are any two of them mistaken for each other?")
+    size = STATURE / placement.scale
+    if not SIZES[0] <= size / STATURE <= SIZES[1] or away > LIKE:
+        raise ValueError(f"these points are no standing body's: at best of one {size:.2f} m tall, {100 * away:.0f} cm away; "
+                         "stand upright, in T-pose or with the arms down; is each tracker on the point that it is said to be?")
     return placement
 
 
@@ -95,6 +93,6 @@ def _align(seen, target, scale):
     across = np.sum(b[:, 0] * a[:, 2] - b[:, 2] * a[:, 0])
     heading = float(np.arctan2(across, along))
     if scale is None:
-        scale = float((np.hypot(along, across) + np.sum(a[:, 1] * b[:, 1])) / max(np.sum(a * a), 1e-12))
+        scale = max(float((np.hypot(along, across) + np.sum(a[:, 1] * b[:, 1])) / max(np.sum(a * a), 1e-12)), 1e-3)
     placement = Placement(heading, scale, goal - scale * yaw(heading) @ middle)
     return float(np.linalg.norm(placement(seen) - target, axis=-1).mean()), placement

@@ -4,10 +4,10 @@ A user's mistake gets one clear line and exit code 2; a machine without a displa
 Everything heavy is imported where it is used, so that help comes at once.
 """
 
-from . import play, films, motion, library, database  # in the order of the help
+from . import play, films, motion, library, database, reconstruct  # in the order of the help
 from .base import app
 
-__all__ = ["app", "database", "films", "library", "main", "motion", "play"]
+__all__ = ["app", "database", "films", "library", "main", "motion", "play", "reconstruct"]
 
 
 def main() -> None:

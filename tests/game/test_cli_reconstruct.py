@@ -1,0 +1,143 @@
+"""`gambol reconstruct`: a body out of points, from a file or a stream, and one clear line for every mistake."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "reconstruction"))
+import walks  # noqa: E402
+
+from controllers.mocap import load, write_bvh  # noqa: E402
+from controllers.reconstruction.chart import SKELETON  # noqa: E402
+from controllers.reconstruction.controls import parse  # noqa: E402
+from controllers.reconstruction.placing import stances  # noqa: E402
+from game import cli  # noqa: E402
+
+
+def gambol(*arguments):
+    return CliRunner().invoke(cli.app, [str(a) for a in arguments])
+
+
+@pytest.fixture(scope="module")
+def motion(tmp_path_factory):
+    """A database of Gambol's own walk, and a clip of it as BVH."""
+    folder = tmp_path_factory.mktemp("motion")
+    known, clips = walks.database(folder / "walks.gambolmotion")
+    write_bvh(clips[1], folder / "clip.bvh")
+    return known.path, folder / "clip.bvh", clips[1]
+
+
+@pytest.mark.parametrize("suffix", [".bvh", ".glb"])
+def test_a_clip_from_its_points(motion, tmp_path, suffix):
+    database, file, clip = motion
+    out = tmp_path / f"out{suffix}"
+    done = gambol("reconstruct", file, "--points", "lwrist,rwrist,lankle,rankle", "--method", "nearest", "--database", database, "-o", out)
+    assert done.exit_code == 0, done.output
+    away = float(re.search(r"joints in the world\s+([\d.]+) cm", done.output)[1])
+    assert away < 3.0 and "joint angles" in done.output and "jitter" in done.output and re.search(r"a frame\s+[\d.]+ ms", done.output)
+    if suffix == ".bvh":
+        back = load(out)
+        assert len(back) == len(clip)
+        apart = np.linalg.norm(back.kinematics()[0] - clip.kinematics()[0], axis=-1).mean()
+        assert abs(100 * apart - away) < 1.5  # what is told is what is in the file
+
+
+def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
+    database, file, _ = motion
+    said = {}
+    for seed in (1, 1, 2):
+        done = gambol("reconstruct", file, "--noise", 2, "--seed", seed, "--method", "nearest", "--database", database, "-o", tmp_path / "o.bvh")
+        said.setdefault(seed, set()).add((tmp_path / "o.bvh").read_text())
+        assert done.exit_code == 0
+    assert len(said[1]) == 1 and said[1] != said[2]
+
+
+@pytest.mark.parametrize(("arguments", "why"), [
+    ([], "needs either a motion file or --stream"),
+    (["{clip}", "--stream", "osc", "-o", "o.bvh"], "needs either"),
+    (["--stream", "midi", "-o", "o.bvh"], "only osc"),
+    (["{clip}", "--points", "elbw", "-o", "o.bvh"], "no control point 'elbw'"),
+    (["{clip}", "--points", "", "-o", "o.bvh"], "no control points"),
+    (["{clip}", "--points", "lwrist,lwrist", "-o", "o.bvh"], "given twice"),
+    (["{clip}", "--method", "magic", "--database", "{database}", "-o", "o.bvh"], "no such method; choose from ours"),
+    (["{clip}", "-o", "o.fbx"], ".bvh or .glb"),
+    (["none.bvh", "-o", "o.bvh"], "none.bvh"),
+    (["{words}", "-o", "o.bvh"], "words.bvh"),
+    (["{clip}", "--database", "{clip}", "-o", "o.bvh"], "is no motion database"),
+    (["{clip}", "--database", "none.gambolmotion", "-o", "o.bvh"], "none.gambolmotion: can't be read"),
+    (["{clip}", "--port", "9000", "-o", "o.bvh"], "--port goes with --stream"),
+    (["--stream", "osc", "--noise", "1", "-o", "o.bvh"], "--noise goes with a motion file"),
+    (["--stream", "osc", "--map", "none.toml", "-o", "o.bvh"], "none.toml: can't be read"),
+    (["--stream", "osc", "--map", "m.toml", "--points", "4", "-o", "o.bvh"], "give one of them"),
+    (["--stream", "osc", "--points", "nose", "-o", "o.bvh"], "no control point 'nose'")])
+def test_mistakes_get_one_line(motion, tmp_path, monkeypatch, arguments, why):
+    monkeypatch.chdir(tmp_path)
+    words = tmp_path / "words.bvh"
+    words.write_text("HIERARCHY of words")
+    known = {"clip": motion[1], "database": motion[0], "words": words}
+    done = gambol("reconstruct", *(a.format(**known) for a in arguments))
+    assert done.exit_code == 2
+    assert why in done.output and len(done.output.strip().splitlines()) == 1
+
+
+def test_a_port_in_use_is_a_mistake(motion, tmp_path):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("0.0.0.0", 0))
+        done = gambol("reconstruct", "--stream", "osc", "--port", other.getsockname()[1], "--database", motion[0], "-o", tmp_path / "o.bvh")
+    assert done.exit_code == 2 and "can't be listened at" in done.output
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no signals of this kind there")
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, None])
+def test_a_stream_is_recorded_until_it_is_ended_and_never_lost(motion, tmp_path, end):
+    """A performer 1.4 m tall who stands in T-pose and then walks; the body is of standard size and follows."""
+    from test_stream import bundle, tracker
+
+    database, _, clip = motion
+    controls = parse("4", SKELETON)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    out, size, names = tmp_path / "live.bvh", 0.8, ("lwrist", "rwrist", "lankle", "rankle")
+    program = subprocess.Popen(
+        [sys.executable, "-m", "game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(names),
+         "--method", "nearest", "--database", str(database), "-o", str(out), *([] if end else ["--seconds", "2"])],
+        stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
+    for line in program.stderr:
+        if "stand upright" in line:
+            break
+    os.set_blocking(program.stderr.fileno(), False)
+    walk, told = controls.extract(clip), ""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        began = None
+        for _ in range(3000):
+            told += program.stderr.read() or ""
+            if "recording" in told and began is None:
+                began = time.monotonic()
+            since = 0.0 if began is None else time.monotonic() - began
+            if program.poll() is not None or (end and since > 2.0):
+                break
+            points = stances(controls)[1] if since < 0.3 else walk[min(int((since - 0.3) * 60), len(walk) - 1)]
+            there = size * points * [-1.0, 1.0, 1.0] + [0.3, 0.1, -0.2]
+            sender.sendto(bundle(*(tracker(name, place) for name, place in zip(names, there))), ("127.0.0.1", port))
+            sender.sendto(b"not OSC", ("127.0.0.1", port))
+            time.sleep(1 / 90)
+    if end:
+        program.send_signal(end)
+    os.set_blocking(program.stderr.fileno(), True)
+    told += program.stderr.read()
+    assert program.wait(60) == 0, told
+    assert "packets were broken" in told
+    made = load(out)
+    assert 60 <= len(made) <= 200
+    heights = made.kinematics()[0][..., 1]
+    assert 1.3 < heights.max(1).mean() < 1.8 and heights.min() > -0.1

@@ -1,0 +1,266 @@
+"""A body that follows points: taken over and handed back without a pop, whatever is lost, as a pure function."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import walks
+from controllers.body import Pose, forward_kinematics
+from controllers.body.human import STATURE
+from controllers.contract import Intent, Leap, Unable
+from controllers.jump import Jump, Physique
+from controllers.locomotion import Locomotion
+from controllers.reconstruction.chart import SKELETON
+from controllers.reconstruction.controller import LOST, Reconstruction, towards
+from controllers.reconstruction.controls import SETS, parse
+from controllers.reconstruction.metrics import position_error
+from controllers.reconstruction.starts import Starts
+from controllers.scaled import Scaled
+from controllers.supervisor import Supervisor
+
+DT = 1 / 60
+
+
+@pytest.fixture(scope="module")
+def known(tmp_path_factory):
+    return walks.database(tmp_path_factory.mktemp("walks") / "walks.gambolmotion")
+
+
+def build(known, points="4", height=STATURE):
+    controls = parse(points, SKELETON)
+    return Reconstruction(walks.method(known[0], controls), controls, height, starts=Starts.of(known[0], controls))
+
+
+@pytest.fixture(scope="module")
+def follower(known):
+    return build(known)
+
+
+@pytest.fixture(scope="module")
+def clip(known):
+    return known[1][0]
+
+
+@pytest.fixture(scope="module")
+def points(follower, clip):
+    return follower.controls.extract(clip)
+
+
+def played(controller, state, points, dt=DT, jump=None):
+    """States after each of some points; None for those that nobody wants."""
+    states = []
+    for now in points:
+        state, _ = controller.step(state, Intent(points=now), dt)
+        states.append(state)
+    return states
+
+
+def bodies(skeleton, states):
+    """Positions (T, J, 3) [m]."""
+    return forward_kinematics(skeleton, np.stack([np.asarray(s.pose.root, float) for s in states]),
+                              np.stack([np.asarray(s.pose.rotations, float) for s in states]))[0]
+
+
+def pulls(positions, dt=DT):
+    """The largest acceleration of any joint at each moment [m/s²]."""
+    return np.linalg.norm(np.diff(positions, 2, axis=0), axis=-1).max(-1) / dt**2
+
+
+@pytest.mark.parametrize("points", [*SETS, "lwrist,rwrist,Head+0/0.09/0.09"])
+def test_a_clip_that_is_in_the_database_is_followed(known, clip, points):
+    controller = build(known, points)
+    seen = controller.controls.extract(clip)
+    states = played(controller, controller.begin(seen[0], (seen[1] - seen[0]) / DT), seen[1:])
+    away = position_error(bodies(SKELETON, states), clip.kinematics()[0][1:])
+    assert away.mean() < (0.02 if len(controller.controls) > 2 else 0.06)
+    assert np.median([np.abs(controller._points(s.pose) - p).max() for s, p in zip(states, seen[1:])]) < 0.01
+
+
+def person(follower, height=STATURE):
+    walker = Locomotion.load()
+    walker = walker if height == STATURE else Scaled(walker, height / STATURE)
+    return Supervisor({"locomotion": walker, "jump": Jump(Physique(height=height)), "reconstruction": follower})
+
+
+def test_it_takes_over_from_a_walker_and_gives_back_without_a_pop(follower, clip, points):
+    someone = person(follower)
+    truth = pulls(clip.kinematics()[0]).max()
+    states = played(someone, someone.start(), [None] * 30 + list(points[40:]) + [None] * 90)
+    duty = [state.memory.active for state in states]
+    assert duty == ["locomotion"] * 30 + ["reconstruction"] * len(points[40:]) + ["locomotion"] * 90
+    felt = pulls(bodies(SKELETON, states))
+    assert felt.max() < 2.5 * truth
+    positions = bodies(SKELETON, states)
+    assert position_error(positions[90:-90], clip.kinematics()[0][100:]).mean() < 0.02
+    assert np.linalg.norm(positions[-1] - positions[-2], axis=-1).max() / DT < 0.05  # it stands
+
+
+def test_it_takes_hold_of_points_of_quite_another_pose(follower, clip, points):
+    """Half a metre beside the body and facing elsewhere: begun anew from the points, and the body gets there smoothly."""
+    someone = person(follower)
+    start = someone.start((0.5, -0.3, 1.2))
+    states = played(someone, start, points)
+    positions = bodies(SKELETON, [start, *states])
+    assert states[0].memory.active == "reconstruction"
+    assert pulls(positions).max() < 250
+    assert position_error(positions[61:], clip.kinematics()[0][60:]).mean() < 0.02
+
+
+def test_a_jump_in_the_air_is_not_interrupted(follower, points):
+    someone = person(follower)
+    state, duty = someone.start(), []
+    for _ in range(200):
+        wish = Leap(np.array([0.0, 0.0, 0.4])) if not duty else None
+        state, _ = someone.step(state, Intent(leap=wish, points=None if not duty else points[0]), DT)
+        duty.append(state.memory.active)
+    assert duty[0] == "jump" and duty[-1] == "reconstruction" and duty == sorted(duty)
+
+
+@pytest.mark.parametrize(("wrong", "why"), [
+    (lambda p: p[:3], "4 are followed, lwrist, rwrist, lankle, rankle"),
+    (lambda p: p + [4.0, 0.0, 0.0], "m away from the body"),
+    (lambda p: p + np.array([[-1.3], [1.3], [0], [0]]) * [1.0, 0.0, 0.0] * 1.3, "m apart"),
+    (lambda p: np.full_like(p, np.nan), "no point is seen")])
+def test_points_of_no_such_body_are_refused_with_a_reason(follower, points, wrong, why):
+    state = Locomotion.load().start()
+    here = wrong(points[0])
+    with pytest.raises(Unable, match=why):
+        follower.enter(state, Intent(points=here))
+    someone = person(follower)
+    after, pose = someone.step(someone.start(), Intent(points=here), DT)
+    assert after.memory.active == "locomotion" and np.isfinite(pose.rotations).all()
+
+
+@given(st.data())
+@settings(max_examples=12)
+def test_no_pattern_of_loss_breaks_the_body(follower, points, data):
+    """No NaN, no explosion, not far from where the points were, and back with them after they are back."""
+    seed, share = data.draw(st.integers(0, 10**6)), data.draw(st.floats(0.0, 1.0))
+    rng = np.random.default_rng(seed)
+    seen = points[:200].copy()
+    for n in range(4):  # 0.1 to 1 s each, so often that a share of the time is lost
+        at = 20
+        while at < 130:
+            length = int(rng.integers(6, 60))
+            if rng.random() < share:
+                seen[at:min(at + length, 130), n] = np.nan
+            at += length
+    someone = person(follower)
+    states = played(someone, someone.enter(follower.begin(seen[0]), Intent()), seen)
+    positions = bodies(SKELETON, states)
+    assert np.isfinite(positions).all()
+    assert pulls(positions).max() < 900
+    wandered = np.linalg.norm(positions[:, 0] - follower.controls.on(*_placed(states))[:, 2:].mean(1), axis=-1)
+    assert wandered.max() < 1.5
+
+
+def _placed(states):
+    return forward_kinematics(SKELETON, np.stack([np.asarray(s.pose.root, float) for s in states]),
+                              np.stack([np.asarray(s.pose.rotations, float) for s in states]))
+
+
+@pytest.mark.parametrize("which", [[0], [1, 3], [0, 1, 2, 3]])
+@pytest.mark.parametrize("frames", [6, 30, 50])
+def test_points_that_were_lost_come_back_without_a_pop(follower, clip, points, which, frames):
+    seen, truth = points.copy(), clip.kinematics()[0]
+    seen[90:90 + frames, which] = np.nan
+    states = played(follower, follower.begin(seen[0]), seen[1:])
+    positions = bodies(SKELETON, states)
+    felt = pulls(positions[85:])
+    assert felt.max() < 6 * pulls(truth).max()
+    assert position_error(positions, truth[1:])[90 + frames + 60:].mean() < 0.02
+
+
+@pytest.mark.parametrize("wild", [[3.0, 0.0, 0.0], [0.0, -1.0, 0.7]])
+def test_a_wild_point_is_not_followed(follower, clip, points, wild):
+    seen, truth = points.copy(), clip.kinematics()[0]
+    seen[90, 0] += wild
+    seen[120:125, 3] += wild
+    states = played(follower, follower.begin(seen[0]), seen[1:])
+    assert position_error(bodies(SKELETON, states), truth[1:])[30:].max() < 0.06
+    assert pulls(bodies(SKELETON, states)).max() < 2.5 * pulls(truth).max()
+
+
+def test_it_gives_up_when_all_points_are_lost_and_then_it_stands(follower, points):
+    someone = person(follower)
+    nothing = np.full_like(points[0], np.nan)
+    states = played(someone, someone.enter(follower.begin(points[100]), Intent()), list(points[101:150]) + [nothing] * 180)
+    given_up = [s.memory.active for s in states].index("locomotion", 1)
+    assert abs((given_up - 49) * DT - LOST) < 0.05
+    assert states[given_up].memory.why == "the points are lost"
+    positions = bodies(SKELETON, states)
+    assert np.linalg.norm(positions[-1] - positions[-2], axis=-1).max() / DT < 0.05
+    back, _ = someone.step(states[-1], Intent(points=follower.controls.on(*_placed(states[-1:]))[0]), DT)
+    assert back.memory.active == "reconstruction"
+
+
+def test_the_same_state_and_points_give_the_same_pose_and_rewinding_replays(follower, points):
+    states = played(follower, follower.begin(points[0]), points[1:120])
+    again = played(follower, states[39], points[41:120])
+    assert all(np.array_equal(a.pose.rotations, b.pose.rotations) and np.array_equal(a.pose.root, b.pose.root)
+               for a, b in zip(again, states[40:]))
+    with pytest.raises(AttributeError):
+        states[0].memory.lost = 1.0
+
+
+@pytest.mark.parametrize("rate", [30, 45, 90, 120, 144])
+def test_other_frame_rates_show_the_same_motion(follower, clip, points, rate):
+    """Within a frame's way of it: points are seen when they are seen."""
+    dt = 1 / rate
+    times = np.arange(1, int(2.5 * rate)) * dt
+    seen = np.stack([[np.interp(t, np.arange(len(points)) * DT, points[:, n, i]) for n in range(4) for i in range(3)]
+                     for t in times]).reshape(-1, 4, 3)
+    states = played(follower, follower.begin(points[0]), seen, dt)
+    truth = clip.resample(rate).kinematics()[0][1:len(times) + 1]
+    positions = bodies(SKELETON, states)
+    fastest = np.linalg.norm(np.diff(clip.kinematics()[0][:, 0], axis=0), axis=-1).max()
+    assert position_error(positions, truth).mean() < 0.02 + fastest
+    assert pulls(positions, dt).max() < 8 * pulls(clip.kinematics()[0]).max()
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.1, 0.11, float("nan")])
+def test_steps_that_make_no_sense_are_refused(follower, points, dt):
+    with pytest.raises(ValueError, match="dt"):
+        follower.step(follower.begin(points[0]), Intent(points=points[0]), dt)
+
+
+@pytest.mark.parametrize("height", [1.2, 2.0])
+def test_a_body_of_another_size_on_another_floor_does_the_same(known, follower, points, height):
+    other, factor = build(known, height=height), height / STATURE
+    plain = played(follower, follower.begin(points[0]), points[1:90])
+    grown = points * factor + [0.0, 0.3, 0.0]
+    sized = played(other, other.begin(grown[0], floor=0.3), grown[1:90])
+    for one, two in zip(plain, sized):
+        assert np.allclose(one.pose.rotations, two.pose.rotations, atol=1e-3)
+        assert np.allclose(one.pose.root * factor + [0.0, 0.3, 0.0], two.pose.root, atol=1e-3)
+    assert np.mean([np.array_equal(a.contacts, b.contacts) for a, b in zip(plain, sized)]) > 0.9
+
+
+def test_a_method_that_comes_to_no_pose_is_a_failure_and_not_a_broken_body(follower, points):
+    class Broken:
+        def begin(self, frames, tracks):
+            return follower.method.begin(frames, tracks)
+
+        def step(self, memory, points):
+            memory, pose = follower.method.step(memory, points)
+            return memory, Pose(pose.root * np.nan, pose.rotations)
+    broken = Reconstruction(Broken(), follower.controls, starts=follower.starts)
+    someone = person(broken)
+    states = played(someone, someone.enter(follower.begin(points[0]), Intent()), points[1:4])
+    assert np.isfinite(bodies(SKELETON, states)).all()
+    assert "no pose" in broken.status(replace(states[0], memory=states[0].memory.memory)).reason
+
+
+def test_a_walker_goes_to_points_that_are_too_far_away(follower, points):
+    someone = person(follower)
+    state, duty = someone.start((0.0, 0.0, 2.0)), []
+    there = points[0] + [2.0, 0.0, 3.0]
+    for _ in range(600):
+        state, _ = someone.step(state, Intent(towards(state, there), points=there), DT)
+        duty.append(state.memory.active)
+    assert duty[0] == "locomotion" and duty[-1] == "reconstruction"
+    assert np.abs(follower.controls.on(*_placed([state]))[0] - there).max() < 0.03
+    assert not towards(state, there * np.nan).any()

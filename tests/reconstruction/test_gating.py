@@ -1,0 +1,101 @@
+"""Whatever trackers do, what is followed moves like a body, and what a body does is never taken for a fault."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from controllers.reconstruction.gating import NEAR, PATIENCE, REACH, Gate
+
+DT = 1 / 60
+STILL = np.zeros((1, 3))
+
+
+def passed(seen, body=None, gate=None):
+    """What a gate makes of points seen (T, n, 3), with the body where `body` (T, n, 3) says; it begins as the body is."""
+    body = np.zeros_like(seen) if body is None else body
+    gate = gate or Gate.before(body[0], np.zeros_like(body[0]))
+    goals = []
+    for now, there in zip(seen, body):
+        gate, goal = gate.admit(now, there, np.zeros_like(there), DT)
+        goals.append(goal)
+    return np.stack(goals), gate
+
+
+def swinging(frames=240, reach=0.5, hertz=1.5):
+    """A wrist that swings, (T, 1, 3): 44 m/s² at its ends, as in a run."""
+    time = np.arange(frames)[:, None] * DT
+    return np.stack([reach * np.sin(2 * np.pi * hertz * time), 0 * time, 0 * time], -1)
+
+
+def test_what_a_body_does_goes_through_as_it_is():
+    seen = swinging()
+    goals, _ = passed(seen, seen)
+    assert np.array_equal(goals, seen)
+
+
+@given(st.floats(0.0, 0.012), st.integers(0, 99))
+@settings(max_examples=20)
+def test_noise_is_no_fault(deviation, seed):
+    seen = swinging()
+    noisy = seen + np.random.default_rng(seed).normal(0, deviation, seen.shape)
+    goals, _ = passed(noisy, seen)
+    assert np.isfinite(goals).all()
+
+
+@given(st.integers(60, 120), st.integers(1, 30), st.floats(0.3, 1.4))
+@settings(max_examples=40)
+def test_a_point_that_comes_back_elsewhere_comes_there_without_a_pop(lost, count, away):
+    """From where the body has it, at no more acceleration than a critically damped spring has from rest."""
+    seen = np.zeros((300, 1, 3))
+    seen[lost:lost + count] = np.nan
+    seen[lost + count:, :, 1] = away
+    goals, _ = passed(seen)
+    assert np.isnan(goals[lost:lost + count]).all()
+    back = int(np.nonzero(np.isfinite(goals[lost + count:]).all((1, 2)))[0][0]) + lost + count
+    assert (back - lost - count) * DT <= (0.02 if away <= NEAR else PATIENCE + 0.05)
+    path = np.concatenate([np.zeros((2, 3)), goals[back:, 0]])
+    assert np.abs(np.diff(path, 2, axis=0)).max() / DT**2 < 210 * away
+    assert np.allclose(goals[-1], seen[-1], atol=1e-3)
+
+
+@pytest.mark.parametrize("frames", [1, 5, 600])
+def test_a_point_that_leaps_three_metres_is_not_followed(frames):
+    seen = swinging(frames + 240)
+    body = seen.copy()
+    seen[120:120 + frames] += [3.0, 0.0, 0.0]
+    goals, gate = passed(seen, body)
+    assert np.isnan(goals[120:120 + frames]).all()
+    assert gate.trusted.all() and np.allclose(goals[-30:], body[-30:], atol=2e-3)
+
+
+def test_two_points_that_are_exchanged_for_a_moment_are_lost_for_that_moment():
+    seen = np.zeros((60, 2, 3))
+    seen[:, 0, 0], seen[:, 1, 0] = 0.35, -0.35
+    body = seen.copy()
+    seen[30:36] = seen[30:36, ::-1]
+    goals, _ = passed(seen, body)
+    assert np.isnan(goals[30:36]).all() and np.allclose(goals[40:], body[40:], atol=1e-3)
+
+
+def test_a_point_out_of_reach_is_never_followed():
+    seen = np.full((600, 1, 3), REACH)
+    goals, gate = passed(seen)
+    assert np.isnan(goals).all() and not gate.trusted.any()
+
+
+@given(st.data())
+@settings(max_examples=40)
+def test_no_pattern_of_faults_gives_anything_but_places_within_reach(data):
+    seed = data.draw(st.integers(0, 10**6))
+    rng = np.random.default_rng(seed)
+    seen = swinging(120) + np.zeros((120, 3, 3))
+    body = seen.copy()
+    seen[rng.random((120, 3)) < data.draw(st.floats(0, 0.9))] = np.nan
+    wild = rng.random((120, 3)) < data.draw(st.floats(0, 0.5))
+    seen[wild] += rng.normal(0, 5, (int(wild.sum()), 3))
+    goals, gate = passed(seen, body)
+    followed = np.isfinite(goals).all(-1)
+    assert np.array_equal(followed, np.isfinite(goals).any(-1))
+    assert np.linalg.norm(goals - body, axis=-1)[followed].max(initial=0.0) <= REACH + 1e-9
+    assert all(np.isfinite(value).all() for value in (gate.offset, gate.slip, gate.rate, gate.smooth))
