@@ -19,8 +19,8 @@ from controllers.body.anatomy import joint_limits
 from controllers.body.support import hull, sole_corners, standing_corners
 from controllers.jump.ballistics import along, least_effort, take_off_velocity
 from controllers.jump.dynamics import Physique
-from controllers.jump.extension import capacity, extend
-from controllers.jump.muscles import BURST, STIFFNESS, WIDTH, Muscle, spring_bend, spring_force
+from controllers.jump.extension import extend, shoot
+from controllers.jump.muscles import STIFFNESS, WIDTH, Muscle, spring_bend, spring_force
 from controllers.jump.path import measures
 from controllers.jump.sampling import sample
 from controllers.jump.thrust import push
@@ -30,7 +30,8 @@ ADULT = Physique()
 G = 9.81
 BODIES = (("adult", ADULT), ("child", Physique(25.0, 1.25, 0.9)), ("heavy", Physique(110.0, 1.78, 0.85)),
           ("athlete", Physique(75.0, 1.80, 1.3)))
-CONSTANTS = ((0.05, 0.1), (0.1, 0.1), (0.3, 0.0), (0.3, 0.1), (0.3, 0.3), (0.6, 0.1), (0.75, 0.1), (0.9, 0.1), (1.2, 0.1), (0.3, 0.9))
+CONSTANTS = ((0.05, 0.1), (0.1, 0.1), (0.3, 0.0), (0.3, 0.1), (0.3, 0.3), (0.6, 0.1), (0.75, 0.1), (0.9, 0.1), (1.2, 0.1), (0.3, 0.9),
+             (2.4, 0.1), (4.0, 0.1))
 
 
 def rise(physique: Physique) -> float:
@@ -54,41 +55,50 @@ def processor_ms(function, times: int = 20) -> float:
 
 
 def controls() -> list[tuple[float, float, Crouch]]:
-    """Table 3.1: what the constants of the control do to a wind-up for 0.35 m."""
+    """Table 3.1: what the constants of the control do to a wind-up for 0.35 m; its true root is told by the strength curve."""
+    root = crouch_depth(ADULT, speed(0.35), rise(ADULT))
     print("Table 3.1  constants of the control, wind-up for 0.35 m (ours: "
-          f"{GAINS.proportional}, {GAINS.derivative})\n   k_p   k_d  iterations  overshoot cm  depth m  heels up  converged")
+          f"{GAINS.proportional}, {GAINS.derivative}); the root is {root:.3f} m deep, and overshoot is measured from there\n"
+          "   k_p   k_d  iterations  overshoot cm  depth m  heels up  ends")
     runs = []
     for k_p, k_d in CONSTANTS:
         found = crouch(ADULT, speed(0.35), rise(ADULT), gains=GAINS._replace(proportional=k_p, derivative=k_d))
         depths = found.history.centre[0, 1] - found.history.centre[:, 1]
+        ends = "does not" if not found.converged else "at the root" if abs(found.depth - root) < 0.015 else "at a wrong root"
         runs.append((k_p, k_d, found))
-        print(f"  {k_p:4.2f}  {k_d:4.2f}  {found.iterations:10d}  {(depths.max() - depths[-1]) * 100:12.1f}  {found.depth:7.3f}"
-              f"  {'yes' if found.feet[:, 4].max() > 0.02 else 'no':>8}  {'yes' if found.converged else 'no':>9}")
+        print(f"  {k_p:4.2f}  {k_d:4.2f}  {found.iterations:10d}  {max(depths.max() - root, 0.0) * 100:12.1f}  {found.depth:7.3f}"
+              f"  {'yes' if found.feet[:, 4].max() > 0.02 else 'no':>8}  {ends}")
     print(f"  One wind-up: {processor_ms(lambda: crouch(ADULT, speed(0.35), rise(ADULT))):.2f} ms of processor;"
-          f" its depth from the strength curve: {processor_ms(lambda: crouch_depth(ADULT, speed(0.35), rise(ADULT)), 200):.3f} ms\n")
+          f" its depth from the strength curve: {processor_ms(lambda: crouch_depth(ADULT, speed(0.35), rise(ADULT)), 200):.3f} ms;"
+          f" that curve, once a body: {processor_ms(lambda: strength.__wrapped__(ADULT), 5):.1f} ms\n")
     return runs
 
 
+READINGS = tuple((reading, arm) for reading in ("wedge", "printed") for arm in ("constant", "attached"))
+
+
 def springs() -> list[tuple[str, Crouch]]:
-    """Table 3.2: k and r against the bend, by the formulas and on the body."""
+    """Table 3.2: k and r against the bend, by the formulas and on the body, in both readings of force and of arm."""
     print("Table 3.2  bend [deg] of a spring for a force, READINGS' example k r = 705 N, and ours")
     print("  k kN/m    r m   reading     300 N   750 N  1000 N  1200 N")
     for k, r in ((14.1e3, 0.05), (14.1e3, 0.04), (14.1e3, 0.06), (10e3, 0.05), (20e3, 0.05), (STIFFNESS, WIDTH)):
         for reading in ("printed", "wedge"):
-            bends = np.degrees(spring_bend(np.array([300.0, 750.0, 1000.0, 1200.0]), Muscle(k, r), reading))
+            bends = np.degrees(spring_bend(np.array([300.0, 750.0, 1000.0, 1200.0]), Muscle(k, r, reading == "printed")))
             print(f"  {k / 1e3:6.1f}  {r:5.3f}   {reading:8}" + "".join(f"  {b:6.1f}" for b in bends))
-    print("  Crouch of the whole body for 0.25 m: k and r varied by strength (k) and by their product with it (r²)")
-    print("  k kN/m    r m   reading    depth m  knee deg  hip deg  force BW  converged")
+    print("  Crouch of the whole body for 0.20 m: k and r varied by strength (k) and by their product with it (r²)")
+    print("  k kN/m    r m   reading  arm       depth m  knee deg  hip deg  force BW  springs J  converged")
     poses = []
-    for reading in ("wedge", "printed"):
-        for k, r in ((0.9, 1.0), (1.0, 1.0), (1.2, 1.0), (1.5, 1.0), (1.0, 0.95), (1.0, 1.1), (1.0, 1.2)):
+    for reading, arm in READINGS:
+        for k, r in ((0.9, 1.0), (1.0, 1.0), (1.2, 1.0), (1.5, 1.0), (2.0, 1.0), (1.0, 0.95), (1.0, 1.1), (1.0, 1.2)):
             physique = Physique(strength=k * r**2)  # the body feels k r² alone: torque over force
-            found = crouch(physique, speed(0.25), rise(physique), reading=reading)
+            found = crouch(physique, speed(0.20), rise(physique), reading=reading, arm=arm)
             hip, knee = np.degrees(found.bends[:2])
-            print(f"  {k * STIFFNESS / 1e3:6.1f}  {r * WIDTH:5.3f}   {reading:8}  {found.depth:8.3f}  {knee:8.0f}  {hip:7.0f}"
-                  f"  {np.linalg.norm(found.force) / (73 * G):8.2f}  {'yes' if found.converged else 'no':>9}")
-            if reading == "wedge" and r == 1.0:
+            print(f"  {k * STIFFNESS / 1e3:6.1f}  {r * WIDTH:5.3f}   {reading:7}  {arm:8}  {found.depth:7.3f}  {knee:8.0f}  {hip:7.0f}"
+                  f"  {np.linalg.norm(found.force) / (73 * G):8.2f}  {found.history.work[-1]:9.0f}  {'yes' if found.converged else 'no':>9}")
+            if (reading, arm) == READINGS[0] and r == 1.0 and k < 2.0:
                 poses.append((f"k = {k * STIFFNESS / 1e3:.1f} kN/m", found))
+    print("  The strongest jump straight up, by reading:  " + ",  ".join(
+        f"{reading} {arm} {strongest(ADULT, rise(ADULT), G, reading, arm):.2f} m/s" for reading, arm in READINGS))
     print()
     return poses
 
@@ -117,20 +127,20 @@ def limits() -> None:
 def heights() -> list[tuple[float, Crouch]]:
     """Crouch, push and force of jumps of several heights, beside what adults do."""
     print("Wind-up and push by height of jump (wanted at 0.3 … 0.4 m: depth 0.28 … 0.38, push-off 0.22 … 0.30 s, peak 2.0 … 2.6)")
-    print("  height m  v m/s  depth m  hip  knee  ankle deg  mean BW  push-off s  peak BW  able at low  able/needed  margin cm")
+    print("  height m  v m/s  depth m  hip  knee  ankle deg  muscles BW  needed BW  springs J  needed J  margin cm | profile: push s  peak BW"
+          " | thrust: push s  peak BW")
     found_all = []
     for height in (0.1, 0.2, 0.3, 0.35, 0.4):
         found = crouch(ADULT, speed(height), rise(ADULT))
         pushed = push(np.array([0.0, found.depth + rise(ADULT), 0.0]), np.zeros(3), np.array([0.0, speed(height), 0.0]),
                       np.array([0.0, -G, 0.0]))
         forces = pushed.force(np.linspace(0, pushed.duration, 200))[:, 1] / G
-        low = capacity(ADULT, found.pelvis[None], found.rotations[None], found.feet[None])[0] / (73 * G)
-        way = pushed.moved(np.linspace(0, pushed.duration, 200), np.zeros(3))[0][:, 1]
-        able = np.interp(found.depth - way, strength(ADULT).depth, BURST * strength(ADULT).force) / (73 * G)
+        shot = shoot(ADULT, found, speed(height))
         hip, knee, ankle = np.degrees(found.bends[:3])
         print(f"  {height:8.2f}  {speed(height):5.2f}  {found.depth:7.3f}  {hip:3.0f}  {knee:4.0f}  {ankle - 40:9.0f}"
-              f"  {np.linalg.norm(found.force) / (73 * G):7.2f}  {pushed.duration:10.3f}  {forces.max():7.2f}"
-              f"  {low:10.2f}  {(able / np.maximum(forces, 1e-9)).min():11.2f}  {found.margin * 100:9.1f}")
+              f"  {np.linalg.norm(found.force) / (73 * G):10.2f}  {np.linalg.norm(found.required) / (73 * G):9.2f}"
+              f"  {found.history.work[-1]:9.0f}  {found.history.needed[-1]:8.0f}  {found.margin * 100:9.1f}"
+              f" | {pushed.duration:15.3f}  {forces.max():7.2f} | {shot.duration:14.3f}  {shot.force[:, 1].max() / (73 * G):7.2f}")
         found_all.append((height, found))
     print("\nThe strongest jump of a body: speed, height, and on the Moon")
     for name, physique in BODIES:
@@ -142,35 +152,56 @@ def heights() -> list[tuple[float, Crouch]]:
 
 
 def sampling() -> None:
-    """The thesis's sampling beside the control."""
+    """The thesis's sampling beside the control: middle and spread of eight scrambled sequences."""
     wish = speed(0.35)
     found = crouch(ADULT, wish, rise(ADULT))
-    print("Wind-up for 0.35 m by control and by sampling\n  method          depth m  balance cm  momentum/wished  ms of processor")
-    print(f"  control         {found.depth:7.3f}  {found.history.balance[-1] * 100:10.2f}"
-          f"  {'(force 1 %)':>15}  {processor_ms(lambda: crouch(ADULT, wish, rise(ADULT))):15.2f}")
+    print("Wind-up for 0.35 m by control and by sampling (eight seeds: median, least … most)\n"
+          "  method          depth m                  balance cm           momentum/wished        ms of processor")
+    print(f"  control         {found.depth:5.3f}  {'':15}  {found.history.balance[-1] * 100:5.2f}"
+          f"  {'':13}  {'(muscles 0.5 %)':>21}  {processor_ms(lambda: crouch(ADULT, wish, rise(ADULT))):16.2f}")
     for count in (500, 1000, 2000, 4000):
-        best = sample(ADULT, wish, rise(ADULT), count=count)
-        took = processor_ms(lambda: sample(ADULT, wish, rise(ADULT), count=count), 1)
-        print(f"  {count:4d} samples    {best.depth:7.3f}  {best.balance * 100:10.2f}  {best.momentum / (73 * wish):15.3f}  {took:15.1f}")
+        start = time.process_time()
+        best = [sample(ADULT, wish, rise(ADULT), count=count, seed=seed) for seed in range(8)]
+        took = (time.process_time() - start) / 8 * 1e3
+        columns = [(np.array([b.depth for b in best]), 3), (np.array([b.balance for b in best]) * 100, 2),
+                   (np.array([b.momentum[1] for b in best]) / (73 * wish), 3)]
+        print(f"  {count:4d} samples  " + "  ".join(f"  {np.median(c):5.{n}f} ({c.min():.{n}f} … {c.max():.{n}f})" for c, n in columns)
+              + f"  {took:14.1f}")
     print()
 
 
 def thrusts() -> list:
     """The thesis's thrust by joint torques beside the force profile that plans use."""
+    print("Thrust by joint torques from the crouch that was found for a speed, fully active; and shot to meet that speed straight up\n"
+          "  wanted m/s  reached  share | activation  last muscle s  up m/s  forward  push s  peak BW  hip  knee  ankle rad/s  heel deg")
+    for wish in (1.4, speed(0.2), speed(0.3), speed(0.35), speed(0.4)):
+        found = crouch(ADULT, wish, rise(ADULT))
+        full, shot = extend(ADULT, found), shoot(ADULT, found, wish)
+        rates = np.abs(np.diff(shot.bends, axis=0)[:-1] / np.diff(shot.times)[:-1, None]).max(0)
+        print(f"  {wish:10.2f}  {full.velocity[-1, 1]:7.2f}  {full.velocity[-1, 1] / wish:5.3f} | {shot.activation:10.3f}  {shot.delays[2]:13.3f}"
+              f"  {shot.velocity[-1, 1]:6.3f}  {shot.velocity[-1, 0]:7.3f}  {shot.duration:6.3f}  {shot.force[:, 1].max() / (73 * G):7.2f}"
+              f"  {rates[0]:3.0f}  {rates[1]:4.0f}  {rates[2]:11.0f}  {np.degrees(shot.turns[-1, 0]):8.0f}")
     wish = speed(0.35)
     found = crouch(ADULT, wish, rise(ADULT))
     profile = push(np.array([0.0, found.depth + rise(ADULT), 0.0]), np.zeros(3), np.array([0.0, wish, 0.0]), np.array([0.0, -G, 0.0]))
     forces = profile.force(np.linspace(0, profile.duration, 200))[:, 1] / G
-    print("Thrust from the crouch for 0.35 m (2.62 m/s)\n  thrust                              v up  forward  push-off s  peak BW  work J  gained J")
+    print(f"  One shot: {processor_ms(lambda: shoot(ADULT, found, wish)):.2f} ms of processor")
+    print("Its readings, from the crouch for 0.35 m (2.62 m/s)\n  thrust                              v up  forward  push-off s  peak BW  work J  gained J")
     print(f"  force profile                      {wish:5.2f}  {0.0:7.2f}  {profile.duration:10.3f}  {forces.max():7.2f}")
     runs = []
     for name, options in (("whole chain, 1/3840 s", dict(dt=1 / 3840)), ("whole chain, 1/960 s", dict(dt=1 / 960)), ("whole chain, 1/240 s", dict(dt=1 / 240)),
                           ("whole chain, all at once", dict(delays=(0, 0, 0))), ("whole chain, explicit Euler", dict(integration="explicit")),
+                          ("whole chain, Runge-Kutta 1/240 s", dict(integration="runge-kutta", dt=1 / 240)),
                           ("each joint by itself", dict(inertia="moved")), ("as printed (τ = m a)", dict(inertia="printed", integration="explicit"))):
         run = extend(ADULT, found, **options)
         print(f"  {name:32}  {run.velocity[-1, 1]:5.2f}  {run.velocity[-1, 0]:7.2f}  {run.duration:10.3f}"
               f"  {run.force[:, 1].max() / (73 * G):7.2f}  {run.work:6.0f}  {run.energy:8.0f}{'' if run.extended else '   not extended'}")
         runs.append((name, run))
+    for reading, arm in READINGS:
+        v = 0.8 * strongest(ADULT, rise(ADULT), G, reading, arm)
+        run = extend(ADULT, crouch(ADULT, v, rise(ADULT), reading=reading, arm=arm))
+        print(f"  springs {reading}, arm {arm + ',':9} {v:4.2f} m/s {run.velocity[-1, 1]:6.2f}  {run.velocity[-1, 0]:7.2f}  {run.duration:10.3f}"
+              f"  {run.force[:, 1].max() / (73 * G):7.2f}  {run.work:6.0f}  {run.energy:8.0f}{'' if run.extended else '   not extended'}")
     print()
     return runs
 
@@ -200,7 +231,7 @@ def draw(folder: Path, runs, poses, by_height, thrusts) -> None:
     bends = np.radians(np.linspace(0, 160, 200))
     for k in (20e3, STIFFNESS, 40e3):
         line, = a.plot(np.degrees(bends), spring_force(bends, Muscle(k, WIDTH)), label=f"wedge, k = {k / 1e3:.1f} kN/m")
-        a.plot(np.degrees(bends), spring_force(bends, Muscle(k, WIDTH), "printed"), "--", color=line.get_color())
+        a.plot(np.degrees(bends), spring_force(bends, Muscle(k, WIDTH, True)), "--", color=line.get_color())
     a.set(xlabel="bend [deg]", ylabel="spring force [N]", ylim=(0, 7000), title="Springs: wedge (lines), printed (dashes)")
     a.legend(fontsize=7)
     for name, physique in BODIES:
@@ -219,7 +250,7 @@ def draw(folder: Path, runs, poses, by_height, thrusts) -> None:
     for axis, (name, found) in zip(axes, poses):
         stick(axis, found)
         axis.set_title(f"{name}\ndepth {found.depth:.2f} m, knee {np.degrees(found.bends[1]):.0f}°", fontsize=8)
-    figure.suptitle("Table 3.2: stiffer springs, smaller crouch (0.25 m jump)", y=1.04)
+    figure.suptitle("Table 3.2: stiffer springs, smaller crouch (0.20 m jump)", y=1.04)
     figure.savefig(folder / "table_3_2_poses.png")
     plt.close(figure)
 
@@ -259,10 +290,10 @@ def draw(folder: Path, runs, poses, by_height, thrusts) -> None:
     name, run = thrusts[0]
     for k, joint in enumerate(("hip", "knee", "ankle")):
         a.plot(run.times, np.degrees(run.bends[:, k]), label=joint)
-    a.plot(run.times, np.degrees(run.heel), "--", label="heel's rise")
+    a.plot(run.times, np.degrees(run.turns[:, 0]), "--", label="heel's rise")
     a.set(xlabel="time [s]", ylabel="bend [deg]", title="Thrust by joint torques, hip first")
     a.legend(fontsize=7)
-    for name, run in thrusts[:1] + thrusts[3:4] + thrusts[5:6]:
+    for name, run in thrusts[:1] + thrusts[3:4] + thrusts[6:7]:
         b.plot(run.times, run.force[:, 1] / (73 * G), label=name)
     found = by_height[3][1]
     profile = push(np.array([0.0, found.depth + rise(ADULT), 0.0]), np.zeros(3), np.array([0.0, speed(0.35), 0.0]), np.array([0.0, -G, 0.0]))

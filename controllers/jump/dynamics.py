@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -37,8 +38,10 @@ class Physique:
         for name, low, high in (("mass", 5.0, 400.0), ("height", 0.5, 3.0), ("strength", 0.05, 20.0),
                                 ("flexibility", 0.3, 2.0)):
             value = getattr(self, name)
-            if not low <= value <= high:
-                raise ValueError(f"{name} must be within {low:g} … {high:g}, got {value!r}")
+            if isinstance(value, bool) or not isinstance(value, Real) or not low <= value <= high:
+                raise ValueError(f"{name} must be a number within {low:g} … {high:g}, got {value!r}")
+        if self.sex not in ("male", "female"):
+            raise ValueError(f"sex must be male or female, got {self.sex!r}")
 
     @cached_property
     def skeleton(self) -> Skeleton:

@@ -6,8 +6,10 @@ the joint, of everything the joint moves; over a planted foot that is the body a
 that move each other share more than that, the whole mass matrix, of which those I are the
 diagonal: only with it does the work of the muscles become motion and height, nothing more.
 
-The body is a chain in its sagittal plane, both legs as one: foot, shank, thigh and, as one piece,
-all above the hips. The foot turns about its ball once its heel no longer presses on the floor.
+The body is a chain in its sagittal plane (see `chain`). Muscles pass from holding to pushing one
+after the other, from the centre of mass outward. When each does decides how upright the body
+leaves: all at once it falls back, too late it falls forward. So `shoot` finds two numbers: how
+active the muscles are, for the speed, and how late the lower ones are, for the direction.
 """
 
 from __future__ import annotations
@@ -18,39 +20,44 @@ from typing import Literal
 
 import numpy as np
 
+from .chain import CHAIN, COLUMNS, EXPLICIT, MOVED, PRINTED, RUNGE_KUTTA, SEMI_IMPLICIT, Links, links_kernel, thrust_kernel
 from .dynamics import GRAVITY, Physique, place_kernel
-from .muscles import BURST, CALF, muscle, spring_torque
-from .poise import capacity_kernel, frame
-from .windup import Crouch
+from .windup import DELAYS, STEP, Crouch, upward
 
 LONGEST_STEP = 1.0 / 240.0
 """No longer steps are taken [s]."""
-EXTENDED = 0.975
-"""A leg of this share of its length is extended: the push is over."""
-DELAYS = (0.0, 0.04, 0.08)
-"""When hip, knee and ankle start to push [s]: from the centre of mass outward."""
+LATEST, LAZIEST = 1.6, 0.2
+"""`shoot` delays muscles by at most so many times DELAYS, and leaves them at least so active."""
+ROUNDS, MOST = 12, 360
+"""At most so many thrusts are tried, of so many steps."""
 Inertia = Literal["chain", "moved", "printed"]
+Integration = Literal["semi-implicit", "explicit", "runge-kutta"]
+_INERTIAS = {"chain": CHAIN, "moved": MOVED, "printed": PRINTED}
+_INTEGRATIONS = {"semi-implicit": SEMI_IMPLICIT, "explicit": EXPLICIT, "runge-kutta": RUNGE_KUTTA}
 
 
 @dataclass(frozen=True, eq=False)
 class Extension:
     """A thrust of N steps, in the sagittal plane: forward, up.
 
-    times: (N,) [s]. bends: (N, 3) [rad] of hip, knee and ankle, as in `muscles`. heel: (N,) [rad]
-    how far it has risen. centre, velocity: (N, 2) [m, m/s] of the centre of mass. force: (N, 2)
-    [N] of the ground. work: [J] the muscles did. energy: [J] of motion and height that the body
-    gained. extended: whether it left the floor with its legs extended, rather than because
-    nothing pressed it down any more or time was over.
+    times: (N,) [s]. bends: (N, 3) [rad] of hip, knee and ankle, as in `muscles`. turns: (N, 4) [rad]
+    of foot, shank, thigh and trunk forward since the crouch; the foot's is how far the heel has
+    risen. centre, velocity: (N, 2) [m, m/s] of the centre of mass. force: (N, 2) [N] of the ground.
+    work: [J] the muscles did. energy: [J] of motion and height that the body gained. activation,
+    delays: how active the muscles were, and by when (3,) [s]. extended: whether it left the floor
+    with its legs extended, rather than because nothing pressed it down any more or time was over.
     """
 
     times: np.ndarray
     bends: np.ndarray
-    heel: np.ndarray
+    turns: np.ndarray
     centre: np.ndarray
     velocity: np.ndarray
     force: np.ndarray
     work: float
     energy: float
+    activation: float
+    delays: np.ndarray
     extended: bool
 
     @property
@@ -59,144 +66,81 @@ class Extension:
         return float(self.times[-1])
 
 
-class Chain:
-    """A crouched body as four links: foot, shank, thigh, the rest, in the plane of (forward, up).
-
-    mass: (4,) [kg]. inertia: (4,) [kg m²] about the links' centres. link, centre: (4, 2) [m] from
-    each link's lower joint to the next and to its centre, as it crouches. ball: (2,) [m].
-    """
-
-    def __init__(self, physique: Physique, crouch: Crouch):
-        body = physique.tables
-        positions, turned = np.empty((len(crouch.rotations), 3)), np.empty((len(crouch.rotations), 3, 3))
-        place_kernel(body, crouch.pelvis, crouch.rotations, positions, turned)
-        yaw = 0.5 * (crouch.feet[0, 3] + crouch.feet[1, 3])
-        plane = np.array([[math.sin(yaw), 0.0, math.cos(yaw)], [0.0, 1.0, 0.0]])
-        side = np.array([math.cos(yaw), 0.0, -math.sin(yaw)])
-        hips = body.hip[:, None]
-        joints = [(positions[hips + k] @ plane.T).mean((0, 1)) for k in (3, 2, 1, 0)]
-        group = np.full(len(positions), 3)
-        for k, number in ((2, 0), (1, 1), (0, 2)):
-            group[body.hip + number] = k
-        group[body.hip + 3] = 0
-        places = positions[body.joint] + np.einsum("sij,sj->si", turned[body.joint], body.centre)
-        around = np.einsum("i,sij,sjk,slk,l->s", side, turned[body.joint], body.inertia, turned[body.joint], side)
-        self.mass, self.inertia = np.empty(4), np.empty(4)
-        self.link, self.centre = np.zeros((4, 2)), np.empty((4, 2))
-        for k in range(4):
-            mine = group[body.joint] == k
-            mass, flat = body.mass[mine], places[mine] @ plane.T
-            middle = mass @ flat / mass.sum()
-            self.mass[k] = mass.sum()
-            self.inertia[k] = around[mine].sum() + mass @ np.sum((flat - middle) ** 2, -1)
-            self.centre[k] = middle - joints[k]
-            if k < 3:
-                self.link[k] = joints[k + 1] - joints[k]
-        self.ball = joints[0]
-        self.leg = body.thigh + body.shank
-
-    def at(self, angles: np.ndarray, speeds: np.ndarray):
-        """How links turned forward by `angles` (4,) [rad], at `speeds` (4,) [rad/s], lie and move.
-
-        Returns their centres (4, 2), the centres' Jacobian (4, 2, 4) and what of their acceleration
-        (4, 2) comes from turning alone; and the distance from ankle to hip [m].
-        """
-        c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
-
-        def turn(v):
-            return np.concatenate([c * v[:, :1] + s * v[:, 1:], c * v[:, 1:] - s * v[:, :1]], 1)
-        link, own = turn(self.link), turn(self.centre)
-        base = np.cumsum(np.concatenate([self.ball[None], link[:3]]), 0)
-        jacobian, bias = np.zeros((4, 2, 4)), np.zeros((4, 2))
-        for k in range(4):
-            arms = np.concatenate([link[:k], own[k:k + 1]])
-            jacobian[k, :, :k + 1] = np.stack([arms[:, 1], -arms[:, 0]])
-            bias[k] = -(speeds[:k + 1, None] ** 2 * arms).sum(0)
-        return base + own, jacobian, bias, float(np.linalg.norm(base[3] - base[1]))
+def links(physique: Physique, crouch: Crouch) -> Links:
+    """A crouched body as a chain."""
+    body, count = physique.tables, len(crouch.rotations)
+    positions, turned = np.empty((count, 3)), np.empty((count, 3, 3))
+    place_kernel(body, crouch.pelvis, crouch.rotations, positions, turned)
+    return links_kernel(body, crouch.feet, positions, turned, crouch.bends.reshape(2, 3))
 
 
-# how the bends of hip, knee and ankle follow from the links' turns: foot, shank, thigh, trunk
-_BENDS = np.array([[0.0, 0.0, -1.0, 1.0], [0.0, 1.0, -1.0, 0.0], [-1.0, 1.0, 0.0, 0.0]])
+def extend(physique: Physique, crouch: Crouch, gravity=GRAVITY, *, activation: float = 1.0, delays=DELAYS,
+           dt: float = 1.0 / 3840.0, inertia: Inertia = "chain", integration: Integration = "semi-implicit",
+           longest: float = 1.5) -> Extension:
+    """Straighten a crouched body by its muscles until it leaves the floor.
 
-
-def extend(physique: Physique, crouch: Crouch, gravity=GRAVITY, *, dt: float = 1.0 / 1920.0,
-           inertia: Inertia = "chain", integration: Literal["semi-implicit", "explicit"] = "semi-implicit",
-           delays=DELAYS, longest: float = 1.5) -> Extension:
-    """Straighten a crouched body by its muscles, fully active, until it leaves the floor.
-
-    gravity: (3,) [m/s²], straight down. dt: step [s], at most 1/240: steps of first order lose a
-    tenth of the energy there, a hundredth at 1/3840 s. delays: (3,) [s] of hip, knee and ankle;
-    until then muscles hold against gravity. inertia: `chain`, the whole mass matrix; `moved`, each
-    joint by itself turning what is above it, over flat feet; `printed`, τ = m a_θ. longest: [s]
-    after which a body that still stands is given up.
-    ValueError for a dt above 1/240 s or not above 0.
+    gravity: (3,) or downward [m/s²]. activation: of the muscles, 0 … 1. delays: (3,) [s] by when
+    hip, knee and ankle are as active as that; at first they hold against gravity. dt: step [s], at
+    most 1/240. integration: `explicit` as printed, `semi-implicit`, of first order as well,
+    or `runge-kutta`, which needs no shorter step. inertia: `chain`, the whole mass matrix; `moved`,
+    each joint by itself turning what is above it, over flat feet; `printed`, τ = m a_θ. longest: [s]
+    after which a body that still stands is given up. ValueError for anything else.
     """
     if not 0.0 < dt <= LONGEST_STEP + 1e-12:
         raise ValueError(f"dt must be above 0 and at most 1/240 s, got {dt!r}")
-    chain, spring = Chain(physique, crouch), muscle(physique)
-    g = -float(np.asarray(gravity, float)[1])
-    start = 0.5 * (crouch.bends[:3] + crouch.bends[3:])
-    softness = np.array([1.0, 1.0, CALF])
-    angles, speeds, onset = np.zeros(4), np.zeros(4), np.asarray(delays, float)
-    weight = chain.mass / chain.mass.sum()
-    flat, work, height, rows, extended = True, 0.0, None, [], False
-    for n in range(int(longest / dt)):
-        places, jacobian, bias, length = chain.at(angles, speeds)
-        bends = start + _BENDS @ angles
-        pull = g * np.einsum("k,kj->j", chain.mass, jacobian[:, 1])  # of gravity on each link, resisted
-        matrix = np.einsum("k,kij,kil->jl", chain.mass, jacobian, jacobian) + np.diag(chain.inertia)
-        turning = np.einsum("k,kij,ki->j", chain.mass, jacobian, bias)
-        holding = np.array([-pull[3], pull[2] + pull[3], -pull[1] - pull[2] - pull[3]])
-        full = 2.0 * softness * spring_torque(bends, spring)
-        torques = np.where(n * dt >= onset, full, np.clip(holding, 0.0, full))
-        if inertia == "chain":
-            given = -_BENDS.T @ torques - pull - turning
-            change = np.zeros(4)
-            if flat:
-                change[1:] = np.linalg.solve(matrix[1:, 1:], given[1:])
-                flat = matrix[0] @ change - given[0] >= 0.0  # while the floor has to hold the heel up
-            if not flat:
-                change = np.linalg.solve(matrix, given)
-        else:
-            change = _apart(chain, matrix, torques - holding, inertia)
-        moving = weight @ (jacobian @ speeds)
-        centre = weight @ places
-        force = chain.mass.sum() * (weight @ (jacobian @ change + bias) + [0.0, g])
-        rows.append((n * dt, *bends, angles[0], *centre, *moving, *force))
-        energy = 0.5 * speeds @ matrix @ speeds + chain.mass.sum() * g * centre[1]
-        height = energy if height is None else height
-        extended = length >= EXTENDED * chain.leg
-        if extended or (n > 0 and force[1] <= 0.0):
-            break
-        before = speeds
-        speeds = speeds + change * dt
-        angles = angles + (before if integration == "explicit" else speeds) * dt
-        work -= dt * torques @ _BENDS @ (0.5 * (before + speeds))
-        if not flat and angles[0] <= 0.0 and speeds[0] < 0.0:  # the heel is down again
-            angles[0], speeds[0], flat = 0.0, 0.0, True
-    rows = np.array(rows)
-    return Extension(rows[:, 0], rows[:, 1:4], rows[:, 4], rows[:, 5:7], rows[:, 7:9], rows[:, 9:11], float(work),
-                     float(energy - height), extended)
+    delays = np.array(delays, float)
+    if not 0.0 <= activation <= 1.0 or delays.shape != (3,) or not (delays >= 0.0).all():
+        raise ValueError(f"activation must be within 0 … 1 and delays three times [s], got {activation!r}, {delays}")
+    if inertia not in _INERTIAS or integration not in _INTEGRATIONS:
+        raise ValueError(f"inertia must be of {', '.join(_INERTIAS)}, integration of {', '.join(_INTEGRATIONS)}, "
+                         f"got {inertia!r}, {integration!r}")
+    most = int(longest / dt)
+    rows = np.empty((most + 1, COLUMNS))
+    used, extended = thrust_kernel(links(physique, crouch), crouch.spring, -float(upward(gravity, -1.0)[1]), float(activation),
+                                   delays, _INERTIAS[inertia], _INTEGRATIONS[integration], dt, most, rows)
+    rows = rows[:used].copy()
+    return Extension(rows[:, 0], rows[:, 1:4], rows[:, 4:8], rows[:, 8:10], rows[:, 10:12], rows[:, 12:14], float(rows[-1, 14]),
+                     float(rows[-1, 15] - rows[0, 15]), float(activation), delays, bool(extended))
 
 
-def _apart(chain: Chain, matrix, net, inertia):
-    """The links' angular accelerations (4,) if each joint turned by itself what lies above it."""
-    bends = np.empty(3)
-    for k, first in enumerate((3, 2, 1)):
-        turned = matrix[first:, first:].sum() if inertia == "moved" else chain.mass[first:].sum()
-        bends[k] = -net[k] / turned
-    shank = bends[2]
-    thigh = shank - bends[1]
-    return np.array([0.0, shank, thigh, thigh + bends[0]])
+def shoot(physique: Physique, crouch: Crouch, velocity, gravity=GRAVITY) -> Extension:
+    """The thrust that takes a crouched body off with `velocity` [m/s], (3,) or upward, if one does.
 
-
-def capacity(physique: Physique, roots: np.ndarray, local: np.ndarray, feet: np.ndarray) -> np.ndarray:
-    """The greatest ground force (N,) [N] that the muscles can give in poses over planted feet.
-
-    roots: (N, 3) [m], local: (N, J, 3, 3) poses. feet: (N, 2, 6) as in `posture`. For a moment:
-    BURST times what they hold.
+    The upward part comes first: it is met to 0.2 % of the speed wherever the muscles have it. Forward, as
+    the feet point, a body over its feet goes with a few decimetres a second at most, and as near to
+    the wish as that. Secants (Broyden's method) on activation and lateness, Runge-Kutta at 1/240 s.
+    ValueError for a velocity that is not finite.
     """
-    roots, local, feet = (np.ascontiguousarray(a, float) for a in (roots, local, feet))
-    out = np.empty(len(roots))
-    capacity_kernel(frame(physique), roots, local, feet, out)
-    return BURST * out
+    velocity, g = upward(velocity, 1.0), -float(upward(gravity, -1.0)[1])
+    if velocity.shape != (3,) or not np.isfinite(velocity).all():
+        raise ValueError(f"velocity must be a number or (3,) and finite, got {velocity}")
+    yaw = 0.5 * (crouch.feet[0, 3] + crouch.feet[1, 3])
+    wanted = np.array([velocity[0] * math.sin(yaw) + velocity[2] * math.cos(yaw), velocity[1]])
+    chain, row, close = links(physique, crouch), np.empty((1, COLUMNS)), 2e-3 * np.linalg.norm(wanted)
+
+    def reached(activation, lateness):
+        thrust_kernel(chain, crouch.spring, g, activation, lateness * DELAYS, CHAIN, RUNGE_KUTTA, STEP, MOST, row)
+        return row[0, 10:12].copy()
+    activation, lateness = 0.95, 0.9
+    got = reached(activation, lateness)
+    slope = np.column_stack([(reached(activation - 0.04, lateness) - got) / -0.04,
+                             (reached(activation, lateness + 0.1) - got) / 0.1])
+    best = (math.inf, activation, lateness)
+    for _ in range(ROUNDS):
+        miss = wanted - got
+        best = min(best, (float(np.hypot(0.2 * miss[0], miss[1])), activation, lateness))
+        bound = lateness in (0.0, LATEST) and abs(miss[1]) < close
+        if np.abs(miss).max() < close or bound:
+            break
+        later = np.linalg.solve(slope, miss)[1] if abs(np.linalg.det(slope)) > 1e-6 else 0.0
+        late = float(np.clip(lateness + np.clip(later, -0.5, 0.5), 0.0, LATEST))
+        change = np.array([(miss[1] - slope[1, 1] * (late - lateness)) / slope[1, 0], late - lateness])
+        change[0] = np.clip(activation + np.clip(change[0], -0.25, 0.25), LAZIEST, 1.0) - activation
+        if not change.any():
+            break
+        activation, lateness, before = activation + change[0], late, got
+        got = reached(activation, lateness)
+        slope += np.outer(got - before - slope @ change, change) / (change @ change)
+    _, activation, lateness = best
+    return extend(physique, crouch, gravity, activation=activation, delays=lateness * DELAYS, dt=STEP,
+                  integration="runge-kutta")

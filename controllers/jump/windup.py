@@ -1,10 +1,15 @@
-"""The wind-up: how a body crouches until its muscles can give the force that a jump asks for.
+"""The wind-up: how a body crouches until its muscles can give the force and the work that a jump asks for.
 
 Ooi 2015, 3.1.2, read as in READINGS A2: proportional-derivative control moves the hip by
-u(i) = k_p E(i−1) + k_d (E(i−1) − E(i−2)), where E is the force error, as metres down, and the
+u(i) = k_p E(i−1) + k_d (E(i−1) − E(i−2)), where E is the muscles' error, as metres down, and the
 balance error, from the centre of mass to the middle of the support polygon. The legs follow by
 cyclic coordinate descent, over planted feet; a heel rises only past the ankle's limit. Then centre
 of mass, force and balance are found anew, until both errors are small.
+
+The thesis's muscles err by force alone. But a small crouch may give the force and not for long
+enough: what springs hold, ∫ τ dθ over their bends, has to cover ½ m v², and what the thrust
+(`extension`) spends on the way, on lifting the body, on turning limbs, and on springs that are not
+straight yet. The worse of both errors, as a share of what is needed, is the muscles' error.
 """
 
 from __future__ import annotations
@@ -18,12 +23,18 @@ import numpy as np
 
 from ..body.human import STATURE
 from ..compiled import kernel
+from .chain import CHAIN, COLUMNS, RUNGE_KUTTA, links_kernel, thrust_kernel
 from .dynamics import GRAVITY, Physique, centre_kernel
-from .muscles import Reading
-from .poise import DEEP, flat_feet, force_kernel, frame, pose_kernel, stand_pelvis_kernel, support_kernel
+from .muscles import Arm, Muscle, Reading, force_kernel, muscle, work_kernel
+from .poise import DEEP, flat_feet, frame, pose_kernel, stand_pelvis_kernel, support_kernel
 
 LEAST = 0.06
 """The least a pelvis goes down for a jump [m], at standard height."""
+DELAYS = np.array([0.0, 0.08, 0.16])
+"""By when hip, knee and ankle push with all they have [s]: from the centre of mass outward, half of it 40 ms apart."""
+DELAYS.setflags(write=False)
+STEP = 1.0 / 240.0
+"""Of a thrust, by Runge's and Kutta's method [s]."""
 
 
 class Gains(NamedTuple):
@@ -31,8 +42,9 @@ class Gains(NamedTuple):
 
     proportional, derivative: k_p, k_d; one step is a gain near 1 of the error, so
     0 < k_p and k_p + 2 k_d < 2 keep it stable. drop: by how many metres, at standard height, a
-    force error of 1 (all of it lacking) asks the hip to go down (0.2 takes twice the iterations).
-    balance: w_b. force_error: ε as a share of the force; balance_error: ε [m]. longest: of a step
+    muscles' error of 1 (all of it lacking) asks the hip to go down
+    (faster, and heels rise before the balance is found).
+    balance: w_b. muscle_error: ε as a share of force or work; balance_error: ε [m]. longest: of a step
     [m]. most: iterations.
     """
 
@@ -40,7 +52,7 @@ class Gains(NamedTuple):
     derivative: float = 0.1
     drop: float = 0.6
     balance: float = 2.5
-    force_error: float = 0.01
+    muscle_error: float = 0.005
     balance_error: float = 0.01
     longest: float = 0.02
     most: int = 200
@@ -52,12 +64,14 @@ GAINS = Gains()
 @dataclass(frozen=True, eq=False)
 class History:
     """A wind-up, iteration by iteration, N of them. pelvis, centre: (N, 3) [m]. force, required: (N,)
-    magnitudes [N]. balance: (N,) [m] from the polygon's middle. margin: (N,) [m] inside the polygon."""
+    magnitudes [N]. work, needed: (N,) [J] that the springs hold, and that the jump takes. balance: (N,) [m] from the polygon's middle. margin: (N,) [m] inside the polygon."""
 
     pelvis: np.ndarray
     centre: np.ndarray
     force: np.ndarray
     required: np.ndarray
+    work: np.ndarray
+    needed: np.ndarray
     balance: np.ndarray
     margin: np.ndarray
 
@@ -72,8 +86,8 @@ class Crouch:
     pelvis, centre: (3,) [m] hips and centre of mass. depth: [m] of the centre of mass below
     standing. rotations: (J, 3, 3) the pose. feet: (2, 6) as in `posture`, heels risen if they had
     to. bends, torques: (6,) [rad, N m] see `muscles.MUSCLES`. force, required: (3,) [N] of the
-    ground, by the muscles and for the jump. margin: [m] inside the support polygon. converged:
-    whether the muscles can give what is required: if not, this body can't make the jump.
+    ground, by the muscles and for the jump. spring: the muscles'. margin: [m] inside the support polygon.
+    converged: whether the muscles can give what is required: if not, this body can't make the jump.
     """
 
     pelvis: np.ndarray
@@ -85,6 +99,7 @@ class Crouch:
     torques: np.ndarray
     force: np.ndarray
     required: np.ndarray
+    spring: Muscle
     margin: float
     history: History
     converged: bool
@@ -96,63 +111,81 @@ class Crouch:
 
 
 def crouch(physique: Physique, velocity, rise: float, gravity=GRAVITY, *, feet: np.ndarray | None = None,
-           gains: Gains = GAINS, reading: Reading = "wedge") -> Crouch:
+           gains: Gains = GAINS, reading: Reading = "wedge", arm: Arm = "constant") -> Crouch:
     """Wind up for a take-off with `velocity` [m/s], (3,) or upward.
 
     rise: [m] how far above standing the centre of mass leaves the floor: the push covers that and
     the crouch's depth d, at a mean acceleration of v v_y / 2d; F_req = m (a − g). gravity: (3,) or
-    downward [m/s²]. feet: (2, 6) where they stand, flat_feet by default.
-    ValueError for numbers that are not finite or feet that are no (2, 6).
+    downward [m/s²]. feet: (2, 6) or (2, 5) where they stand, as in `posture`, flat_feet by default.
+    ValueError for numbers that are not finite, other feet or an unknown reading.
     """
     velocity, gravity = upward(velocity, 1.0), upward(gravity, -1.0)
-    feet = np.array(flat_feet(physique) if feet is None else feet, float)
     if not (np.isfinite(velocity).all() and np.isfinite(gravity).all() and math.isfinite(rise)):
         raise ValueError(f"velocity, rise and gravity must be finite, got {velocity}, {rise}, {gravity}")
-    if feet.shape != (2, 6) or not np.isfinite(feet).all():
-        raise ValueError(f"feet must be (2, 6) and finite, got {feet.shape}")
-    fixed, count = frame(physique, reading), len(physique.skeleton)
+    feet, able = planted(physique, feet), strength(physique, reading, arm, -float(gravity[1]))
+    fixed, count, spring = frame(physique), len(physique.skeleton), muscle(physique, reading, arm)
     pelvis, turns = np.empty(3), np.zeros((2, 3, 3))
     local = np.tile(np.eye(3), (count, 1, 1))
     positions, orientations = np.empty((count, 3)), np.empty((count, 3, 3))
     bends, torques, forces = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
-    required, history = np.empty(3), np.empty((gains.most + 1, 10))
+    required, history = np.empty(3), np.empty((gains.most + 1, 12))
     standing = stand_pelvis_kernel(fixed, feet, pelvis, turns, local, positions, orientations)
-    used, converged = windup_kernel(fixed, gains, velocity, float(rise), gravity, standing, feet, pelvis, turns, local,
-                                    positions, orientations, bends, torques, forces, required, history)
+    used, converged = windup_kernel(fixed, spring, gains, velocity, float(rise), gravity, able.depth, able.spent, standing, feet,
+                                    pelvis, turns, local, positions, orientations, bends, torques, forces, required, history)
     record = history[:used]
     return Crouch(pelvis, record[-1, 3:6].copy(), float(standing - record[-1, 4]), local, feet, bends.ravel(),
-                  torques.ravel(), forces.sum(0), required, float(record[-1, 9]),
-                  History(record[:, :3], record[:, 3:6], record[:, 6], record[:, 7], record[:, 8], record[:, 9]),
-                  bool(converged))
+                  torques.ravel(), forces.sum(0), required, spring, float(record[-1, 11]),
+                  History(record[:, :3], record[:, 3:6], *record.T[6:]), bool(converged))
+
+
+def planted(physique: Physique, feet: np.ndarray | None) -> np.ndarray:
+    """Feet (2, 6) of our own from (2, 5), (2, 6) or nothing, which is `flat_feet`. ValueError for any other."""
+    feet = np.array(flat_feet(physique) if feet is None else feet, float)
+    if feet.shape == (2, 5):
+        feet = np.column_stack([feet, np.ones(2)])
+    if feet.shape != (2, 6) or not np.isfinite(feet).all():
+        raise ValueError(f"feet must be (2, 6) or (2, 5) and finite, got {feet.shape}")
+    return feet
 
 
 class Strength(NamedTuple):
-    """What a body's muscles can do. depth: (N,) [m] of the centre of mass below standing, from hardly
-    bent to as deep as its joints go. force: (N,) [N] the ground force there."""
+    """What a body's muscles can do, by how deep it crouches, balanced over flat feet: N ≥ 1 depths, from hardly
+    bent to as deep as its joints go.
+
+    depth: (N,) [m] of the centre of mass below standing. force: (N,) [N] the ground force there.
+    work: (N,) [J] that the springs hold. speed: (N,) [m/s] upward with which a fully active thrust
+    (`extension`) leaves the floor. spent: (N,) [J] of the work, what is not ½ m v² then.
+    """
 
     depth: np.ndarray
     force: np.ndarray
+    work: np.ndarray
+    speed: np.ndarray
+    spent: np.ndarray
 
 
 @lru_cache(maxsize=64)
-def strength(physique: Physique, reading: Reading = "wedge") -> Strength:
-    """The ground force that a body gives, by how deep it crouches, balanced over flat feet."""
-    fixed, count, feet = frame(physique, reading), len(physique.skeleton), flat_feet(physique)
-    depth, force = np.empty(120), np.empty(120)
-    found = strength_kernel(fixed, feet, np.tile(np.eye(3), (count, 1, 1)), np.empty((count, 3)),
-                            np.empty((count, 3, 3)), 0.01 * physique.height / STATURE, depth, force)
-    return Strength(depth[:found], force[:found])
+def strength(physique: Physique, reading: Reading = "wedge", arm: Arm = "constant", gravity: float = 9.81) -> Strength:
+    """What a body's muscles can do under `gravity` [m/s²] downward. A body too stiff to crouch has one depth, 0."""
+    fixed, count, feet = frame(physique), len(physique.skeleton), flat_feet(physique)
+    table = np.zeros((64, 5))
+    found = strength_kernel(fixed, muscle(physique, reading, arm), gravity, feet, np.tile(np.eye(3), (count, 1, 1)),
+                            np.empty((count, 3)), np.empty((count, 3, 3)), 0.03 * physique.height / STATURE, DELAYS, table)
+    return Strength(*np.ascontiguousarray(table[:found].T))
 
 
-def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY) -> float:
+def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY, reading: Reading = "wedge",
+                 arm: Arm = "constant") -> float:
     """How deep [m] `crouch` will end, told from the body's `strength` in a few microseconds.
 
-    velocity, rise, gravity: as in `crouch`. NaN where the body is too weak for that take-off.
+    velocity, rise, gravity, reading, arm: as in `crouch`. NaN where the body is too weak for that take-off.
     """
-    able, velocity, gravity = strength(physique), upward(velocity, 1.0), upward(gravity, -1.0)
+    velocity, gravity = upward(velocity, 1.0), upward(gravity, -1.0)
+    able = strength(physique, reading, arm, -float(gravity[1]))
     way = np.maximum(able.depth + rise, 0.02 * physique.height / STATURE)[:, None]
     required = physique.mass * np.linalg.norm(velocity * velocity[1] / (2.0 * way) - gravity, axis=-1)
-    spare = able.force - required
+    kinetic = 0.5 * physique.mass * float(velocity @ velocity)
+    spare = np.minimum(able.force / required, able.work / np.maximum(kinetic + able.spent, 1e-9)) - 1.0
     enough = np.flatnonzero(spare >= 0.0)
     if not len(enough):
         return math.nan
@@ -163,14 +196,16 @@ def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY) -> 
     return float(able.depth[n - 1] + part * (able.depth[n] - able.depth[n - 1]))
 
 
-def strongest(physique: Physique, rise: float, gravity=GRAVITY) -> float:
-    """The greatest upward take-off speed [m/s] of a body: v² = 2 d (F / m − g), at its best depth.
+def strongest(physique: Physique, rise: float, gravity=GRAVITY, reading: Reading = "wedge", arm: Arm = "constant") -> float:
+    """The greatest upward take-off speed [m/s] of a body, at its best depth: by force, v² = 2 d (F / m − g), and by
+    its springs' work.
 
-    rise, gravity: as in `crouch`. 0 for a body that can't rise against its own weight.
+    rise, gravity, reading, arm: as in `crouch`. 0 for a body that can't rise against its own weight.
     """
-    able, g = strength(physique), -float(upward(gravity, -1.0)[1])
-    square = 2.0 * (able.depth + rise) * (able.force / physique.mass - g)
-    return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
+    g = -float(upward(gravity, -1.0)[1])
+    able = strength(physique, reading, arm, g)
+    square = 2.0 * np.minimum((able.depth + rise) * (able.force / physique.mass - g), (able.work - able.spent) / physique.mass)
+    return float(np.sqrt(max(square.max(), 0.0)))
 
 
 def upward(value, sign: float) -> np.ndarray:
@@ -180,10 +215,33 @@ def upward(value, sign: float) -> np.ndarray:
 
 
 @kernel
-def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis, turns, local, positions,
-                  orientations, bends, torques, forces, required, history):
-    """Wind a standing body up; see `crouch`. standing: [m] its centre of mass's height, `pelvis` (3,) its
-    pelvis. history: (most + 1, 10) rows of pelvis, centre, force, required, balance, margin.
+def held_kernel(bends, spring):
+    """The work [J] that springs over bends (2, 3) [rad] hold."""
+    work = 0.0
+    for side in range(2):
+        for k in range(3):
+            work += work_kernel(bends[side, k], spring)
+    return work
+
+
+@kernel
+def between_kernel(depth, values, at):
+    """The value of a table (N,) at a depth [m]; beyond its ends, as at its ends."""
+    if at <= depth[0]:
+        return values[0]
+    for n in range(1, len(depth)):
+        if at < depth[n]:
+            part = (at - depth[n - 1]) / (depth[n] - depth[n - 1])
+            return values[n - 1] + part * (values[n] - values[n - 1])
+    return values[-1]
+
+
+@kernel
+def windup_kernel(fixed, spring, gains, velocity, rise, gravity, depths, spent, standing, feet, pelvis, turns, local,
+                  positions, orientations, bends, torques, forces, required, history):
+    """Wind a standing body up; see `crouch`. depths, spent: (N,) of its `Strength`. standing: [m] its centre of
+    mass's height, `pelvis` (3,) its pelvis. history: (most + 1, 12) rows of pelvis, centre, force, required, work,
+    needed, balance, margin.
 
     Returns how many rows there are, and whether both errors became small.
     """
@@ -194,6 +252,7 @@ def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis,
     error, before, step = np.zeros(3), np.zeros(3), np.empty(3)
     safe, leeway = pelvis.copy(), gains.longest
     floor = -math.inf  # below this the joints do not go
+    kinetic = 0.5 * body.total * (velocity[0] ** 2 + velocity[1] ** 2 + velocity[2] ** 2)
     rows, converged = 0, False
     for iteration in range(gains.most + 1):
         gap = pose_kernel(fixed, pelvis, top, feet, turns, local, positions, orientations)
@@ -206,23 +265,26 @@ def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis,
             safe[:] = pelvis
         centre_kernel(body, positions, orientations, centre)
         margin = support_kernel(body, feet, centre, middle)
-        force = force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces)
+        force = force_kernel(body, spring, feet, centre, positions, orientations, bends, torques, forces)
         push = max(standing - centre[1] + rise, 0.02 * size)
-        needed = 0.0
+        strong = 0.0
         for i in range(3):
             required[i] = body.total * (velocity[i] * velocity[1] / (2.0 * push) - gravity[i])
-            needed += required[i] ** 2
-        needed = math.sqrt(needed)
-        lacking = (needed - force) / needed if needed > 0.0 else 0.0
+            strong += required[i] ** 2
+        strong = math.sqrt(strong)
+        work, needed = held_kernel(bends, spring), kinetic + between_kernel(depths, spent, standing - centre[1])
+        lacking = 0.0
+        if strong > 0.0 and needed > 0.0:
+            lacking = max((strong - force) / strong, (needed - work) / needed)
         error[0], error[2] = gains.balance * (middle[0] - centre[0]), gains.balance * (middle[1] - centre[2])
         error[1] = -gains.drop * size * lacking
         row = history[rows]
         row[0:3], row[3:6] = pelvis, centre
-        row[6], row[7] = force, needed
-        row[8], row[9] = math.hypot(middle[0] - centre[0], middle[1] - centre[2]), margin
+        row[6], row[7], row[8], row[9] = force, strong, work, needed
+        row[10], row[11] = math.hypot(middle[0] - centre[0], middle[1] - centre[2]), margin
         rows += 1
         least = abs(top - LEAST * size - pelvis[1]) < 1e-6  # the smallest crouch may be more than enough
-        if row[8] < gains.balance_error and (abs(lacking) < gains.force_error or (least and lacking <= 0.0)):
+        if row[10] < gains.balance_error and (abs(lacking) < gains.muscle_error or (least and lacking <= 0.0)):
             converged = True
             break
         if leeway < 5e-4 or (iteration > 1 and row[0] == history[rows - 2, 0] and row[1] == history[rows - 2, 1]
@@ -242,29 +304,63 @@ def windup_kernel(fixed, gains, velocity, rise, gravity, standing, feet, pelvis,
 
 
 @kernel
-def strength_kernel(fixed, feet, local, positions, orientations, step, depth, force):
-    """Write depth and force (N,) as the pelvis goes down by `step` [m]; returns how many were possible."""
+def strength_kernel(fixed, spring, gravity, feet, local, positions, orientations, step, delays, table):
+    """Write depth, force, work, speed and spent (N, 5) of `Strength` as the pelvis goes down by `step` [m], the last
+    as deep as it goes; returns how many were possible, standing being one if nothing lower is."""
     pelvis, turns = np.empty(3), np.zeros((2, 3, 3))
-    centre, middle = np.empty(3), np.empty(2)
-    bends, torques, forces = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
     standing = stand_pelvis_kernel(fixed, feet, pelvis, turns, local, positions, orientations)
-    top, found = pelvis[1], 0
-    for n in range(len(depth)):
-        pelvis[1] = top - LEAST * fixed.deep / DEEP - n * step
-        balanced = False
-        for _ in range(20):
-            if pose_kernel(fixed, pelvis, top, feet, turns, local, positions, orientations) > 2e-3:
-                break
-            centre_kernel(fixed.body, positions, orientations, centre)
-            support_kernel(fixed.body, feet, centre, middle)
-            balanced = math.hypot(middle[0] - centre[0], middle[1] - centre[2]) < 2e-3
-            if balanced:
-                break
-            pelvis[0] += middle[0] - centre[0]
-            pelvis[2] += middle[1] - centre[2]
-        if not balanced:
+    top, least, found = pelvis[1], LEAST * fixed.deep / DEEP, 0
+    safe, low = pelvis.copy(), 0.0
+    for n in range(len(table) - 1):
+        low = least + n * step
+        pelvis[1] = top - low
+        if not _balance(fixed, pelvis, top, feet, turns, local, positions, orientations):
             break
-        depth[n] = standing - centre[1]
-        force[n] = force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces)
+        safe[:] = pelvis
+        _strong(fixed, spring, gravity, feet, standing, local, positions, orientations, delays, table[found])
         found += 1
-    return found
+    good, bad = (low - step if found else 0.0), low
+    for _ in range(6):  # as deep as its joints go
+        pelvis[:] = safe
+        pelvis[1] = top - 0.5 * (good + bad)
+        if _balance(fixed, pelvis, top, feet, turns, local, positions, orientations):
+            good = 0.5 * (good + bad)
+            safe[:] = pelvis
+        else:
+            bad = 0.5 * (good + bad)
+    _balance(fixed, safe, top, feet, turns, local, positions, orientations)
+    _strong(fixed, spring, gravity, feet, standing, local, positions, orientations, delays, table[found])
+    if found and table[found, 0] - table[found - 1, 0] < 1e-3:
+        return found  # the row before is as deep
+    return found + 1
+
+
+@kernel
+def _balance(fixed, pelvis, top, feet, turns, local, positions, orientations):
+    """Move a pelvis (3,) level until the body is balanced; whether it can be."""
+    centre, middle = np.empty(3), np.empty(2)
+    for _ in range(20):
+        if pose_kernel(fixed, pelvis, top, feet, turns, local, positions, orientations) > 2e-3:
+            return False
+        centre_kernel(fixed.body, positions, orientations, centre)
+        support_kernel(fixed.body, feet, centre, middle)
+        if math.hypot(middle[0] - centre[0], middle[1] - centre[2]) < 2e-3:
+            return True
+        pelvis[0] += middle[0] - centre[0]
+        pelvis[2] += middle[1] - centre[2]
+    return False
+
+
+@kernel
+def _strong(fixed, spring, gravity, feet, standing, local, positions, orientations, delays, row):
+    """Write depth, force, work, speed and spent (5,) of a body as it is placed."""
+    body, centre = fixed.body, np.empty(3)
+    bends, torques, forces, rows = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3)), np.empty((1, COLUMNS))
+    centre_kernel(body, positions, orientations, centre)
+    row[0] = standing - centre[1]
+    row[1] = force_kernel(body, spring, feet, centre, positions, orientations, bends, torques, forces)
+    row[2] = held_kernel(bends, spring)
+    links = links_kernel(body, feet, positions, orientations, bends)
+    thrust_kernel(links, spring, gravity, 1.0, delays, CHAIN, RUNGE_KUTTA, STEP, 360, rows)
+    row[3] = max(rows[0, 11], 0.0)
+    row[4] = row[2] - 0.5 * body.total * row[3] ** 2
