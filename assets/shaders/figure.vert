@@ -3,6 +3,7 @@
 #include occlusion.glsl
 in float open;
 in vec3 paint;
+uniform float behind;  // how far it is pushed along the line of sight, where it is seen alike [m]
 out vec3 v_at;
 out vec3 v_normal;
 out vec3 v_paint;
@@ -14,5 +15,5 @@ void main() {
     v_paint = paint;
     v_open = open * sky_seen(v_at, v_normal);
     v_tint = look[gl_InstanceID].rgb;
-    gl_Position = view_projection * vec4(v_at, 1.0);
+    gl_Position = view_projection * vec4(v_at + behind * normalize(v_at - eye.xyz), 1.0);
 }

@@ -71,7 +71,9 @@ class Hud:
             if not stays:
                 actions.append(f"{name}_panel")
         if told:
-            _place(places["legend"], moved)
+            left, top, wide, high = places["quality"]
+            beside = 380.0 * scale, 190.0 * scale  # in the middle below, at the feet of whom it is about
+            _place((left + wide + MARGIN * scale, top + high - beside[1], *beside), moved)
             imgui.begin("reconstruction", None, imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_nav)
             legend.draw(told, scale)
             imgui.end()
@@ -115,7 +117,6 @@ def layout(size: tuple[int, int], scale: float) -> dict[str, tuple[float, float,
               "quality": (gap, height - gap - quality, left, quality),
               "space": (width - right - gap, tops[1], right, upper),
               "plots": (width - right - gap, tops[1] + upper + gap, right, height - tops[1] - upper - 2 * gap),
-              "legend": (left + 2 * gap, height - gap - 190.0, max(min(between, 400.0), 250.0), 190.0),
               "strip": strip}
     return {name: tuple(scale * v for v in (*place[:2], *(max(side, LEAST) for side in place[2:])))
             for name, place in places.items()}

@@ -122,13 +122,6 @@ DEFAULT = Bindings((
         Binding("face", "face a direction", analog="look stick"),
         Binding("join", "a second player joins", ("J",), ("START",), mode=JOINING),
     )),
-    ("Look", (
-        Binding("orbit", "turn the camera", ("LEFT_BUTTON", "RIGHT_BUTTON"), ("LB",), held=True, analog="look stick"),
-        Binding("pan", "orbiting: push aside", ("MIDDLE_BUTTON",), held=True),
-        Binding("zoom", "nearer, farther", analog="wheel"),
-        Binding("recentre", "from behind", ("C",), ("RS",)),
-        Binding("camera_mode", "follow, orbit, fly", ("V",), ("UP",)),
-    )),
     ("Time", (
         Binding("pause", "pause", ("P",), ("START",)),
         Binding("step", "one step while paused", ("PERIOD",), ("DOWN",)),
@@ -138,6 +131,13 @@ DEFAULT = Bindings((
         Binding("scrub_on", "rewound: back, on", ("RIGHT",), ("RIGHT",), held=True, mode=REWOUND),
         Binding("resume", "rewound: go on from here", ("ENTER",), ("START",), mode=REWOUND),
         Binding("reset", "start again", ("R",), ("BACK",)),
+    )),
+    ("Look", (
+        Binding("orbit", "turn the camera", ("LEFT_BUTTON", "RIGHT_BUTTON"), ("LB",), held=True, analog="look stick"),
+        Binding("pan", "orbiting: push aside", ("MIDDLE_BUTTON",), held=True),
+        Binding("zoom", "nearer, farther", analog="wheel"),
+        Binding("recentre", "from behind", ("C",), ("RS",)),
+        Binding("camera_mode", "follow, orbit, fly", ("V",), ("UP",)),
     )),
     ("Reconstruct", (
         Binding("study", "from a few points, beside", ("X",)),

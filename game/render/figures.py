@@ -15,6 +15,8 @@ from .wear import worn
 
 BATCH = 16
 """Figures in a draw call: what fits the 16 KiB that every OpenGL 3.3 gives a uniform block."""
+BEHIND = 0.05
+"""A ghost is drawn as if so far behind itself [m]: a body that is as near as that covers it, without speckles."""
 KEPT = 8
 """Bodies kept on the graphics card; beyond, those that nobody wears make room."""
 _LAYOUT = "3f 3f 4u1 4f1 1f 3f"
@@ -119,21 +121,19 @@ class Figures:
         Of each only the front is seen: its depth comes first, then its colour where nothing of it is nearer.
         """
         for number, (batch, opacity) in enumerate(self.ghosts):
-            # a little behind whoever stands at the very same place
-            self.ctx.polygon_offset = 2.0 + 2.0 * number, 8.0 + 8.0 * number
             for colour in (False, True):
                 target(colour)
-                self._draw(batch, "body", opacity)
-        self.ctx.polygon_offset = 0.0, 0.0
+                self._draw(batch, "body", opacity, BEHIND * (1 + number))
 
-    def _draw(self, batch: tuple[Body, str, bytes, int], kind: str, opacity: float = 1.0) -> None:
+    def _draw(self, batch: tuple[Body, str, bytes, int], kind: str, opacity: float = 1.0, behind: float = 0.0) -> None:
         body, level, data, count = batch
         wardrobe = self.wardrobes[body]
         self.block.orphan()
         self.block.write(data)
         self.block.bind_to_uniform_block(gl.FIGURES)
         if kind == "body":
-            self.programs["painted" if wardrobe.pictures is None else "pictured"]["opacity"] = opacity
+            program = self.programs["painted" if wardrobe.pictures is None else "pictured"]
+            program["opacity"], program["behind"] = opacity, behind
             if wardrobe.pictures is not None:
                 wardrobe.pictures.use(gl.PICTURES)
         if body.thin:

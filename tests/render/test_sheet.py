@@ -40,7 +40,7 @@ def test_it_is_drawn_over_the_whole_picture_once(draw):
     plain, sheet = draw((left, right), "fast", (640, 360)), SHEETS["one"]
     over = draw((replace(left, sheet=sheet), right), "fast", (640, 360))
     changed = np.abs(over.astype(int) - plain).max(-1) > 20
-    assert changed[180, 60:320].mean() > 0.9 and changed[180, 320:580].mean() > 0.9 and not changed[:2].any()
+    assert changed[180, 110:320].mean() > 0.9 and changed[180, 320:530].mean() > 0.9 and not changed[:2].any()
 
 
 def test_what_is_held_shows_in_the_picture(draw):
