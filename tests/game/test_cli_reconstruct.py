@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -115,13 +116,13 @@ def test_a_stream_is_recorded_until_it_is_ended_and_never_lost(motion, tmp_path,
     for line in program.stderr:
         if "stand upright" in line:
             break
-    os.set_blocking(program.stderr.fileno(), False)
-    walk, told = controls.extract(clip), ""
+    walk, told = controls.extract(clip), []
+    listener = threading.Thread(target=lambda: told.extend(program.stderr))
+    listener.start()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         began = None
         for _ in range(3000):
-            told += program.stderr.read() or ""
-            if "recording" in told and began is None:
+            if began is None and any("recording" in line for line in list(told)):
                 began = time.monotonic()
             since = 0.0 if began is None else time.monotonic() - began
             if program.poll() is not None or (end and since > 2.0):
@@ -133,10 +134,9 @@ def test_a_stream_is_recorded_until_it_is_ended_and_never_lost(motion, tmp_path,
             time.sleep(1 / 90)
     if end:
         program.send_signal(end)
-    os.set_blocking(program.stderr.fileno(), True)
-    told += program.stderr.read()
     assert program.wait(60) == 0, told
-    assert "packets were broken" in told
+    listener.join()
+    assert "packets were broken" in "".join(told)
     made = load(out)
     assert 60 <= len(made) <= 200
     heights = made.kinematics()[0][..., 1]
