@@ -24,7 +24,8 @@ HELD = (0.95, 0.95, 0.92)
 class Reach:
     """The pointer over the points of a study, a stream of them, and the methods that are being learnt.
 
-    stream: a `controllers.reconstruction.sources.Source`; its points are held from the first on.
+    stream: a `controllers.reconstruction.sources.Source`; its points are held from the first on, beside the player as
+    a study's bodies are.
     """
 
     def __init__(self, methods: Methods, stream: Any = None):
@@ -72,7 +73,7 @@ class Reach:
         if not missing:
             return wanted.action, ""
         self.wanted, self.learning = wanted, Learning(missing, self.methods.file)
-        return "", f"learning, once, for {wanted.points} points"
+        return "", f"learning, once, for {wanted.count} points"
 
     def learnt(self) -> str:
         """The action that opens what has been learnt by now, or "!" and why it can't be; empty otherwise."""
@@ -102,10 +103,10 @@ class Reach:
         lines = []
         if self.wanted is not None:
             said = self.learning.said if self.learning is not None else ""
-            lines.append(f"learning for {self.wanted.points} points" + (f": {said}" if said else ""))
+            lines.append(f"learning for {self.wanted.count} points" + (f": {said}" if said else ""))
         if moment.study is not None:
             if moment.study.pins is None:
-                lines.append(f"from {moment.study.points} points: {key('study_points')} others, {key('study_ghosts')} ghosts, "
+                lines.append(f"from {moment.study.count} points: {key('study_points')} others, {key('study_ghosts')} ghosts, "
                              f"{key('study_hands')} hold them")
             elif self.stream is None:
                 lines.append(f"drag the points, wheel or {key('run')} deeper, {key('study_hide')} unseen, {key('study_hands')} let go")
@@ -149,7 +150,7 @@ class Reach:
         if now.study is None:
             return []
         if self.stream is not None:
-            seen = self.stream.at(time)
+            seen = self.stream.at(time) + np.array(now.study.beside)
             return ["pins=" + ";".join(written(place) for place in seen)]
         if self.grip is None or now.study.pins is None or self.camera is None:
             return []
@@ -187,7 +188,7 @@ class Reach:
             from .hud.legend import Legend  # loads ImGui, for those only who reconstruct
 
             self.panel = Legend()
-        return self.panel.ink(told, size, "" if study is None else f"from {study.points} points" if len(study.points) < 3 else "")
+        return self.panel.ink(told, size, "" if study is None else f"from {study.count} points")
 
     def close(self) -> None:
         """Give everything back."""

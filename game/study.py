@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from controllers.reconstruction import controls
+
 from .follow import Follows, beginning, follower_of
 from .input.wish import Wish
 from .methods import METHODS, NAMES, TINTS, Methods
@@ -52,6 +54,11 @@ class Study:
     def action(self) -> str:
         """The action that opens it."""
         return f"study={' '.join(self.methods)}@{self.points}"
+
+    @property
+    def count(self) -> int:
+        """How many points there are."""
+        return len(controls.SETS.get(self.points, self.points.split(",")))
 
     @property
     def goals(self) -> np.ndarray | None:
@@ -104,14 +111,14 @@ def joined(study: Study, performer: Character, methods: Methods, before: Mapping
     heading = float(performer.state.ground[2])
     beside = study.beside if any(study.beside) else (-ASIDE * math.cos(heading), 0.0, ASIDE * math.sin(heading))
     made: list[Character] = []
-    for number, (name, controls) in enumerate(learnt):
+    for number, (name, points) in enumerate(learnt):
         kept = before.get(NAMES[name])
-        if kept is not None and kept.follows.controls.names == controls.names:
+        if kept is not None and kept.follows.controls.names == points.names:
             made.append(replace(kept, opacity=GHOST if number else 1.0))
             continue
         # where hands hold the points, like the body that they move
         like, aside = (performer, np.array(beside)) if study.pins is None or not made else (made[0], np.zeros(3))
-        follows = Follows(name, controls, performer.name if study.pins is None else "", np.array(beside))
+        follows = Follows(name, points, performer.name if study.pins is None else "", np.array(beside))
         someone = follower_of(performer.controller, name, study.points, methods)
         made.append(Character(NAMES[name], someone, beginning(someone, like.state, aside), TINTS[name],
                               follows=follows, opacity=GHOST if number else 1.0))

@@ -68,6 +68,9 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     stream: a `controllers.reconstruction.sources.Source` of these points, placed where the first player's would be.
     A log is kept of all but clips.
     """
+    from controllers.reconstruction.controls import SETS
+
+    points = next((name for name, some in SETS.items() if points == ",".join(some)), points)
     pixels = pixels_of(size)
     wanted = tuple(dict.fromkeys([method, *(() if stream is not None else ("lpcr", "lpca"))]))
     controller = person_of(None)

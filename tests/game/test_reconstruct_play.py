@@ -339,8 +339,8 @@ def test_pins_that_can_not_be_are_refused(walker, action):
 
 
 def test_a_study_reads_as_it_writes():
-    for study in (Study(), Study(("nearest",), "lwrist,head+0/0.1/0"), Study().more_points(), Study().other_ghosts()):
-        assert opened(study.action) == study
+    for study, count in ((Study(), 4), (Study(("nearest",), "lwrist,head+0/0.1/0"), 2), (Study().more_points(), 5), (Study().other_ghosts(), 4)):
+        assert opened(study.action) == study and study.count == count
     assert opened("study=") is None
     cycle, seen = Study(points="2"), []
     for _ in range(5):
@@ -411,7 +411,12 @@ def test_a_stream_holds_the_points(walker):
     play = game(walker, stream=Somebody())
     play.do("study")
     ticks(play, 5)
-    assert play.now.study.pins[1] is None and play.now.study.pins[0] == (0.4, 1.0, 0.3)
+    assert play.now.study.pins[1] is None
+    assert play.now.study.pins[0] == pytest.approx(np.array([0.4, 1.0, 0.3]) + play.now.study.beside, abs=1e-4)
+    play.do("study_points")
+    play.do("study_hands")
+    ticks(play, 3)
+    assert play.now.study.points == "4" and play.now.study.pins is not None  # they are the stream's
 
 
 def test_the_errors_of_one_moment_by_hand():
