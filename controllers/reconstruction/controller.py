@@ -165,7 +165,9 @@ class Reconstruction:
             following = replace(following, seen=seen)
         offset, rate = settle(following.offset, following.rate, FADE, dt)
         following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
-        shown = _moved(following.pose, _difference(following.before, following.pose) * (following.ahead / self.dt))
+        shown = following.pose
+        if following.ahead > 0.0:
+            shown = _moved(shown, _difference(following.before, shown) * (following.ahead / self.dt))
         pose = self._grown(_moved(shown, offset), state.floor)
         return self._after(state, pose, following, dt), pose
 
@@ -178,19 +180,20 @@ class Reconstruction:
 
     def _frame(self, following: Following, points: np.ndarray) -> Following:
         """One frame of the method on."""
-        body, before = self._points(following.pose), self._points(following.before)
-        motion = (body - before) / self.dt
+        now, earlier = _placed(following.pose), _placed(following.before)
+        body = self.controls.on(*now)
+        motion = (body - self.controls.on(*earlier)) / self.dt
         gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
         memory, pose = self.method.step(following.memory, goals)
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
-        step = _difference(following.pose, following.before)
-        ahead = _moved(following.pose, step)
-        if np.linalg.norm(_joints(pose) - _joints(ahead), axis=-1).max() <= LEAP:
+        if np.linalg.norm(_placed(pose)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
             return after
         # the body goes on as it did, and what it would have leapt fades
+        step = _difference(following.pose, following.before)
+        ahead = _moved(following.pose, step)
         return replace(after, before=_moved(pose, -step), offset=_difference(_moved(ahead, following.offset), pose))
 
     def _after(self, state: CharacterState, pose: Pose, following: Following, dt: float) -> CharacterState:
@@ -236,7 +239,7 @@ class Reconstruction:
 
     def _points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""
-        return self.controls.on(*forward_kinematics(SKELETON, pose.root, pose.rotations))
+        return self.controls.on(*_placed(pose))
 
     def _shrunk(self, pose: Pose, floor: float) -> Pose:
         return Pose((np.asarray(pose.root, float) - [0.0, float(floor), 0.0]) / self.factor,
@@ -263,9 +266,9 @@ def towards(state: CharacterState, points: np.ndarray) -> np.ndarray:
     return np.array([min(1.4, distance) * max(np.cos(bearing), 0.0), np.clip(2.0 * bearing, -2.0, 2.0), 0.0])
 
 
-def _joints(pose: Pose) -> np.ndarray:
-    """Where (J, 3) [m] a standard body has its joints."""
-    return forward_kinematics(SKELETON, pose.root, pose.rotations)[0]
+def _placed(pose: Pose) -> tuple[np.ndarray, np.ndarray]:
+    """A standard body's joints: positions (J, 3) [m] and orientations (J, 3, 3)."""
+    return forward_kinematics(SKELETON, pose.root, pose.rotations)
 
 
 def _difference(to: Pose, start: Pose) -> np.ndarray:
