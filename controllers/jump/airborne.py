@@ -19,6 +19,8 @@ GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
 PLANT = 0.09
 """From the toes' landing to the heels' [s]."""
+MEET = 0.5, 14.0
+"""How much of the speed that the ground bends them with legs have as they touch down, and at most [rad/s]."""
 FADE = 0.14
 """Half-life with which the start's pose gives way to the jump's [s]."""
 STEADY = 0.12
@@ -85,14 +87,19 @@ class Airborne:
         return miss + 2.0 * np.pi * np.round((meant - turned.sum() - miss @ across) / (2.0 * np.pi)) * across
 
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pelvis (3,) and local rotations at touch-down, the body turned `turn` (3, 3)."""
-        local = self.air[-1].copy()
-        local[0] = turn
-        root = self.way.land + [0.0, -0.05, 0.0]
-        feet = np.column_stack([self.landing[:, :4], np.full(2, TOES_DOWN), np.zeros(2)])
-        stand_kernel(self.body, self.way.land, feet, self.flex, root, local,
-                     np.empty((self.count, 3)), np.empty((self.count, 3, 3)))
-        return root, local
+        """The local rotations (J, 3, 3) at touch-down, the body turned `turn` (3, 3), and how fast the legs
+        (8, 3) bend then [rad/s]: they begin to give before the floor makes them."""
+        step, posed = 1.0 / 240.0, []
+        for time in (0.0, step):
+            local = self.air[-1].copy()
+            local[0] = turn
+            centre = self.way.land + time * self.way.falling
+            feet = np.column_stack([self.landing[:, :4], np.full(2, _toes_down(time)), np.zeros(2)])
+            stand_kernel(self.body, centre, feet, self.flex, centre + [0.0, -0.05, 0.0], local,
+                         np.empty((self.count, 3)), np.empty((self.count, 3, 3)))
+            posed.append(local)
+        bending = (vectors(posed[1][self.legs]) - vectors(posed[0][self.legs])) / step
+        return posed[0], np.clip(MEET[0] * bending, -MEET[1], MEET[1])
 
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of
@@ -106,7 +113,7 @@ class Airborne:
         angles = self.carriage(self.down + after)
         feet = np.ones((len(after), 2, 6))
         feet[..., :5] = self.landing
-        feet[..., 4] = (TOES_DOWN * np.clip(1.0 - after / PLANT, 0.0, 1.0) ** 2)[:, None]
+        feet[..., 4] = _toes_down(after)[:, None]
         upright = self._upright(angles[:, 0])
         rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
         turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
@@ -114,6 +121,11 @@ class Airborne:
         ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
                       self.air_roots[-1].copy(), roots, local)
         return after, (roots, local, c, v, a), max(landing.until(after), PLANT + 0.02)
+
+
+def _toes_down(time):
+    """How far feet point down (...) [rad] so long after the toes touched [s]."""
+    return TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
 
 
 def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:

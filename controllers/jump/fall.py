@@ -18,7 +18,7 @@ from . import style
 from .airborne import LOWEST, PLANT, SAME, Airborne, hermite
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
-from .path import Path, Start, landing_feet, measures
+from .path import Path, Start, landing_feet, measures, softened
 from .plan import Plan
 
 BOUNCE, FRICTION = 0.05, 0.4
@@ -109,7 +109,8 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: 
                 near = gap(foot := np.array([[place[0], floor + height * size, place[2]]]), thing)[0]
                 place = place + max(aside * size - near, 0.0) * _out(foot[0], thing) * [1.0, 0.0, 1.0]
         floor = floor_at(place[0], place[2], around, centre[1] - LOW * touch)
-        time = max(until(floor + touch), min(LEAST, until(floor + LOW * touch)), 0.03)
+        soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), size)
+        time = max(until(floor + touch - soft), min(LEAST, until(floor + LOW * touch)), 0.03)
     return time, centre + time * velocity + 0.5 * time**2 * gravity, np.array([place[0], floor, place[2]])
 
 
@@ -166,7 +167,7 @@ class _Fall(Airborne):
     def _fly(self, momentum: np.ndarray, landed: np.ndarray, tolerance: float) -> None:
         """The flight with an angular momentum (3,), the legs reaching as if the body came down turned `landed`."""
         ids, airtime = self.legs, self.way.airtime
-        now, end = self.start.rotations[ids], vectors(self._touching(landed)[1][ids])
+        now, end = self.start.rotations[ids], vectors(self._touching(landed)[0][ids])
         step = self.flying[1]
         before = vectors(turns(-step * self.start.rates[ids]) @ now)
         now = vectors(now)

@@ -34,6 +34,9 @@ SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
+SOFT = (0.035, 2.5, 0.10)
+"""How much lower [m] a body touches down for each m/s that it falls faster than the second [m/s], and at most:
+bent legs give way without the knees flying. At standard height and what an adult falls."""
 FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 LEAST_CROUCH = 0.07
@@ -187,15 +190,16 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     low = start.centre + start.velocity * wind_up * [1.0, 0.0, 1.0]
     stance = feet[:, :3].mean(0) * [1.0, 0.0, 1.0]
     leave = middle * [1, 0, 1] + [0.0, floor + heights.leave, 0.0]
-    trail, deep, strong = 0.0, 0.1, True
+    trail, soft, deep, strong = 0.0, 0.0, 0.1, True
     for _ in range(12 if running else 6):
-        land = goal * [1, 0, 1] - trail * towards + [0.0, goal[1] + _over(heights.touch - squat, trail), 0.0]
+        land = goal * [1, 0, 1] - trail * towards + [0.0, goal[1] + _over(heights.touch - max(squat, soft), trail), 0.0]
         flight = airtime if airtime is not None else max(
             least_effort(leave, land, passing, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
             apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
         velocity = take_off_velocity(leave, land, flight, gravity)
         speed = float(velocity @ towards)
         trail = min(0.30 * size, max(0.16 * speed, 0.0))
+        soft = softened(g * flight - float(velocity[1]), size)
         if running:
             drop = 0.07 * size
             height = min(start.centre[1] - 0.5 * drop, floor + heights.stand - drop)
@@ -228,6 +232,11 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity), strong, far, float(goal[1]) - floor, start.heading, low_arms)
+
+
+def softened(fall: float, size: float) -> float:
+    """How much lower [m] a body of this size touches down that falls with `fall` [m/s], see SOFT."""
+    return size * min(SOFT[0] * max(fall / np.sqrt(size) - SOFT[1], 0.0), SOFT[2])
 
 
 def _over(height: float, aside: float) -> float:

@@ -6,7 +6,10 @@ follow from where the feet are, and in the air the turning of the whole body fol
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from ..body.rotations import yaw
 from . import style
@@ -15,11 +18,19 @@ from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .path import FOOT_FADE, HEEL_UP, Path, Start, landing_feet
 from .plan import Plan
+from .poise import support_kernel
+from .thrust import push
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
 HEELS_RISE = (0.45, 0.85)
 """When in the push a heel starts to rise, at the earliest and at the latest."""
+RUNNERS_HEEL = 0.2, 1.15
+"""When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
+HALF_WAY = 0.6
+"""How far legs are from straight to landing in the middle of a flight that is too short to tuck them."""
+STEADY_MARGIN, TRIES = 0.012, 3
+"""A standing jumper's centre of mass stays so far inside of what carries it [m], at standard height; it is moved so often."""
 FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 5, 0.02
@@ -32,7 +43,18 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
     Checks nothing: see `reach`.
     """
     landing = landing_feet(np.asarray(place, float), start.heading, physique.tables)
-    return _Draft(physique, start, way, start.planted(floor, physique.tables), landing).plan()
+    planted = start.planted(floor, physique.tables)
+    draft = _Draft(physique, start, way, planted, landing)
+    made = draft.plan()
+    for _ in range(TRIES):
+        aside = draft.aside()
+        if not aside.any():
+            break
+        low = draft.way.low + aside
+        way = replace(way, low=low, push=push(way.leave - low, way.passing, way.velocity, way.gravity))
+        draft = _Draft(physique, start, way, planted, landing)
+        made = draft.plan()
+    return made
 
 
 class _Draft(Airborne):
@@ -67,6 +89,21 @@ class _Draft(Airborne):
             mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
             contacts, self.off, self.leave, self.down, self.down + LOWEST, self.down + through, self.landing, self.momentum.copy(), way)
 
+    def aside(self) -> np.ndarray:
+        """How much farther over its feet (3,) [m] a standing body must crouch: zeros where it is balanced.
+
+        In deep crouches heels may rise, and then only the balls of the feet carry."""
+        if self.start.single is not None:
+            return np.zeros(3)
+        middle, wanted = np.empty(2), STEADY_MARGIN * self.body.sole / 0.02
+        worst, aside = wanted - 0.004, np.zeros(3)
+        for n in np.flatnonzero((self.times > 0.3 * self.off) & (self.times < self.off + 0.4 * self.way.push.duration)):
+            inside = support_kernel(self.body, self.feet[n], self.centres[n], middle)
+            if inside < worst:
+                way = middle - self.centres[n, [0, 2]]
+                worst, aside[[0, 2]] = inside, way * (wanted - inside) / max(float(np.hypot(*way)), 1e-9)
+        return aside
+
     def _prepare_ground(self) -> None:
         """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
         way, start = self.way, self.start
@@ -90,7 +127,8 @@ class _Draft(Airborne):
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
         self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])
-        self.feet[..., 4] += (HEEL_UP * late**2 * (3.0 - 2.0 * late))[:, None]
+        risen = HEEL_UP * late**2 * (3.0 - 2.0 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
+        self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))
         self.local = np.tile(np.eye(3), (len(self.times), self.count, 1, 1))
@@ -102,7 +140,7 @@ class _Draft(Airborne):
     def _heels_rise(self, share: np.ndarray) -> float:
         """When in the push (0 … 1) the heels rise: not before a standing jumper is over the balls of the feet."""
         if self.start.single is not None:
-            return HEELS_RISE[0]
+            return RUNNERS_HEEL[0]
         past = (self.centres - self.planted[:, None, :3]) @ yaw(self.start.heading)[:, 2]
         over = (past > 0.0).all(0) & (share > 0.0)
         return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
@@ -162,27 +200,31 @@ class _Draft(Airborne):
             place_kernel(self.body, self.roots[k - 2], self.local[k - 2], placed[0][k], placed[1][k])
         momentum_kernel(self.body, placed[0][0], placed[1][0], placed[0][1], placed[1][1], step,
                         self.momentum, np.empty((3, 3)))
-        self.air[:, self.legs] = self._legs_in_flight(step, self._touching(landed)[1])
+        self.air[:, self.legs] = self._legs_in_flight(step, *self._touching(landed))
         self.air[0] = self.local[-1]
         rate = vectors(self.local[-1, 0] @ self.local[-2, 0].T) / step
         flight_kernel(self.body, self.arc, self.air, rate, self.momentum, self.flying[1], self.air_roots, tolerance)
 
-    def _legs_in_flight(self, step: float, end: np.ndarray) -> np.ndarray:
-        """The legs' local rotations (N, 8, 3, 3): out of the push straight, then tucked, then reaching."""
+    def _legs_in_flight(self, step: float, end: np.ndarray, bending: np.ndarray) -> np.ndarray:
+        """The legs' local rotations (N, 8, 3, 3): out of the push straight, then tucked, then reaching; they
+        touch down with `bending` (8, 3) [rad/s]."""
         airtime, ids = self.way.airtime, self.legs
         before, last, reach = vectors(self.local[-2, ids]), vectors(self.local[-1, ids]), vectors(end[ids])
         tuck = np.clip((airtime - 0.25) / 0.35, 0.0, 1.0)
-        straight, folded = last.copy(), reach.copy()
+        straight = last.copy()
         for side, hip in enumerate((0, 4)):
             if self.feet[-1, side, 5] != FREE:
                 straight[hip, 0], straight[hip + 1, 0], straight[hip + 2, 0] = last[hip, 0] + 0.10, 0.12, last[hip + 2, 0] + 0.08
-            folded[hip, 0] = reach[hip, 0] - 0.45 * tuck
-            folded[hip + 1, 0] = reach[hip + 1, 0] + 0.85 * tuck
-            folded[hip + 2, 0] = 0.25
+        share = HALF_WAY + (1.0 - HALF_WAY) * tuck  # there is no time to tuck in a short flight
+        folded = straight + share * (reach - straight)
+        folded[[0, 4], 0] -= 0.45 * tuck
+        folded[[1, 5], 0] += 0.85 * tuck
+        folded[[2, 6], 0] += share * (0.25 - folded[[2, 6], 0])
         times = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
-        slopes = np.zeros((4, 8, 3))
-        slopes[0] = (last - before) / step
-        return turns(hermite(times, np.stack([last, straight, folded, reach]), slopes, self.flying))
+        values = np.stack([last, straight, folded, reach])
+        slopes = PchipInterpolator(times, values).derivative()(times)
+        slopes[0], slopes[3] = (last - before) / step, bending
+        return turns(hermite(times, values, slopes, self.flying))
 
 
 def quintic(start, velocity, acceleration, end, end_velocity, end_acceleration, times):

@@ -18,19 +18,21 @@ from game.scene import Box
 FPS = 60
 HIGH = Box((0.0, 1.5, -1.0), (3.0, 3.0, 2.4))
 """A platform to fall off: its edge lies 0.2 m ahead."""
-CASES = {"a wall": (0.0, 1.2, (), Box((0.0, 1.4, 0.75), (2.0, 1.0, 0.4)), 0.08),
-         "a beam": (0.0, 1.3, (), Box((0.0, 0.6, 0.75), (2.0, 0.7, 0.2)), 0.08),
-         "a roof": (0.0, 0.9, (), Box((0.0, 2.27, 0.4), (2.0, 1.0, 2.0)), 0.0),
-         "a wall beyond an edge": (3.0, 1.6, (HIGH, Box((0.0, 1.5, 2.0), (3.0, 3.0, 1.6))), Box((0.0, 4.5, 0.95), (2.0, 1.2, 0.4)), 0.08)}
+CASES = {"a wall": (0.0, 0.0, 1.2, (), Box((0.0, 1.4, 0.75), (2.0, 1.0, 0.4)), 0.08),
+         "a beam": (0.0, 0.0, 1.2, (), Box((0.0, 0.6, 0.75), (2.0, 0.7, 0.2)), 0.08),
+         "a roof": (0.0, 0.0, 0.9, (), Box((0.0, 2.27, 0.4), (2.0, 1.0, 2.0)), 0.0),
+         "a wall beyond an edge": (3.0, 1.8, 1.6, (HIGH, Box((0.0, 0.9, 2.0), (3.0, 1.8, 1.6))),
+                                   Box((0.0, 4.4, 0.95), (2.0, 1.4, 0.4)), 0.08)}
+"""Floors that it leaves and aims at [m], how far, what stands there before, what comes in the way, how long after take-off."""
 every = pytest.mark.parametrize("name", CASES)
 
 
 def played(jump, locomotion, name, wish=np.zeros(3)):
     """States and centres of mass of a jump that something comes in the way of after take-off, and the frame of the hit."""
-    floor, far, props, late, when = CASES[name]
+    floor, goal, far, props, late, when = CASES[name]
     person = Supervisor({"locomotion": locomotion, "jump": jump})
     state = person.start((0.0, 0.0, 0.0), floor)
-    leap = Leap(ahead(state, far))
+    leap = Leap(ahead(state, far, goal - floor))
     states, hit = [], None
     for _ in range(280):
         jumps = state.memory.active == "jump"
@@ -75,7 +77,7 @@ def test_it_ends_on_its_feet_on_the_floor_below_clear_of_what_it_struck(jump, lo
     assert float(states[-1].floor) == 0.0 and states[-1].contacts.all()
     assert np.abs(corners[:, 1]).max() < 0.02
     assert abs(turned[0, 0, 1, 1]) > 0.95 and centre[0, 1] > 0.9
-    for thing in (*CASES[name][2], CASES[name][3]):
+    for thing in (*CASES[name][3], CASES[name][4]):
         assert gap(positions[0], thing).min() > 0.0
 
 

@@ -168,14 +168,14 @@ def test_a_jump_straight_up_under_an_open_sky_raises_the_arms(jump, standing):
 def test_ten_jumps_straight_up_stay_where_they_are(jump, locomotion):
     person = Supervisor({"locomotion": locomotion, "jump": jump})
     state, places, jumps = person.start(), [], 0
-    for _ in range(1600):
+    for _ in range(2400):
         at_rest = state.memory.active == "locomotion" and not np.abs(state.velocity).max() > 0.02
         before = state.memory.active
         state, _ = person.step(state, Intent(leap=Leap(None, 0.5) if at_rest and jumps < 10 else None), 1 / FPS)
         if before == "locomotion" and state.memory.active == "jump":
             jumps += 1
             places.append(jump.middle(jump.start_of(replace(state, memory=None)), 0.0))
-        if jumps == 10 and state.memory.active == "locomotion":
+        if jumps == 10 and at_rest and state.memory.active == "locomotion":
             break
     assert jumps == 10
     places.append(jump.middle(jump.start_of(replace(state, memory=None)), 0.0))
