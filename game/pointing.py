@@ -11,7 +11,7 @@ from .follow import Errors, lately
 from .scene import Dot, Figure, Line, Overlays, Sketch
 from .world import Character, World
 
-SEEN, LOST, MISSED = (0.90, 0.72, 0.10), (0.30, 0.31, 0.34), (0.85, 0.06, 0.03)
+SEEN, LOST, MISSED = (0.90, 0.72, 0.10), (0.88, 0.88, 0.86), (0.85, 0.06, 0.03)
 """Colours of a point that is seen, of one that is not, and of the way from a point to where the body has it."""
 RADIUS = 0.036
 """Of a point [m]."""
@@ -74,7 +74,7 @@ def marks_of(old: Character, new: Character, figure: Figure, performer: Figure |
 
 def _balls(places: np.ndarray, seen: np.ndarray) -> list[Sketch]:
     return [Dot("points", place, SEEN, RADIUS, through=True, look="ball") if there else
-            Dot("points", place, LOST, RADIUS, through=True, look="ring", opacity=0.7)
+            Dot("points", place, LOST, 1.25 * RADIUS, through=True, look="ring", opacity=0.85)
             for place, there in zip(places, seen)]
 
 
