@@ -37,10 +37,11 @@ CLOSE = 0.3
 """Nobody walks to points that are so close [m]."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
-LEAP = 0.15
+LEAP = 0.2
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
+_CALMED = 0.7
 _FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
 _SMOOTH = 0.1  # s, half-life of the ground frame's heading and of its velocity
 
@@ -191,8 +192,9 @@ class Reconstruction:
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
         if np.linalg.norm(_placed(pose)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
             return after
-        # the body goes on as it did, and what it would have leapt fades
-        step = _difference(following.pose, following.before)
+        # the body goes on as it did, and what it would have leapt fades; less fast each time, or leaps upon leaps
+        # would carry it away
+        step = _CALMED * _difference(following.pose, following.before)
         ahead = _moved(following.pose, step)
         return replace(after, before=_moved(pose, -step), offset=_difference(_moved(ahead, following.offset), pose))
 

@@ -264,3 +264,27 @@ def test_a_walker_goes_to_points_that_are_too_far_away(follower, points):
     assert duty[0] == "locomotion" and duty[-1] == "reconstruction"
     assert np.abs(follower.controls.on(*_placed([state]))[0] - there).max() < 0.03
     assert not towards(state, there * np.nan).any()
+
+
+class Hopping:
+    """A method that changes its mind every few frames: it hops aside and back by `far` metres."""
+
+    def __init__(self, method, far, every):
+        self.method, self.far, self.every = method, far, every
+
+    def begin(self, frames, tracks):
+        return self.method.begin(frames, tracks), 0
+
+    def step(self, memory, points):
+        inner, pose = self.method.step(memory[0], points)
+        aside = self.far if memory[1] // self.every % 2 else 0.0
+        return (inner, memory[1] + 1), Pose(pose.root + [aside, 0.0, 0.0], pose.rotations)
+
+
+@pytest.mark.parametrize("every", [1, 2, 60])
+def test_a_method_that_hops_makes_no_body_hop_and_carries_none_away(follower, clip, points, every):
+    hopping = Reconstruction(Hopping(follower.method, 0.4, every), follower.controls, starts=follower.starts)
+    positions = bodies(SKELETON, played(hopping, hopping.begin(points[0]), points[1:]))
+    truth = clip.kinematics()[0][1:]
+    assert 0.4 / DT**2 > 1400 and pulls(positions).max() < 200
+    assert position_error(positions, truth).max() < 0.5
