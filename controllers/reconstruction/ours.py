@@ -1,9 +1,12 @@
-"""Our own way to reconstruct: networks that see the points' last half second, and what they were off by before.
+"""Our own way to reconstruct: networks that see the points' last half second, what they were off by, and neighbours.
 
 What the networks are off by hardly changes from frame to frame: a part of it fades within a sixth of a second, and
 more than half of its variance stays as long as a take lasts, since it is how this body is held and its sensors sit.
 So the newest error, known from the body's own output, is expected again (an autoregressive model of the error). The
 solver corrects that by what the points say, and the correction in turn is kept.
+
+The local regression of the paper has a small say beside them: it knows how limbs turn that no point tells of, but
+running on its own output it strays.
 """
 
 from __future__ import annotations
@@ -22,9 +25,9 @@ from .database import Database
 from .filters import Motion, noise
 from .learning import LAGS, WORLD, Networks, learn, placed, seen_from, view
 from .baselines.windows import Samples
-from .method import SPAN, Memory, Method
+from .method import SPAN, Fused, Local, LocalRegression, Memory, Method
 from .neighbours_cells import Cells
-from .prior import FLOOR
+from .prior import FLOOR, Regression
 from .segments import Segments
 from .solver import Solver
 from .solver_kernel import FAR
@@ -40,6 +43,10 @@ KEPT = 0.999
 """What is left of the lasting part a frame later: half of it after twelve seconds."""
 LOOSENING = 100.0
 """How much larger than on recordings that were learnt the errors may be: the points are met."""
+NEIGHBOURS = 60
+"""From how many recorded segments the local regression is learnt; more gain nothing."""
+LISTENED = Regression(loosening=3e4)
+"""How the local regression is learnt, and how little it is believed: ten times more, and the body strays with it."""
 ACCELERATION = 10.0
 """How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
 ROUGH = 0.003
@@ -115,7 +122,7 @@ class Remembered:
 class Ours:
     """The method with its filters. steady: whether points are filtered as far as they are noisy, and poses a little.
 
-    method: its prior is an `Expectation`.
+    method: its prior is several, fused, of which the first is an `Expectation`.
     """
 
     method: Method
@@ -125,9 +132,10 @@ class Ours:
         """See `Method.begin`."""
         memory = self.method.begin(frames, tracks)
         which = np.maximum(np.arange(len(frames) - 1, len(frames) - 1 - SPAN, -1), 0)
-        known = self.method.prior.known(memory.frames, np.asarray(tracks, float)[which], memory.points)
+        expectation, *others = self.method.prior.priors
+        known = expectation.known(memory.frames, np.asarray(tracks, float)[which], memory.points)
         pose = placed(memory.frames[:2], np.asarray(tracks, float)[which[:2]])
-        return Remembered(replace(memory, hint=known), memory.points[_RECENT - 1::-1],
+        return Remembered(replace(memory, hint=(known, *(None for _ in others))), memory.points[_RECENT - 1::-1],
                           Motion(memory.points[0], memory.points[0] - memory.points[1]), Motion(pose[0], _error(*pose)))
 
     def step(self, memory: Remembered, points: np.ndarray) -> tuple[Remembered, Pose]:
@@ -163,7 +171,9 @@ def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETO
         return learn(Samples.of(database, plain), progress=told)
     networks = kept("networks", database, (controls.joints.tolist(), controls.offsets.tolist()), make, Networks.save,
                     Networks.load, _SOURCES)
-    return Ours(Method(Expectation(networks, 1 / database.fps), replace(plain, skeleton=skeleton)), steady)
+    prior = Fused((Expectation(networks, 1 / database.fps),
+                   Local(LocalRegression(LISTENED), cells(database, controls), NEIGHBOURS)))
+    return Ours(Method(prior, replace(plain, skeleton=skeleton)), steady)
 
 
 def cells(database: Database, controls: Controls, m: int = 3, stride: int = 4) -> Cells:

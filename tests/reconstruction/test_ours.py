@@ -15,7 +15,7 @@ from controllers.reconstruction.chart import FORWARD, HEIGHT, JOINTS, LEFTWARD, 
 from controllers.reconstruction.controls import parse
 from controllers.reconstruction.database import Database, DatabaseError, Writer
 from controllers.reconstruction.learning import LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view
-from controllers.reconstruction.method import SPAN, Method
+from controllers.reconstruction.method import Fused, SPAN, Method
 from controllers.reconstruction.ours import KEPT, LASTING, FADING, Expectation, Ours, cells, ours
 from controllers.reconstruction.solver import Solver
 
@@ -42,7 +42,7 @@ def world(tmp_path_factory):
 def method(world):
     """Ours with a small network that has learnt that motion."""
     networks = learn(world[2], seeds=1, batches=2500, hidden=(128, 128))
-    return Ours(Method(Expectation(networks, DT), world[1]))
+    return Ours(Method(Fused((Expectation(networks, DT),)), world[1]))
 
 
 @pytest.fixture(scope="module")
@@ -215,7 +215,7 @@ def disk(tmp_path, monkeypatch):
 def test_what_was_learnt_is_kept_for_the_same_takes_and_points_alone(world, disk):
     database, _, samples = world
     four, inputs = parse("4", SKELETON), draw(samples, np.arange(5))[0]
-    one, two = (ours(database, four).method.prior.networks.predict(inputs) for _ in range(2))
+    one, two = (ours(database, four).method.prior.priors[0].networks.predict(inputs) for _ in range(2))
     assert len(disk) == 1 and np.array_equal(one, two)
     ours(database.hold_out([database.takes[0].clip])[0], four)
     assert len(disk) == 2
@@ -240,7 +240,7 @@ def test_what_is_damaged_on_disk_is_learnt_anew(world, disk, tmp_path):
 
 def test_a_full_disk_is_no_harm(world, disk, monkeypatch):
     monkeypatch.setattr(Networks, "save", lambda *_: (_ for _ in ()).throw(OSError("no space left")))
-    assert np.isfinite(ours(world[0], parse("4", SKELETON)).method.prior.networks.errors).all()
+    assert np.isfinite(ours(world[0], parse("4", SKELETON)).method.prior.priors[0].networks.errors).all()
 
 
 def test_cells_from_disk_find_the_same(world, disk, monkeypatch):
