@@ -159,7 +159,7 @@ class Play:
             self.helping = not self.helping
         elif action == "full_screen":
             self.full_screen = not self.full_screen
-        elif action == "quit" and not self.helping and self.now.study is not None and self.now.study.pins is not None:
+        elif action == "quit" and not self.helping and self.reach.holds(self.now):
             self.do("study_hands")
         elif action == "quit":
             self.done, self.helping = not self.helping, False

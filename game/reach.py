@@ -62,7 +62,7 @@ class Reach:
             self.grip = None
             return "pins=hold" if open_.pins is None else "pins=", ""
         number = self._under(now)
-        if number is None or open_.pins is None:
+        if number is None:
             return "", "no point that is held is under the pointer"
         place = self._places(now)[number] if open_.pins[number] is None else np.full(3, np.nan)
         return f"pin={number}:{written(place)}", ""
@@ -127,6 +127,10 @@ class Reach:
             self.grip = self.grip.slid(dx, dy)
         return True
 
+    def holds(self, now: Moment) -> bool:
+        """Whether hands hold the points."""
+        return self.stream is None and now.study is not None and now.study.pins is not None
+
     def scroll(self, notches: float) -> bool:
         """The wheel; whether it pushes a point that is held."""
         if self.grip is not None:
@@ -152,7 +156,7 @@ class Reach:
         if self.stream is not None:
             seen = self.stream.at(time) + np.array(now.study.beside)
             return ["pins=" + ";".join(written(place) for place in seen)]
-        if self.grip is None or now.study.pins is None or self.camera is None:
+        if self.grip is None or not self.holds(now) or self.camera is None:
             return []
         place = written(self.grip.place(self.camera, self.aspect, *self.pointer))
         if place == self.sent:
@@ -168,7 +172,7 @@ class Reach:
         return own if goals is None else np.where(np.isfinite(goals), goals, own)
 
     def _under(self, now: Moment) -> int | None:
-        if now.study is None or now.study.pins is None or self.camera is None or self.stream is not None:
+        if not self.holds(now) or self.camera is None:
             return None
         return nearest(self.camera, self.aspect, self._places(now), *self.pointer)
 
@@ -177,7 +181,7 @@ class Reach:
     def marked(self, figures: Sequence[Figure], moment: Moment) -> tuple[Figure, ...]:
         """The figures with a ring round the point that is held, or would be."""
         number = self.grip.number if self.grip is not None else self._under(moment)
-        if number is None or moment.study is None or moment.study.pins is None:
+        if number is None or not self.holds(moment):
             return tuple(figures)
         ring = Dot("points", self._places(moment)[number], HELD, 1.7 * RADIUS, through=True, look="ring")
         return (replace(figures[0], sketches=(*figures[0].sketches, ring)), *figures[1:])

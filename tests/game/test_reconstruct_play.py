@@ -417,6 +417,8 @@ def test_a_stream_holds_the_points(walker):
     play.do("study_hands")
     ticks(play, 3)
     assert play.now.study.points == "4" and play.now.study.pins is not None  # they are the stream's
+    play.do("quit")
+    assert play.done
 
 
 def test_the_errors_of_one_moment_by_hand():
