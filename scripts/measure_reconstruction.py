@@ -110,10 +110,12 @@ class Study:
 
     def subjects(self) -> str:
         """People nothing was learnt from."""
-        held = sorted({take.subject for take in self.on.strangers.takes})
+        of = np.array([take.subject for take in self.on.strangers.takes])
         found = {name: self.of(name, "strangers", "4") for name in self.methods}
-        return f"{self.about('strangers')} Held out: {', '.join(held)}.\n\n" + table(
-            HEAD, [self.row(name, one, found[OURS], found[BASE]) for name, one in found.items()])
+        by_subject = table(["cm", *(f"subject {who}" for who in np.unique(of))], [
+            [name, *(f"{one.position[of == who].mean():.2f}" for who in np.unique(of))] for name, one in found.items()])
+        return "\n\n".join([self.about("strangers"), by_subject, table(
+            HEAD, [self.row(name, one, found[OURS], found[BASE]) for name, one in found.items()])])
 
     def noise(self) -> str:
         """Points that shake."""
@@ -144,8 +146,6 @@ class Study:
             during, after, calm = [], [], []
             for number, (one, other) in enumerate(zip(whole, torn, strict=True)):
                 there, gap = np.arange(SPAN, SPAN + len(one.errors)), round(HIDDEN / one.trial.dt)
-                if len(there) < 2 * gap + 1:
-                    continue
                 starts = lost_from(len(one.trial.frames), one.trial.points.shape[1], number, HIDDEN, one.trial.dt, self.bench.seed)
                 lost = np.any([(there >= first) & (there < first + gap) for first in starts], axis=0)
                 back = np.any([(there >= first + gap) & (there < first + 2 * gap) for first in starts], axis=0) & ~lost

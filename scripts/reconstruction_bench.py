@@ -87,10 +87,7 @@ class Bench:
         told = [name, identity(course.learnt), [(take.clip, take.mirrored) for take in course.takes], course.most, points,
                 dict(rival.settings) | (settings or {}), noise, hidden, self.seed, _code(rival)]
         path = self.cache / f"{course.name}-{points}-{name}-{_digest(told)}.npz".replace(" ", "_").replace(",", "")
-        if path.exists():
-            with np.load(path) as file:
-                root, vectors = file["root"].astype(float), file["vectors"].astype(float)
-        else:
+        if not path.exists():
             method = self.learn(name, course, points, settings)
             bar = self.progress.add_task(f"{course.name}, {points} points: {name}", total=len(tests))
             made = []
@@ -104,6 +101,8 @@ class Bench:
             with path.with_suffix(".part").open("wb") as file:
                 np.savez(file, root=root.astype(np.float32), vectors=vectors.astype(np.float32))
             path.with_suffix(".part").replace(path)
+        with np.load(path) as file:
+            root, vectors = file["root"].astype(float), file["vectors"].astype(float)
         ends = np.cumsum([len(trial.frames) - SPAN for trial in tests])[:-1]
         rotations = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(*vectors.shape[:2], 3, 3)
         return [trials.Outcome(trial, forward_kinematics(SKELETON, place, turned)[0], turned) for trial, place, turned
@@ -141,9 +140,9 @@ def spoilt(points: np.ndarray, number: int, noise: float, hidden: float, dt: flo
 
 
 def lost_from(frames: int, count: int, number: int, hidden: float, dt: float, seed: int = 0) -> np.ndarray:
-    """From which frame on each point of a take is lost (n,)."""
-    rng = np.random.default_rng([seed, number, 1])
-    return rng.integers(SPAN, max(SPAN + 1, frames - 2 * round(hidden / dt)), count)
+    """From which frame on each point of a take is lost (n,): early enough to come back. After the end if it is too short."""
+    last = frames - 2 * round(hidden / dt)
+    return np.random.default_rng([seed, number, 1]).integers(SPAN, last, count) if last > SPAN else np.full(count, frames)
 
 
 class Courses:

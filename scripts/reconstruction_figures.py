@@ -94,7 +94,7 @@ def lines(path: Path, across: Sequence[str], errors: dict[str, Sequence[float]],
         for name, values in errors.items():
             ax.plot(range(len(across)), values, "o-", ms=3.5, **_look(name))
         ax.set_xticks(range(len(across)), across)
-        ax.set(xlabel=axis, ylabel="mean joint error [cm]", title=title, ylim=(0, None))
+        ax.set(xlabel=axis, ylabel="mean joint error [cm]", title=title, ylim=(0, _top(errors)))
     _plot(path, draw)
 
 
@@ -105,12 +105,17 @@ def bars(path: Path, across: Sequence[str], errors: dict[str, Sequence[float]], 
         for k, (name, values) in enumerate(errors.items()):
             ax.bar(np.arange(len(across)) + (k - (len(errors) - 1) / 2) * width, values, width, **_look(name))
         ax.set_xticks(range(len(across)), across)
-        ax.set(ylabel="mean joint error [cm]", title=title)
+        ax.set(ylabel="mean joint error [cm]", title=title, ylim=(0, _top(errors)))
     _plot(path, draw)
 
 
 _COLOURS = {"GPLVM": "#9c9c9c", "LPCA": "#e3a34a", "LPCR": "#c4622d", "Mousas to the letter": "#d9b8d4",
             "Mousas mended": "#93508f", "nearest + IK": "#b9d3a5", "ridge + IK": "#6fa35c", "network + IK": "#4d8fb0"}
+
+
+def _top(errors):
+    """Just above whatever has not wandered off by half a metre."""
+    return 1.08 * max((value for values in errors.values() for value in values if value < 50.0), default=1.0)
 
 
 def _look(name):
