@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -67,6 +67,18 @@ def flights(jump: Jump, clip: Clip) -> Iterator[tuple[int, int]]:
         if SHORTEST < (last - first) * clip.frame_time < LONGEST and first * clip.frame_time > BEFORE \
                 and (len(clip) - last) * clip.frame_time > AFTER:
             yield int(first), int(last)
+
+
+def recorded(jump: Jump, names: Sequence[str] = CLIPS) -> Iterator[tuple[Clip, list[tuple[int, int]]]]:
+    """Clips of ../shared/mocap on our skeleton, with their jumps; none where there is no such folder."""
+    for name in names if MOCAP.is_dir() else ():
+        try:
+            source = load(MOCAP / name)
+            clip = replace(retarget(source, calibration=calibrate([source])), name=Path(name).stem)
+        except (OSError, ValueError) as error:
+            print(f"  {name}: {error}")
+            continue
+        yield clip, list(flights(jump, clip))
 
 
 def begins(theirs: Curves, first: int, rate: float, speed: float) -> int:
@@ -162,15 +174,7 @@ def main() -> int:
         except (ImportError, OSError) as error:
             parser.error(f"--plots: {error}")
     jump, all_rms = Jump(), []
-    for name in given.clips or CLIPS:
-        try:
-            source = load(MOCAP / name)
-            clip = retarget(source, calibration=calibrate([source]))
-        except (OSError, ValueError) as error:
-            print(f"  {name}: {error}")
-            continue
-        clip = replace(clip, name=Path(name).stem)
-        found = list(flights(jump, clip))
+    for clip, found in recorded(jump, given.clips or CLIPS):
         if not found:
             print(f"  {clip.name}: no jump found")
         for number, (first, last) in enumerate(found):

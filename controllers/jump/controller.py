@@ -113,8 +113,8 @@ class Jump:
         if reason and leap.airtime is not None:
             other, why = self.survey(start, place, floor, None, intent.around)
             if not why:
-                raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.airtime else 'short'}: "
-                              f"{reason}; by itself it would take {other.airtime:.2f} s")
+                raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.airtime else 'short'} for this "
+                              f"body; the jump there takes {other.airtime:.2f} s")
         if reason:
             raise Refused(reason, self._nearest(start, here, place, leap.airtime, intent.around), here)
         return plan(self.physique, start, way, place, floor)

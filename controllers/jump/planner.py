@@ -23,7 +23,7 @@ from .thrust import push
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
-HEELS_RISE = (0.45, 0.85)
+HEELS_RISE = (0.45, 0.90)
 """When in the push a heel starts to rise, at the earliest and at the latest."""
 RUNNERS_HEEL = 0.2, 1.15
 """When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
@@ -31,6 +31,8 @@ HALF_WAY = 0.6
 """How far legs are from straight to landing in the middle of a flight that is too short to tuck them."""
 STEADY_MARGIN, TRIES = 0.012, 3
 """A standing jumper's centre of mass stays so far inside of what carries it [m], at standard height; it is moved so often."""
+LIGHT = 0.09
+"""A heel that is raised by less [rad], a centimetre or so, still carries."""
 FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 5, 0.02
@@ -98,7 +100,9 @@ class _Draft(Airborne):
         middle, wanted = np.empty(2), STEADY_MARGIN * self.body.sole / 0.02
         worst, aside = wanted - 0.004, np.zeros(3)
         for n in np.flatnonzero((self.times > 0.3 * self.off) & (self.times < self.off + 0.4 * self.way.push.duration)):
-            inside = support_kernel(self.body, self.feet[n], self.centres[n], middle)
+            feet = self.feet[n].copy()
+            feet[feet[:, 4] < LIGHT, 4] = 0.0
+            inside = support_kernel(self.body, feet, self.centres[n], middle)
             if inside < worst:
                 way = middle - self.centres[n, [0, 2]]
                 worst, aside[[0, 2]] = inside, way * (wanted - inside) / max(float(np.hypot(*way)), 1e-9)
@@ -142,7 +146,7 @@ class _Draft(Airborne):
         if self.start.single is not None:
             return RUNNERS_HEEL[0]
         past = (self.centres - self.planted[:, None, :3]) @ yaw(self.start.heading)[:, 2]
-        over = (past > 0.0).all(0) & (share > 0.0)
+        over = (past > STEADY_MARGIN * self.body.sole / 0.02).all(0) & (share > 0.0)
         return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
 
     def _knee_drive(self, side: int) -> np.ndarray:
