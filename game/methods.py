@@ -25,8 +25,9 @@ from controllers.reconstruction.starts import Starts
 METHODS = ("ours", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
 """Ours; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
 ridge regression; SGPLVM (Grochow 2004)."""
-TINTS = {"ours": (0.03, 0.36, 0.33), "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02), "mousas": (0.28, 0.20, 0.70),
-         "nearest": (0.40, 0.42, 0.08), "network": (0.06, 0.30, 0.72), "ridge": (0.60, 0.18, 0.10), "gplvm": (0.55, 0.36, 0.24)}
+TINTS = {"ours": (0.03, 0.36, 0.33), "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02),
+         "mousas": (0.28, 0.20, 0.70), "nearest": (0.40, 0.42, 0.08), "network": (0.06, 0.30, 0.72),
+         "ridge": (0.60, 0.18, 0.10), "gplvm": (0.55, 0.36, 0.24)}
 """The colour of each, linear RGB: of its body, its ghost and its line in the legend."""
 NAMES = {"ours": "ours", "lpcr": "local PCR", "lpca": "local PCA", "mousas": "Mousas mended", "nearest": "nearest",
          "network": "network", "ridge": "ridge", "gplvm": "SGPLVM"}
@@ -190,4 +191,7 @@ def main(file: str, *wanted: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    try:
+        main(*sys.argv[1:])
+    except (ValueError, OSError) as error:  # whoever began it reads the line
+        sys.exit(str(error))

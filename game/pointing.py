@@ -44,11 +44,13 @@ def pointed(figures: Sequence[Figure], before: World, after: World, alpha: float
         marks = marks_of(old, new, figures[k], None if performer is None else figures[performer], alpha)
         if marks is None:
             continue
-        key = follows.performer, follows.controls.names, tuple(np.round(follows.beside, 3))
-        balls = [] if key in shown else _balls(marks.places, marks.seen)
-        if performer is not None and (key[:2]) not in shown and follows.beside.any():
-            balls += _balls(follows.controls.on(figures[performer].positions, figures[performer].orientations), marks.seen)
-        shown |= {key, key[:2]}
+        same = follows.performer, follows.controls.names
+        here = *same, tuple(np.round(follows.beside, 3))
+        balls = [] if here in shown else _balls(marks.places, marks.seen)
+        if performer is not None and same not in shown and follows.beside.any():
+            at = figures[performer]
+            balls += _balls(follows.controls.on(np.asarray(at.positions), np.asarray(at.orientations)), marks.seen)
+        shown |= {here, same}
         drawn[k] = replace(drawn[k], sketches=(*drawn[k].sketches, *balls, *_misses(marks, new.opacity)))
     return tuple(drawn)
 

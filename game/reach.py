@@ -106,10 +106,11 @@ class Reach:
             lines.append(f"learning for {self.wanted.count} points" + (f": {said}" if said else ""))
         if moment.study is not None:
             if moment.study.pins is None:
-                lines.append(f"from {moment.study.count} points: {key('study_points')} others, {key('study_ghosts')} ghosts, "
-                             f"{key('study_hands')} hold them")
+                lines.append(f"from {moment.study.count} points: {key('study_points')} others, "
+                             f"{key('study_ghosts')} ghosts, {key('study_hands')} hold them")
             elif self.stream is None:
-                lines.append(f"drag the points, wheel or {key('run')} deeper, {key('study_hide')} unseen, {key('study_hands')} let go")
+                lines.append(f"drag the points, wheel or {key('run')} deeper, {key('study_hide')} unseen, "
+                             f"{key('study_hands')} let go")
         return tuple(lines)
 
     # --- the pointer

@@ -44,7 +44,8 @@ class Recorded:
         rotations[:, 0] = turn @ rotations[:, 0]
         self.root, self.rotations = root @ turn.T, rotations
         soles = contact_points(SKELETON, *clip.kinematics())
-        self._stands = (soles[..., 1] - contact_height(SKELETON) < HEIGHT_GATE) & (point_speeds(soles, clip.frame_time) < WALK_SPEEDS)
+        low = soles[..., 1] - contact_height(SKELETON) < HEIGHT_GATE
+        self._stands = low & (point_speeds(soles, clip.frame_time) < WALK_SPEEDS)
         self._rates = frames[:, [-2, -3, -1]]  # forward, yaw rate, leftward
 
     @staticmethod

@@ -57,9 +57,9 @@ def draw(rows: Sequence[Row], scale: float, title: str = "") -> None:
     for weight in (1.5, 0.72, 1.9, 0.72):
         imgui.table_setup_column("", 0, weight)
     imgui.table_next_row()
-    for column, head in enumerate(("cm", "joints", "worst", "points")):
+    for column, head in enumerate(("error, cm", "joints", "worst", "points")):
         imgui.table_set_column_index(column)
-        imgui.text_disabled(head if column else "error, cm")
+        imgui.text_disabled(head)
     for row in rows:
         _row(row, scale)
     imgui.end_table()
@@ -93,16 +93,18 @@ def _row(row: Row, scale: float) -> None:
         if column == 0:
             at, line = imgui.get_cursor_screen_pos(), imgui.get_text_line_height()
             middle, radius = (at.x + 0.4 * line, at.y + 0.5 * line), 0.30 * line
-            imgui.get_window_draw_list().add_circle_filled(middle, radius, style.packed(shown(row.tint), 0.55 if row.ghost else 1.0))
+            pen, tint = imgui.get_window_draw_list(), shown(row.tint)
+            pen.add_circle_filled(middle, radius, style.packed(tint, 0.55 if row.ghost else 1.0))
             if row.ghost:
-                imgui.get_window_draw_list().add_circle(middle, radius, style.packed(shown(row.tint)), 0, 1.5 * scale)
+                pen.add_circle(middle, radius, style.packed(tint), 0, 1.5 * scale)
             imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 1.1 * line)
             imgui.text(text)
         elif column == 1 and row.errors is not None and not math.isnan(row.errors.mean):
             mean = row.errors.mean
-            imgui.text_colored(imgui.ImVec4(*(style.GOOD if mean <= GOOD else style.FAIR if mean <= FAIR else style.BAD)), text)
+            colour = style.GOOD if mean <= GOOD else style.FAIR if mean <= FAIR else style.BAD
+            imgui.text_colored(imgui.ImVec4(*colour), text)
         else:
-            imgui.text(text) if column == 1 else imgui.text_disabled(text)
+            imgui.text_disabled(text)
 
 
 def _history(rows: Sequence[Row], scale: float) -> None:
@@ -111,10 +113,10 @@ def _history(rows: Sequence[Row], scale: float) -> None:
     known = [v for row in rows for v in row.history if math.isfinite(v)]
     if longest < 2 or not known:
         return
-    pen, at, wide, high = imgui.get_window_draw_list(), imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x, 44 * scale
+    pen, at = imgui.get_window_draw_list(), imgui.get_cursor_screen_pos()
+    wide, high = imgui.get_content_region_avail().x, 44 * scale
     pen.add_rect_filled((at.x, at.y), (at.x + wide, at.y + high), style.packed((0.0, 0.0, 0.0, 0.22)))
-    top = next(step for step in (0.05, 0.10, 0.20, 0.50, 1.0, 5.0, math.inf) if max(known) <= step)
-    top = max(known) if math.isinf(top) else top
+    top = next((step for step in (0.05, 0.10, 0.20, 0.50, 1.0) if max(known) <= step), math.ceil(max(known)))
     for row in rows:
         points = [(at.x + wide * (KEPT - len(row.history) + k) / (KEPT - 1), at.y + high * (1.0 - v / top))
                   for k, v in enumerate(row.history) if math.isfinite(v)]

@@ -1,16 +1,15 @@
 """Bodies from points in films and in play: what is seen, what is told of it, and that it is all a value and a log."""
 
 import math
-import tempfile
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from controllers.body import forward_kinematics
+from controllers.contract import Intent
 from controllers.locomotion import Locomotion
 from controllers.mocap import write_bvh
 from controllers.reconstruction import metrics
@@ -154,7 +153,6 @@ def test_what_is_drawn_of_points(tmp_path, walker):
 def test_films_show_the_legend_and_a_clip_can_be_the_performer(tmp_path, walker):
     state, poses = walker.start(), []
     for _ in range(70):
-        from controllers.contract import Intent
         state, pose = walker.step(state, Intent(np.array([1.2, 0.0, 0.0])), DT)
         poses.append(pose)
     write_bvh(motion_clip("walk", walker.skeleton, poses, 60), tmp_path / "walk.bvh")
@@ -419,6 +417,14 @@ def test_a_stream_holds_the_points(walker):
     assert play.now.study.points == "4" and play.now.study.pins is not None  # they are the stream's
     play.do("quit")
     assert play.done
+
+
+def test_what_can_not_be_learnt_is_told_in_one_line(tmp_path):
+    wrong = tmp_path / "wrong.gambolmotion"
+    wrong.write_bytes(b"nothing")
+    other = learning.Learning([("ours", "4")], wrong)
+    other.wait()
+    assert other.done and other.fault == f"{wrong}: is no motion database; `gambol database build` makes one"
 
 
 def test_the_errors_of_one_moment_by_hand():
