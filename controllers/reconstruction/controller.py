@@ -41,7 +41,7 @@ LEAP = 0.2
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
-_CALMED = 0.7
+_CALMED = 0.5
 _FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
 _SMOOTH = 0.1  # s, half-life of the ground frame's heading and of its velocity
 
