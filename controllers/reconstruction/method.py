@@ -27,12 +27,14 @@ class Memory:
     """What was reconstructed last. frames: (SPAN, D) of the chart, newest first. track: (3,) the newest one's ground track.
 
     points: (SPAN, n, 3) [m] world places of the control points, newest first: as they were seen, and where they
-    were not, as the body has them. hint: what the prior wants to know again in the next frame.
+    were not, as the body has them. known: (SPAN, n) bool, which were seen. hint: what the prior wants to know again
+    in the next frame.
     """
 
     frames: np.ndarray
     track: np.ndarray
     points: np.ndarray
+    known: np.ndarray
     hint: Any = None
 
 
@@ -62,7 +64,7 @@ class Method:
         which = np.maximum(np.arange(len(frames) - 1, len(frames) - 1 - SPAN, -1), 0)
         frames, tracks = np.asarray(frames, float)[which], np.asarray(tracks, float)[which]
         points = np.stack([self._places(frame, track) for frame, track in zip(frames, tracks, strict=True)])
-        return Memory(frames, tracks[0], points)
+        return Memory(frames, tracks[0], points, np.ones(points.shape[:2], bool))
 
     def step(self, memory: Memory, points: np.ndarray) -> tuple[Memory, Pose]:
         """The pose a frame later, for control points (n, 3) [m] in the world, NaN where one is not seen."""
@@ -83,7 +85,8 @@ class Method:
         if lost.any():
             seen[lost] = self._places(frame, track)[lost]
         return Memory(np.concatenate([frame[None], memory.frames[:-1]]), track,
-                      np.concatenate([seen[None], memory.points[:-1]]), hint)
+                      np.concatenate([seen[None], memory.points[:-1]]),
+                      np.concatenate([~lost[None], memory.known[:-1]]), hint)
 
     def _places(self, frame, track):
         """World places (n, 3) of the points of a frame at its track."""

@@ -26,6 +26,7 @@ from .filters import Motion, noise
 from .learning import LAGS, WORLD, Networks, learn, placed, seen_from, view
 from .baselines.windows import Samples
 from .method import SPAN, Fused, Local, LocalRegression, Memory, Method
+from .moments import Moments
 from .neighbours_cells import Cells
 from .prior import FLOOR, Regression
 from .segments import Segments
@@ -43,6 +44,8 @@ KEPT = 0.999
 """What is left of the lasting part a frame later: half of it after twelve seconds."""
 LOOSENING = 100.0
 """How much larger than on recordings that were learnt the errors may be: the points are met."""
+RESTING = 0.95
+"""What is left of the body's velocity a frame later where no point is seen: a third of it after a third of a second."""
 NEIGHBOURS = 60
 """From how many recorded segments the local regression is learnt; more gain nothing."""
 LISTENED = Regression(loosening=3e4)
@@ -67,9 +70,13 @@ class Expected:
 
 @dataclass(frozen=True, eq=False)
 class Expectation:
-    """The prior: the networks' pose, off by what it was off by. dt: seconds between frames."""
+    """The prior: the networks' pose, off by what it was off by.
+
+    moments: tell the networks where lost points are. dt: seconds between frames.
+    """
 
     networks: Networks
+    moments: Moments
     dt: float
 
     def known(self, frames: np.ndarray, tracks: np.ndarray, points: np.ndarray) -> Expected:
@@ -86,7 +93,8 @@ class Expectation:
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`."""
         points = np.concatenate([seen[None], memory.points])[LAGS]
-        inputs, ground = view(points, memory.track[2])
+        known = np.concatenate([np.isfinite(goals).all(-1)[None], memory.known])[LAGS]
+        inputs, ground = view(self.moments.complete(points, known, memory.track[2]), memory.track[2])
         pose, off, lasting = self.networks.predict(inputs).astype(float), np.zeros(WIDTH), np.zeros(WIDTH)
         if memory.hint is not None:
             last: Expected = memory.hint
@@ -95,6 +103,9 @@ class Expectation:
             off = lasting + FADING * (error - lasting)
         mean = seen_from(memory.track, pose + off, ground)
         mean[YAW_RATE:] /= self.dt
+        if not known[0].any():  # it goes on as it went, and comes to rest
+            mean = memory.frames[0].copy()
+            mean[YAW_RATE:] *= RESTING
         errors = self.networks.errors.copy()
         errors[:, YAW_RATE:] /= self.dt
         return Gaussian(mean, FLOOR ** 2, errors).loosened(LOOSENING), Expected(pose, ground, lasting)
@@ -169,9 +180,11 @@ def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETO
     def make():
         told = None if progress is None else lambda done, total: progress("learning", done, total)
         return learn(Samples.of(database, plain), progress=told)
-    networks = kept("networks", database, (controls.joints.tolist(), controls.offsets.tolist()), make, Networks.save,
-                    Networks.load, _SOURCES)
-    prior = Fused((Expectation(networks, 1 / database.fps),
+    points = controls.joints.tolist(), controls.offsets.tolist()
+    networks = kept("networks", database, points, make, Networks.save, Networks.load, _SOURCES)
+    moments = kept("moments", database, points, lambda: Moments.of(Samples.of(database, plain)), Moments.save,
+                   Moments.load, (*_SOURCES, "moments.py"))
+    prior = Fused((Expectation(networks, moments, 1 / database.fps),
                    Local(LocalRegression(LISTENED), cells(database, controls), NEIGHBOURS)))
     return Ours(Method(prior, replace(plain, skeleton=skeleton)), steady)
 

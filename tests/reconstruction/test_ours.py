@@ -16,6 +16,7 @@ from controllers.reconstruction.controls import parse
 from controllers.reconstruction.database import Database, DatabaseError, Writer
 from controllers.reconstruction.learning import LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view
 from controllers.reconstruction.method import Fused, SPAN, Method
+from controllers.reconstruction.moments import Moments
 from controllers.reconstruction.ours import KEPT, LASTING, FADING, Expectation, Ours, cells, ours
 from controllers.reconstruction.solver import Solver
 
@@ -42,7 +43,7 @@ def world(tmp_path_factory):
 def method(world):
     """Ours with a small network that has learnt that motion."""
     networks = learn(world[2], seeds=1, batches=2500, hidden=(128, 128))
-    return Ours(Method(Fused((Expectation(networks, DT),)), world[1]))
+    return Ours(Method(Fused((Expectation(networks, Moments.of(world[2]), DT),)), world[1]))
 
 
 @pytest.fixture(scope="module")
@@ -148,7 +149,7 @@ def test_what_was_off_is_expected_to_be_off_again(world, performance):
     bias = np.random.default_rng(5).normal(0, 0.05, WIDTH)
     grounds = [view(points[np.maximum(t - LAGS, 0)], tracks[t - 1, 2])[1] for t in range(1, SPAN + 1)]
     truth = [seen_from(ground, placed(frames[t], tracks[t]), WORLD) for t, ground in enumerate(grounds, 1)]
-    prior = Expectation(Biased([*truth[SPAN - 2::-1], truth[SPAN - 1]], bias), DT)
+    prior = Expectation(Biased([*truth[SPAN - 2::-1], truth[SPAN - 1]], bias), Moments.of(world[2]), DT)
     known = prior.known(memory.frames, tracks[newest], memory.points)
     expected = -LASTING * bias
     expected[YAW_RATE] = 0.0
@@ -197,6 +198,15 @@ def test_points_that_no_body_can_have_give_a_body_still(method, performance, see
     rng = np.random.default_rng(seed)
     points = performance[3] + rng.normal(0, 3.0, performance[3].shape)
     run(method, performance, np.where(rng.random(points.shape) < 0.2, np.nan, points))
+
+
+@pytest.mark.parametrize("lost", [[0], [2], [0, 1], [0, 1, 2], [0, 1, 2, 3]], ids=str)
+def test_a_body_goes_on_without_points_and_does_not_run_away(method, performance, lost):
+    """Half a second without some, or any; then all are there again."""
+    points = performance[3].copy()
+    points[SPAN + 5:SPAN + 35, lost] = np.nan
+    away = metrics.position_error(run(method, performance, points), performance[2][SPAN:len(points)])
+    assert away.max() < 0.5 and away[-1] < 0.05
 
 
 def test_few_known_frames_are_enough(method, performance):
