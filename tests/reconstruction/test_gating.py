@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from controllers.reconstruction.gating import NEAR, PATIENCE, REACH, Gate
 
 DT = 1 / 60
-STILL = np.zeros((1, 3))
 
 
-def passed(seen, body=None, gate=None):
+def passed(seen, body=None):
     """What a gate makes of points seen (T, n, 3), with the body where `body` (T, n, 3) says; it begins as the body is."""
     body = np.zeros_like(seen) if body is None else body
-    gate = gate or Gate.before(body[0], np.zeros_like(body[0]))
+    motion = (body[1] - body[0]) / DT
+    gate = Gate.before(body[0] - motion * DT, motion)
     goals = []
     for now, there in zip(seen, body):
         gate, goal = gate.admit(now, there, np.zeros_like(there), DT)
