@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from controllers.body import forward_kinematics
 from controllers.body.human import STATURE
 from controllers.body.support import hull, margin, sole_corners, standing_corners
 from controllers.body.anatomy import centre_of_mass
@@ -35,6 +36,8 @@ CAN, CANNOT, SEEN = (0.02, 0.52, 0.16), (0.80, 0.05, 0.02), (0.02, 0.24, 0.80)
 GROUND, WEIGHT, PALE = (0.02, 0.42, 0.10), (0.10, 0.11, 0.13), (0.92, 0.92, 0.88)
 NEWTON = 0.42 / (73.0 * 9.81)
 """How long forces are drawn [m/N]: an adult's weight on Earth is 0.42 m."""
+MOST_DRAWN = 4.0
+"""No longer arrows of the ground's force are drawn, in weights."""
 LIFT = 0.012
 """How high over a floor things lie [m]."""
 RING = 0.26
@@ -128,7 +131,8 @@ def explained(figures: Sequence[Figure], before: World, after: World, alpha: flo
             if overlays.balance:
                 sketches += balance(body, after.props)
             if overlays.forces:
-                sketches += forces(body, now, -float(jump.gravity[1]) if (jump := jump_of(new)) else 9.81)
+                g = -float(jump.gravity[1]) if (jump := jump_of(new)) else 9.81
+                sketches += forces(body, pushed(old, new, body.physique, g) if now is None else planned(*now), g)
         drawn.append(replace(figure, sketches=tuple(sketches)))
     return tuple(drawn)
 
@@ -233,20 +237,37 @@ def balance(body: _Body, props: Sequence[Prop]) -> list[Sketch]:
 
 # --- forces
 
-def forces(body: _Body, now: tuple[Plan, float] | None, gravity: float) -> list[Sketch]:
-    """Muscles across hip, knee and ankle, the body's weight, and the ground's push while it is known: in a jump."""
+def planned(plan: Plan, time: float) -> np.ndarray:
+    """The ground's force (3,) [N] on somebody who jumps."""
+    return np.array([np.interp(time, plan.times, plan.forces[:, k]) for k in range(3)])
+
+
+def pushed(old: Character, new: Character, physique: Physique, gravity: float) -> np.ndarray:
+    """The ground's force (3,) [N] on somebody who stands or walks, f = m (a − g), from how the centre of mass moved
+    over the last three poses; none without a foot on the floor. It trembles a little where feet are corrected."""
+    if not np.asarray(new.state.contacts).any():
+        return np.zeros(3)
+    weight = physique.mass * gravity * np.array([0.0, 1.0, 0.0])
+    poses = (old.state.previous, old.state.pose, new.state.pose)
+    if poses[0] is None or new.state.elapsed <= 0.0 or new is old:
+        return weight
+    placed = forward_kinematics(physique.skeleton, *(np.stack([np.asarray(getattr(p, part), float) for p in poses])
+                                                     for part in ("root", "rotations")))
+    push = physique.mass * np.diff(centre_of_mass(physique.anatomy, *placed), 2, axis=0)[0] / new.state.elapsed**2 + weight
+    return push * min(max(push[1], 0.0) / max(abs(push[1]), 1e-9), MOST_DRAWN * weight[1] / max(np.linalg.norm(push), 1e-9))
+
+
+def forces(body: _Body, push: np.ndarray, gravity: float) -> list[Sketch]:
+    """Muscles across hip, knee and ankle, the body's weight, and the ground's push (3,) [N]."""
     weight = body.physique.mass * gravity
     sketches = muscles(body)
     sketches.append(Arrow("forces", body.centre, np.array([0.0, -weight * NEWTON, 0.0]), WEIGHT, 0.026))
-    if now is not None:
-        plan, time = now
-        push = np.array([np.interp(time, plan.times, plan.forces[:, k]) for k in range(3)])
-        if push[1] > 0.02 * weight and len(body.polygon):
-            # through the centre of mass if the feet reach so far
-            over = body.centre[1] - body.floor
-            flat = body.centre[[0, 2]] - push[[0, 2]] / push[1] * over
-            flat = flat if margin(body.polygon, flat) > 0.0 else body.nearest(flat)
-            sketches.append(Arrow("forces", body.on_floor(flat)[0], push * NEWTON, GROUND, 0.036))
+    if push[1] > 0.02 * weight and len(body.polygon):
+        # through the centre of mass if the feet reach so far
+        over = body.centre[1] - body.floor
+        flat = body.centre[[0, 2]] - push[[0, 2]] / push[1] * over
+        flat = flat if margin(body.polygon, flat) > 0.0 else body.nearest(flat)
+        sketches.append(Arrow("forces", body.on_floor(flat)[0], push * NEWTON, GROUND, 0.036))
     return sketches
 
 

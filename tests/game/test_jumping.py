@@ -7,7 +7,7 @@ from controllers.person import person
 from game import film
 from game.input.script import jumping
 from game.input.wish import Wish
-from game.jumping import LAYERS, explained
+from game.jumping import LAYERS, explained, pushed
 from game.scenario import ScenarioError, load
 from game.scene import Camera, Line, Overlays
 from game.render.sketches import sketched
@@ -195,3 +195,19 @@ def test_a_strip_shows_the_first_jump_from_its_side(played, somebody):
         strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="Z")
     with pytest.raises(ScenarioError, match="nothing lies from 9 to 5 s"):
         strip(scenario, somebody, 6, Overlays(), (1200, 400), 9.0, 5.0)
+
+
+def test_the_ground_pushes_whoever_stands_or_walks_and_nobody_in_the_air(played):
+    _, frames = played
+    shares, aloft = [], 0
+    for frame in frames[:240]:
+        old, new = frame.before.characters[2], frame.after.characters[2]
+        if jumping(new.state) is None:
+            push = pushed(old, new, new.controller.controllers["jump"].physique, 9.81)
+            grounded = new.state.contacts.any()
+            aloft += not grounded
+            assert grounded or not push.any()
+            if new.state.elapsed > 0.0:
+                shares.append(push[1] / (73.0 * 9.81))
+    # over many steps it carries the weight, and no more
+    assert len(shares) > 60 and min(shares) >= 0.0 and np.mean(shares) == pytest.approx(1.0, abs=0.2)
