@@ -20,7 +20,7 @@ from ..compiled import kernel
 from .dynamics import GRAVITY, Physique, centre_kernel
 from .muscles import Arm, Reading, force_kernel, muscle
 from .poise import frame, pose_kernel, stand_pelvis_kernel, support_kernel
-from .windup import between_kernel, held_kernel, planted, strength, upward
+from .windup import between_kernel, held_kernel, planted, squared_kernel, strength, upward
 
 KEPT = 0.1
 """The share that counts as having the wished momentum: "ten percent was found empirically"."""
@@ -111,7 +111,7 @@ def samples_kernel(fixed, spring, feet, top, standing, along, rise, gravity, dep
             pull += gravity[i] ** 2
         inside = falling**2 - pull + (force / body.total) ** 2
         by_force = 2.0 * push / along[1] * (falling + math.sqrt(inside)) if inside > 0.0 else 0.0
-        by_work = 2.0 * (held_kernel(bends, spring) - between_kernel(depths, spent, depth)) / body.total
+        by_work = 2.0 * (held_kernel(bends, spring) - between_kernel(depths, spent, depth)) / (body.total * squared_kernel(along))
         found[n, 0] = math.sqrt(max(min(by_force, by_work), 0.0))
         found[n, 1] = math.hypot(middle[0] - centre[0], middle[1] - centre[2])
         found[n, 2:5] = centre
