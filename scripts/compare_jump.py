@@ -171,7 +171,9 @@ def main() -> int:
         try:
             import matplotlib  # noqa: F401
             given.plots.mkdir(parents=True, exist_ok=True)
-        except (ImportError, OSError) as error:
+        except ImportError:
+            parser.error('--plots needs matplotlib: .venv/bin/pip install -e ".[report]"')
+        except OSError as error:
             parser.error(f"--plots: {error}")
     jump, all_rms = Jump(), []
     for clip, found in recorded(jump, given.clips or CLIPS):
