@@ -112,7 +112,8 @@ def test_a_stream_is_recorded_until_it_is_ended_and_never_lost(motion, tmp_path,
     program = subprocess.Popen(
         [sys.executable, "-m", "game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(names),
          "--method", "nearest", "--database", str(database), "-o", str(out), *([] if end else ["--seconds", "2"])],
-        stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2])
+        stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # a shell's background jobs are deaf to Ctrl-C
     for line in program.stderr:
         if "stand upright" in line:
             break
