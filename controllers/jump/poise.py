@@ -1,4 +1,4 @@
-"""Poise: a body at rest over planted feet, wherever its pelvis is; its balance, and the force it can give.
+"""Poise: a body at rest over planted feet, wherever its pelvis is, and its balance.
 
 The hip is moved, the legs follow by cyclic coordinate descent within their limits, the feet stay,
 and a heel rises only past the ankle's limit (Ooi 2015, 3.1.2). Trunk and arms follow how deep the
@@ -21,7 +21,7 @@ from ..body.turning import exp_kernel
 from ..compiled import kernel
 from . import style
 from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
-from .muscles import Reading, bend_kernel, leg_force_kernel, muscle
+from .muscles import bend_kernel
 from .posture import ankle_kernel, foot_kernel
 
 FLEX = math.radians(40.0)
@@ -41,7 +41,7 @@ class Frame(NamedTuple):
 
     lower, upper: (2, 3, 3) [rad] limits of hip, knee and ankle of both legs; the knees are hinges.
     flex: of the ankles [rad]. deep: [m] see DEEP. joints: that `style.carry_kernel` turns.
-    bones: (2, 3) thigh and shank. stiffness, width: of each muscle. printed: the spring's reading.
+    bones: (2, 3) thigh and shank.
     """
 
     body: BodyTables
@@ -51,13 +51,10 @@ class Frame(NamedTuple):
     deep: float
     joints: np.ndarray
     bones: np.ndarray
-    stiffness: float
-    width: float
-    printed: bool
 
 
 @lru_cache(maxsize=64)
-def frame(physique: Physique, reading: Reading = "wedge") -> Frame:
+def frame(physique: Physique) -> Frame:
     """The frame of a body. Flexibility widens hips, knees (to 160° at most) and ankles."""
     body, skeleton = physique.tables, physique.skeleton
     limits = joint_limits(skeleton)
@@ -68,10 +65,8 @@ def frame(physique: Physique, reading: Reading = "wedge") -> Frame:
     upper[:, 1, 0] = min(limits.upper[numbers[0, 1], 0] * physique.flexibility, math.radians(160.0))
     flex = FLEX * physique.flexibility
     lower[:, 2, 0] = -flex - 0.01  # a little play: the heel's rise is found to 1e-4
-    spring = muscle(physique)
     return Frame(body, lower, upper, flex, DEEP * physique.height / STATURE, style.joints_of(skeleton),
-                 np.array([[0.0, -body.thigh, 0.0], [0.0, -body.shank, 0.0]]), spring.stiffness, spring.width,
-                 reading == "printed")
+                 np.array([[0.0, -body.thigh, 0.0], [0.0, -body.shank, 0.0]]))
 
 
 def flat_feet(physique: Physique) -> np.ndarray:
@@ -184,27 +179,3 @@ def stand_pelvis_kernel(fixed, feet, pelvis, turns, local, positions, orientatio
     pose_kernel(fixed, pelvis, pelvis[1], feet, turns, local, positions, orientations)
     centre_kernel(body, positions, orientations, centre)
     return centre[1]
-
-
-@kernel
-def force_kernel(fixed, feet, centre, positions, orientations, bends, torques, forces):
-    """Write bends, torques (2, 3) and ground forces (2, 3) [N] of both legs; returns their sum's size."""
-    total = 0.0
-    for side in range(2):
-        leg_force_kernel(fixed.body, side, feet[side], centre, fixed.stiffness, fixed.width, fixed.printed,
-                         positions, orientations, bends[side], torques[side], forces[side])
-    for i in range(3):
-        total += (forces[0, i] + forces[1, i]) ** 2
-    return math.sqrt(total)
-
-
-@kernel
-def capacity_kernel(fixed, roots, local, feet, out):
-    """Write the ground force (N,) [N] that muscles hold in poses: roots (N, 3), local (N, J, 3, 3), feet (N, 2, 6)."""
-    count = local.shape[1]
-    positions, orientations, centre = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty(3)
-    bends, torques, forces = np.empty((2, 3)), np.empty((2, 3)), np.empty((2, 3))
-    for n in range(len(roots)):
-        place_kernel(fixed.body, roots[n], local[n], positions, orientations)
-        centre_kernel(fixed.body, positions, orientations, centre)
-        out[n] = force_kernel(fixed, feet[n], centre, positions, orientations, bends, torques, forces)

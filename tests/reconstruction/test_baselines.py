@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
+from trajectories import played
 
 from controllers.body import forward_kinematics
 from controllers.reconstruction.baselines import SGPLVM, Layers, LocalPCA, LocalPCR, Nearest, Samples, network, ridge
@@ -77,13 +78,8 @@ def performance(world):
 
 
 def run(method, performance, points, start=20):
-    """Joint positions (T, J, 3) that a method makes of points (T, n, 3) from frame `start` on."""
-    memory, found = method.begin(performance[0][:start], performance[1][:start]), []
-    for seen in points[start:]:
-        memory, pose = method.step(memory, seen)
-        found.append(forward_kinematics(SKELETON, pose.root, pose.rotations)[0])
-    assert np.isfinite(found).all()
-    return np.stack(found)
+    """`played` from frame `start` on."""
+    return played(method, performance, points, start)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trajectories import KINDS, frames as made_up
+from trajectories import KINDS, frames as made_up, played
 
 from controllers.body import forward_kinematics
 from controllers.reconstruction import learning, metrics, ours as module, store
@@ -59,13 +59,8 @@ def performance(world):
 
 
 def run(method, performance, points, start=SPAN):
-    """Joint positions (T, J, 3) that a method makes of points (T, n, 3) from frame `start` on."""
-    memory, found = method.begin(performance[0][:start], performance[1][:start]), []
-    for seen in points[start:]:
-        memory, pose = method.step(memory, seen)
-        found.append(forward_kinematics(SKELETON, pose.root, pose.rotations)[0])
-    assert np.isfinite(found).all()
-    return np.stack(found)
+    """`played` from frame `start` on."""
+    return played(method, performance, points, start)
 
 
 @given(GROUNDS, GROUNDS, st.integers(0, 99))

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip
+from controllers.body import Clip, forward_kinematics
 from controllers.reconstruction import chart
 from controllers.reconstruction.database import Database, Writer
 
@@ -40,3 +40,13 @@ def clip(seed, count=60, fps=60.0, name="made up"):
         tracks.append(track)
     root, rotations = chart.decode(made, np.array(tracks))
     return Clip(name, chart.SKELETON, 1 / fps, root, Rotation.from_matrix(rotations).as_quat())
+
+
+def played(method, performance, points, start):
+    """Joint positions (T, J, 3) that a method makes of points (T, n, 3) from frame `start` on."""
+    memory, found = method.begin(performance[0][:start], performance[1][:start]), []
+    for seen in points[start:]:
+        memory, pose = method.step(memory, seen)
+        found.append(forward_kinematics(chart.SKELETON, pose.root, pose.rotations)[0])
+    assert np.isfinite(found).all()
+    return np.stack(found)
