@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from .body.human import STATURE
 from .contract import Intent
 from .jump import GRAVITY, Jump, Physique, rehearsal
 from .locomotion import Locomotion
@@ -21,7 +20,7 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
     """
     walker = locomotion if hasattr(locomotion, "step") else Locomotion.load(locomotion)
     physique = Physique() if physique is None else physique
-    factor = physique.height / STATURE
+    factor = physique.size
     return Supervisor({"locomotion": walker if factor == 1.0 else Scaled(walker, factor),
                        "jump": Jump(physique, gravity)})
 

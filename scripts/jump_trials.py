@@ -16,7 +16,6 @@ sys.path[:0] = [str(Path(__file__).parent.parent)]
 from controllers.body import Pose, end_positions, forward_kinematics  # noqa: E402
 from controllers.body.anatomy import centre_of_mass, joint_limits, segment_centres  # noqa: E402
 from controllers.body.contact import contact_height, contact_points, detect_contacts, foot_drift  # noqa: E402
-from controllers.body.human import STATURE  # noqa: E402
 from controllers.body.rotations import log, wrap  # noqa: E402
 from controllers.body.support import hull, margin, sole_corners  # noqa: E402
 from controllers.contract import CharacterState, Intent, Leap  # noqa: E402
@@ -113,7 +112,7 @@ def trial(rng: np.random.Generator, rest: CharacterState, runners: list[Characte
     planet, pull = PLANETS[rng.integers(len(PLANETS))]
     gravity = np.array([0.0, -float(pull or rng.uniform(1.5, 15.0)), 0.0])
     running = bool(rng.random() < 0.5)
-    state = grown(runners[rng.integers(len(runners))] if running else rest, physique.height / STATURE)
+    state = grown(runners[rng.integers(len(runners))] if running else rest, physique.size)
     far, height = rng.uniform(0.0, 3.5 if running else 1.5), rng.uniform(-1.0, 0.5)
     around = ()
     if height > 0.0:  # a platform, its edge well before the feet
@@ -133,7 +132,7 @@ def possible(t: Trial) -> bool:
     his own ½ v². The least v to a place d away and h higher is v² = g (h + √(h² + d²)); feet may land
     ahead of the centre of mass and take off behind it, half a leg each.
     """
-    g, size = -t.jump.gravity[1], t.jump.physique.height / STATURE
+    g, size = -t.jump.gravity[1], t.jump.physique.size
     far = max(t.leap.place[2] - 0.9 * size, 0.0)
     up = t.leap.place[1] - float(t.state.floor) - 0.35 * size
     least = g * (up + np.hypot(up, far))
@@ -145,7 +144,7 @@ def possible(t: Trial) -> bool:
 def result_of(t: Trial, made: Plan) -> dict[str, float]:
     """All figures of one jump, from its poses."""
     jump, physique = t.jump, t.jump.physique
-    size = physique.height / STATURE
+    size = physique.size
     off, down, end = made.take_off, made.touch_down, min(made.duration, made.through)
     times = np.append(np.arange(0.0, end, 1 / FPS), end)
     seen = Motion.of(jump, made, times)

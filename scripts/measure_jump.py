@@ -113,7 +113,7 @@ def rows(name: str, results: list[dict], limit: float | None) -> None:
 def report_refusals(locomotion: Locomotion) -> None:
     """What nobody can jump, asked of the whole game's supervisor: refused before the wind-up, with a reason."""
     wall = Box((0.0, 1.5, 0.8), (3.0, 3.0, 0.2))
-    roof = Box((0.0, 1.85, 0.4), (3.0, 0.1, 3.0))
+    roof = Box((0.0, 2.1, 1.2), (3.0, 1.0, 0.8))
     weak = Physique(strength=0.2)
     cases = (
         ("NaN", Physique(), [np.nan, 0.0, 1.0], None, ()), ("infinite", Physique(), [0.0, 0.0, np.inf], None, ()),

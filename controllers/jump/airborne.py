@@ -19,6 +19,8 @@ GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
 PLANT = 0.09
 """From the toes' landing to the heels' [s]."""
+HEEL = 0.03
+"""A heel that is raised by more has left the floor [rad]."""
 MEET = 0.5, 14.0
 """How much of the speed that the ground bends them with legs have as they touch down, and at most [rad/s]."""
 FADE = 0.14
@@ -35,11 +37,11 @@ class Airborne:
     """One motion in the making, from the air to standing.
 
     start: where it begins. way: its flight. landing: (2, 5) the feet on the floor. leave: when the flight
-    begins [s]. times, keys: (K,) [s], (K, 6) [rad] the carriage until touch-down; the landing's is added.
+    begins [s]. times, keys: (K,) [s], (K, 6) [rad] the carriage until touch-down; the landing's is added; first: as in `style.keyed`.
     """
 
     def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float,
-                 times, keys: np.ndarray):
+                 times, keys: np.ndarray, first: float = 0.0):
         self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
         self.landing, self.gravity, self.leave = landing, way.gravity, leave
         self.joints = style.joints_of(physique.skeleton)
@@ -47,7 +49,13 @@ class Airborne:
         self.flex = FLEX * physique.flexibility
         self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
         self.down = leave + way.airtime
-        self.carriage = style.keyed(np.append(times, [self.down, self.down + LOWEST, self.down + TIME]), keys)
+        self.carriage = style.keyed(np.append(times, [self.down, self.down + LOWEST, self.down + TIME]), keys, first)
+
+    @staticmethod
+    def absorbing(physique: Physique, way: Path, landing: np.ndarray) -> float:
+        """How far a body folds up as it lands, 1 as in `style.ABSORB`: for a fall, or for the squat it lands in."""
+        low = measures(physique).stand - (way.land[1] - landing[0, 1] + physique.tables.sole)
+        return max(float(np.linalg.norm(way.falling)) / 3.2, low / (0.3 * physique.size))
 
     def _differ(self, angles: np.ndarray) -> None:
         """What the start's pose differs by from one carried by `angles` (6,): it fades, see `_left_over`."""
@@ -102,8 +110,8 @@ class Airborne:
         return posed[0], np.clip(MEET[0] * bending, -MEET[1], MEET[1])
 
     def _land(self):
-        """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of
-        mass's place, velocity and acceleration."""
+        """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
+        velocity and acceleration; whether the heels (M, 2) stand; when it walks on."""
         way, body = self.way, self.body
         after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
         support = soles(self.landing, body)
@@ -120,7 +128,7 @@ class Airborne:
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
                       self.air_roots[-1].copy(), roots, local)
-        return after, (roots, local, c, v, a), max(landing.until(after), PLANT + 0.02)
+        return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, max(landing.until(after), PLANT + 0.02)
 
 
 def _toes_down(time):

@@ -26,8 +26,8 @@ READY, HOLDS, OVER = 1.0, 1.5, 0.3
 and somebody wants to walk."""
 RUNNING = 1.2
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
-FRESH = 0.06
-"""A foot has just struck while the body is no further than this past it [m]."""
+FRESH = -0.06
+"""A foot has just struck while the body is no further than this past it [m]: still behind it."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 HIGHER = (1.12, 1.26, 1.42, 1.6)
@@ -241,7 +241,7 @@ class Jump:
     def _moment(self, state: CharacterState) -> bool:
         """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
         start = self.start_of(state)
-        low = start.feet[:, 1] - float(state.floor) < self.physique.tables.sole + UP * self.physique.height / 1.741
+        low = start.feet[:, 1] - float(state.floor) < self.physique.tables.sole + UP * self.physique.size
         if np.hypot(start.velocity[0], start.velocity[2]) < RUNNING:
             return bool(low.any())
         if start.single is None:

@@ -43,6 +43,11 @@ class Physique:
         if self.sex not in ("male", "female"):
             raise ValueError(f"sex must be male or female, got {self.sex!r}")
 
+    @property
+    def size(self) -> float:
+        """Its height over an adult's: what lengths told at standard height are multiplied by."""
+        return self.height / STATURE
+
     @cached_property
     def skeleton(self) -> Skeleton:
         """The standard human at this height."""
@@ -62,7 +67,7 @@ class Physique:
         return BodyTables(
             skeleton.parents, offsets, masses.joints, masses.masses, masses.centres, masses.inertias, float(self.mass),
             hip, -offsets[hip[0] + 1, 1], -offsets[hip[0] + 2, 1], offsets[hip[0] + 3], heel_offset(skeleton),
-            skeleton.end_offsets[skeleton.end_index["LeftToe"]], contact_height(skeleton))
+            skeleton.end_offsets[skeleton.end_index["LeftToe"]], contact_height(skeleton), float(self.size))
 
 
 class BodyTables(NamedTuple):
@@ -70,7 +75,7 @@ class BodyTables(NamedTuple):
 
     parents, offsets: of the skeleton. joint, mass, centre, inertia: of the segments. hip: (2,)
     numbers of the hip joints. thigh, shank: [m]. toe, heel: ball and heel in the foot's frame.
-    tip: the toes' end in the toe's frame. sole: how high balls and heels stand [m].
+    tip: the toes' end in the toe's frame. sole: how high balls and heels stand [m]. size: as in `Physique`.
     """
 
     parents: np.ndarray
@@ -87,6 +92,7 @@ class BodyTables(NamedTuple):
     heel: np.ndarray
     tip: np.ndarray
     sole: float
+    size: float
 
 
 @kernel

@@ -15,7 +15,7 @@ import numpy as np
 from ..body import Pose, Skeleton, end_positions, forward_kinematics
 from ..navigation import floor_at, gap
 from . import style
-from .airborne import LOWEST, PLANT, SAME, Airborne, hermite
+from .airborne import LOWEST, SAME, Airborne, hermite
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .path import Path, Start, landing_feet, measures, softened
@@ -88,15 +88,15 @@ def fall(physique: Physique, start: Start, hit: Hit, around: Sequence[Any], grav
     """The motion from the moment of a hit to standing. start: the body at that moment."""
     velocity = hit.after(start.velocity)
     time, land, place = _down(physique, start.centre, velocity, around, gravity)
-    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None)
+    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre)
     return _Fall(physique, start, way, landing_feet(place, start.heading, physique.tables)).plan()
 
 
 def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: Sequence[Any],
           gravity: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """When [s] and where (3,) a falling centre of mass is as the feet touch the floor, and their place (3,) there."""
-    flat, g, touch = velocity * [1.0, 0.0, 1.0], -float(gravity[1]), measures(physique).touch
-    pace, size = float(np.linalg.norm(flat)), physique.tables.sole / 0.02
+    flat, g, touch = velocity * [1.0, 0.0, 1.0], -float(gravity[1]), measures(physique).touch(0.0)
+    pace, size = float(np.linalg.norm(flat)), physique.size
     ahead = flat / max(pace, 1e-9) * min(TRAIL[0] * pace, TRAIL[1] * size)
 
     def until(height: float) -> float:
@@ -118,17 +118,17 @@ class _Fall(Airborne):
     """One fall in the making."""
 
     def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray):
-        super().__init__(physique, start, way, landing, 0.0, [0.0], style.falling(float(np.linalg.norm(way.falling))))
+        super().__init__(physique, start, way, landing, 0.0, [0.0], style.falling(self.absorbing(physique, way, landing)))
 
     def plan(self) -> Plan:
         """Everything, in order."""
         self._differ(self.carriage(0.0))
         self._prepare_air()
         self._turn_upright()
-        after, landed, through = self._land()
+        after, landed, heels, through = self._land()
         way, flying = self.way, self.flying
         contacts = np.zeros((len(flying) + len(after), 4), bool)
-        contacts[len(flying):, 1::2], contacts[len(flying):, ::2] = True, (after > PLANT)[:, None]
+        contacts[len(flying):, 1::2], contacts[len(flying):, ::2] = True, heels
         return Plan(
             np.append(flying, self.down + after), np.concatenate([self.air_roots, landed[0]]),
             np.concatenate([self.air, landed[1]]), np.concatenate([self.arc, landed[2]]),

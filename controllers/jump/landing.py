@@ -14,9 +14,13 @@ TIME = 1.35
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
-SLOWEST = 3.2
+GRIP = 0.8
+"""The friction of soles that a body which passes over its feet counts on."""
+SLOWEST = 5.0
 """Rate of the spring with which a body that hardly fell stands up [1/s]."""
-DEEPEST, STIFFEST = 0.41, 14.0
+LEAST_WEIGHT = 0.1
+"""However fast a body stands up, so much of its weight stays on its feet: the floor can't pull."""
+DEEPEST, STIFFEST = 0.41, 13.0
 """How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
@@ -69,9 +73,12 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         ahead = flat / pace
         capture = (land - goal) @ ahead + pace * np.sqrt((goal[1] - support[0, 1]) / gravity) * CATCH
         passes = bool(capture > ((support - goal) @ ahead).max())
-    rate, sink = (PASS if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), SLOWEST)
+    # soles don't slip: a spring of rate r brakes with 2 r v at first
+    rate, sink = (min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), SLOWEST)
     while sink < STIFFEST and _lowest(land[1] - goal[1], velocity[1], sink) < -DEEPEST * (goal[1] - support[0, 1]):
         sink *= 1.1
+    while sink > 1.0 and _lightest(land[1] - goal[1], velocity[1], sink) < (LEAST_WEIGHT - 1.0) * gravity:
+        sink *= 0.93
     return Landing(np.array([rate, sink, rate]), land - goal, velocity, goal, passes)
 
 
@@ -80,3 +87,10 @@ def _lowest(offset: float, velocity: float, rate: float) -> float:
     pull = velocity + offset * rate
     time = max(velocity / (rate * pull), 0.0) if pull < 0.0 else 0.0
     return float(np.exp(-rate * time) * (offset + pull * time))
+
+
+def _lightest(offset: float, velocity: float, rate: float) -> float:
+    """The most [m/s²] that the same spring accelerates it downward, below 0."""
+    pull = velocity + offset * rate
+    time = max((3.0 * pull - offset * rate) / (rate * pull), 0.0) if pull else 0.0
+    return float(np.exp(-rate * time) * (-2.0 * rate * pull + rate**2 * (offset + pull * time)))

@@ -24,7 +24,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ..body.human import STATURE
 from ..compiled import kernel
 from .dynamics import BodyTables, Physique
 
@@ -66,8 +65,8 @@ def muscle(physique: Physique, reading: Reading = "wedge", arm: Arm = "constant"
         raise ValueError(f"reading must be wedge or printed, got {reading!r}")
     if arm not in ("constant", "attached"):
         raise ValueError(f"arm must be constant or attached, got {arm!r}")
-    size = physique.height / STATURE
-    return Muscle(STIFFNESS * physique.strength * physique.mass / 73.0 / size, WIDTH * size, reading == "printed",
+    size = physique.size
+    return Muscle(STIFFNESS * physique.strength * physique.mass / Physique.mass / size, WIDTH * size, reading == "printed",
                   arm == "attached")
 
 

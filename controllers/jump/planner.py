@@ -6,20 +6,18 @@ follow from where the feet are, and in the air the turning of the whole body fol
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from ..body.rotations import yaw
+from ..compiled import kernel
 from . import style
-from .airborne import FADE, GROUND_RATE, LOWEST, PLANT, SAME, Airborne, faded, ground_kernel, hermite
+from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel, hermite
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
-from .path import FOOT_FADE, HEEL_UP, Path, Start, landing_feet
+from .path import FOOT_FADE, HEEL_UP, Path, Start, landing_feet, measures
 from .plan import Plan
-from .poise import support_kernel
-from .thrust import push
+from .poise import DEEP
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
@@ -29,10 +27,6 @@ RUNNERS_HEEL = 0.2, 1.15
 """When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
 HALF_WAY = 0.6
 """How far legs are from straight to landing in the middle of a flight that is too short to tuck them."""
-STEADY_MARGIN, TRIES = 0.012, 3
-"""A standing jumper's centre of mass stays so far inside of what carries it [m], at standard height; it is moved so often."""
-LIGHT = 0.09
-"""A heel that is raised by less [rad], a centimetre or so, still carries."""
 FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 5, 0.02
@@ -46,17 +40,7 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
     """
     landing = landing_feet(np.asarray(place, float), start.heading, physique.tables)
     planted = start.planted(floor, physique.tables)
-    draft = _Draft(physique, start, way, planted, landing)
-    made = draft.plan()
-    for _ in range(TRIES):
-        aside = draft.aside()
-        if not aside.any():
-            break
-        low = draft.way.low + aside
-        way = replace(way, low=low, push=push(way.leave - low, way.passing, way.velocity, way.gravity))
-        draft = _Draft(physique, start, way, planted, landing)
-        made = draft.plan()
-    return made
+    return _Draft(physique, start, way, planted, landing).plan()
 
 
 class _Draft(Airborne):
@@ -65,8 +49,12 @@ class _Draft(Airborne):
     def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray):
         self.planted, self.off = planted, way.wind_up
         leave = self.off + way.push.duration
-        super().__init__(physique, start, way, landing, leave, [0.0, self.off, leave, leave + 0.45 * way.airtime], style.shapes(
-            np.linalg.norm(way.velocity - way.passing), np.linalg.norm(way.falling), start.single is not None, way.low_arms))
+        deep = (measures(physique).stand + planted[0, 1] - physique.tables.sole - way.low[1]) / (DEEP * physique.size)
+        super().__init__(
+            physique, start, way, landing, leave,
+            [0.0, self.off, leave, leave + min(style.AFTER, 0.2 * way.airtime), leave + 0.45 * way.airtime],
+            style.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms),
+            min(max(style.SWING - way.push.duration, 0.0), 0.3 * self.off))
 
     def plan(self) -> Plan:
         """Everything, in order."""
@@ -74,13 +62,13 @@ class _Draft(Airborne):
         self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)
-        after, landed, through = self._land()
+        after, landed, heels, through = self._land()
         way, mass, g = self.way, self.physique.mass, self.gravity
         contacts = np.zeros((len(self.times) + len(self.flying) - 1 + len(after), 4), bool)
-        heel_up = self.feet[:, :, 4] > 0.03
+        heel_up = self.feet[:, :, 4] > HEEL
         on = self.feet[:, :, 5] >= 0.0
         contacts[:len(self.times), 1::2], contacts[:len(self.times), ::2] = on, on & ~heel_up
-        contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, (after > PLANT)[:, None]
+        contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, heels
         flying = self.flying[1:]
         return Plan(
             np.concatenate([self.times, self.leave + flying, self.down + after]),
@@ -91,30 +79,12 @@ class _Draft(Airborne):
             mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
             contacts, self.off, self.leave, self.down, self.down + LOWEST, self.down + through, self.landing, self.momentum.copy(), way)
 
-    def aside(self) -> np.ndarray:
-        """How much farther over its feet (3,) [m] a standing body must crouch: zeros where it is balanced.
-
-        In deep crouches heels may rise, and then only the balls of the feet carry."""
-        if self.start.single is not None:
-            return np.zeros(3)
-        middle, wanted = np.empty(2), STEADY_MARGIN * self.body.sole / 0.02
-        worst, aside = wanted - 0.004, np.zeros(3)
-        for n in np.flatnonzero((self.times > 0.3 * self.off) & (self.times < self.off + 0.4 * self.way.push.duration)):
-            feet = self.feet[n].copy()
-            feet[feet[:, 4] < LIGHT, 4] = 0.0
-            inside = support_kernel(self.body, feet, self.centres[n], middle)
-            if inside < worst:
-                way = middle - self.centres[n, [0, 2]]
-                worst, aside[[0, 2]] = inside, way * (wanted - inside) / max(float(np.hypot(*way)), 1e-9)
-        return aside
-
     def _prepare_ground(self) -> None:
         """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
         way, start = self.way, self.start
         before = np.linspace(0.0, self.off, max(int(np.ceil(self.off * GROUND_RATE)), 3) + 1)
         pushing = np.linspace(0.0, way.push.duration, max(int(np.ceil(PUSH_RATE * way.push.duration)), 8) + 1)[1:]
-        c, v, a = quintic(start.centre, start.velocity, np.zeros(3), way.low, way.passing,
-                          way.push.force(np.array(0.0)) + self.gravity, before)
+        c, v, a = self._wind_up(before)
         gone, speed = way.push.moved(pushing, way.passing)
         self.times = np.concatenate([before, self.off + pushing])
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
@@ -127,7 +97,7 @@ class _Draft(Airborne):
         share = np.clip((self.times - self.off) / way.push.duration, 0.0, 1.0)
         rising = self._heels_rise(share)
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
-        self.nudge = (share**3 - share**2)[:, None] * way.push.duration
+        self.nudge = (share**2 * (share - 1.0))[:, None] * way.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
         self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])
@@ -141,12 +111,33 @@ class _Draft(Airborne):
             self.feet[:, swing, 5] = FREE
             self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
 
+    def _wind_up(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Place, velocity and acceleration (N, 3) of the centre of mass until the lowest point.
+
+        A runner's is a quartic: how the ground meets the foot is left open. A standing body goes down by a quintic, later
+        where `Path.dip` says so, and along the floor as an inverted pendulum whose foot is the centre of pressure.
+        """
+        way, start = self.way, self.start
+        pushed = way.push.force(0.0) + self.gravity
+        if way.running:
+            return joined(start.centre, start.velocity, None, way.low, way.passing, pushed, times)
+        half = np.linspace(0.0, times[-1], 2 * len(times) - 1)
+        late = np.maximum(half - max(self.off - way.dip, 0.0), 0.0)
+        sinking = start.velocity if way.dip >= self.off else 0.0 * start.velocity
+        c, v, a = joined(start.centre, sinking, np.zeros(3), way.low, way.passing, pushed, late)
+        floor = self.planted[0, 1] - self.body.sole
+        fallen = fallen_kernel(half, (a[:, 1] + 1e-9 - self.gravity[1]) / (c[:, 1] - floor), start.centre[[0, 2]], start.velocity[[0, 2]],
+                               way.low[[0, 2]], way.passing[[0, 2]], way.stance[[0, 2]])
+        c, v, a = c[::2], v[::2], a[::2]
+        c[:, [0, 2]], v[:, [0, 2]], a[:, [0, 2]] = fallen
+        return c, v, a
+
     def _heels_rise(self, share: np.ndarray) -> float:
         """When in the push (0 … 1) the heels rise: not before a standing jumper is over the balls of the feet."""
         if self.start.single is not None:
             return RUNNERS_HEEL[0]
-        past = (self.centres - self.planted[:, None, :3]) @ yaw(self.start.heading)[:, 2]
-        over = (past > STEADY_MARGIN * self.body.sole / 0.02).all(0) & (share > 0.0)
+        past = (self.centres[:, None] - self.planted[:, :3]) @ yaw(self.start.heading)[:, 2]
+        over = (past > 0.0).all(-1) & (share > 0.0)
         return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
 
     def _knee_drive(self, side: int) -> np.ndarray:
@@ -156,7 +147,8 @@ class _Draft(Airborne):
         high = np.zeros((4, 3))
         high[0, 0], high[1, 0], high[2, 0] = -1.05, 1.25, -0.1
         passing = 0.5 * (start + high)
-        passing[1, 0] = max(start[1, 0], high[1, 0]) + 0.35  # the toes pass over the floor
+        sinks = max(self.start.centre[1] - self.way.low[1], 0.0)
+        passing[1, 0] = max(start[1, 0], high[1, 0]) + 0.45 + 2.0 * sinks / self.body.shank  # the toes pass over the floor
         times = np.array([0.0, 0.5 * self.leave, self.leave])
         slopes = np.stack([self.start.rates[ids], (high - start) / self.leave, np.zeros((4, 3))])
         return turns(hermite(times, np.stack([start, passing, high]), slopes, self.times))
@@ -176,7 +168,8 @@ class _Draft(Airborne):
         """
         self.roots[-3:] = self.centres[-3:]  # a guess
         wanted = self._upright(self.air_angles[-1:, 0])[0]
-        spin, gain = np.array([-1.8 / self.way.airtime, 0.0, 0.0]), 0.57 * self.way.airtime * np.eye(3)
+        gain = 0.57 * self.way.airtime * np.eye(3)
+        spin = np.array([-1.0 / self.way.airtime, 0.0, 0.0])
         change = before = np.zeros(3)
         for _ in range(ROUNDS):
             self._flight(spin, wanted, 1e-4)
@@ -231,16 +224,56 @@ class _Draft(Airborne):
         return turns(hermite(times, values, slopes, self.flying))
 
 
-def quintic(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
-    """Place, velocity, acceleration (N, 3) along the quintic with these ends at times[0] = 0 and times[-1]."""
+def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
+    """Place, velocity, acceleration (N, 3) along the quintic with these ends at times[0] = 0 and times[-1], or, without a
+    first acceleration, the quartic."""
     t = times[-1]
-    powers = np.array([[t**3, t**4, t**5], [3 * t**2, 4 * t**3, 5 * t**4], [6 * t, 12 * t**2, 20 * t**3]])
-    c = np.linalg.solve(powers, np.stack([
-        end - start - velocity * t - 0.5 * acceleration * t**2,
-        end_velocity - velocity - acceleration * t, end_acceleration - acceleration]))
+    powers = np.arange(3, 6) if acceleration is not None else np.arange(2, 5)
+    begins = np.zeros(3) if acceleration is None else acceleration
+    ends = np.stack([t**powers, powers * t ** (powers - 1.0), powers * (powers - 1.0) * t ** (powers - 2.0)])
+    c = np.linalg.solve(ends, np.stack([
+        end - start - velocity * t - 0.5 * begins * t**2, end_velocity - velocity - begins * t, end_acceleration - begins]))
     s = times[:, None]
-    return (start + velocity * s + 0.5 * acceleration * s**2 + c[0] * s**3 + c[1] * s**4 + c[2] * s**5,
-            velocity + acceleration * s + 3 * c[0] * s**2 + 4 * c[1] * s**3 + 5 * c[2] * s**4,
-            acceleration + 6 * c[0] * s + 12 * c[1] * s**2 + 20 * c[2] * s**3)
+    return (start + velocity * s + 0.5 * begins * s**2 + s**powers @ c,
+            velocity + begins * s + (powers * s ** (powers - 1.0)) @ c,
+            begins + (powers * (powers - 1.0) * s ** (powers - 2.0)) @ c)
 
 
+@kernel
+def fallen_kernel(times, rates, start, velocity, end, end_velocity, pressed):
+    """Along the floor (N, 2) place, velocity and acceleration of a body that falls as an inverted pendulum.
+
+    ẍ = rates (x − p): times, rates: (2 N − 1,) [s], [1/s²], evenly spaced. The centre of pressure p goes from under `start`
+    to `pressed` (2,); two bumps on its way, one early and one late, are chosen so that x ends at `end` with `end_velocity` (2,).
+    """
+    count, step = (len(times) + 1) // 2, times[2] - times[0]
+    place, speed = np.empty((count, 4)), np.empty((count, 4))  # x, z without bumps; what each bump adds
+    foot = np.zeros((len(times), 4))
+    for n in range(len(times)):
+        s = times[n] / times[-1]
+        for k in range(2):
+            foot[n, k] = start[k] + (pressed[k] - start[k]) * s
+        foot[n, 2], foot[n, 3] = (1.0 - s) * (1.0 - (1.0 - s) ** 6), s * (1.0 - s**6)
+    place[0, :2], speed[0, :2] = start, velocity
+    place[0, 2:], speed[0, 2:] = 0.0, 0.0
+    for n in range(count - 1):  # Runge's and Kutta's method
+        i = 2 * n
+        for k in range(4):
+            x, v = place[n, k], speed[n, k]
+            a1 = rates[i] * (x - foot[i, k])
+            v2, a2 = v + 0.5 * step * a1, rates[i + 1] * (x + 0.5 * step * v - foot[i + 1, k])
+            v3, a3 = v + 0.5 * step * a2, rates[i + 1] * (x + 0.5 * step * v2 - foot[i + 1, k])
+            v4, a4 = v + step * a3, rates[i + 2] * (x + step * v3 - foot[i + 2, k])
+            place[n + 1, k] = x + step * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+            speed[n + 1, k] = v + step * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
+    found = np.empty((3, count, 2))
+    determinant = place[-1, 2] * speed[-1, 3] - place[-1, 3] * speed[-1, 2]
+    for k in range(2):
+        far, fast = end[k] - place[-1, k], end_velocity[k] - speed[-1, k]
+        early = (far * speed[-1, 3] - fast * place[-1, 3]) / determinant
+        late = (fast * place[-1, 2] - far * speed[-1, 2]) / determinant
+        for n in range(count):
+            found[0, n, k] = place[n, k] + early * place[n, 2] + late * place[n, 3]
+            found[1, n, k] = speed[n, k] + early * speed[n, 2] + late * speed[n, 3]
+            found[2, n, k] = rates[2 * n] * (found[0, n, k] - foot[2 * n, k] - early * foot[2 * n, 2] - late * foot[2 * n, 3])
+    return found

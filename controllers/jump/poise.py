@@ -15,7 +15,6 @@ import numpy as np
 
 from ..body.anatomy import joint_limits
 from ..body.ccd import ccd_kernel, foot_turn_kernel
-from ..body.human import STATURE
 from ..body.support import HALF_SOLE, centroid_kernel, hull_kernel, margin_kernel
 from ..body.turning import exp_kernel
 from ..compiled import kernel
@@ -65,13 +64,13 @@ def frame(physique: Physique) -> Frame:
     upper[:, 1, 0] = min(limits.upper[numbers[0, 1], 0] * physique.flexibility, math.radians(160.0))
     flex = FLEX * physique.flexibility
     lower[:, 2, 0] = -flex - 0.01  # a little play: the heel's rise is found to 1e-4
-    return Frame(body, lower, upper, flex, DEEP * physique.height / STATURE, style.joints_of(skeleton),
+    return Frame(body, lower, upper, flex, DEEP * physique.size, style.joints_of(skeleton),
                  np.array([[0.0, -body.thigh, 0.0], [0.0, -body.shank, 0.0]]))
 
 
 def flat_feet(physique: Physique) -> np.ndarray:
     """Two feet (2, 6) side by side around the origin, pointing along +Z, with heels free to rise."""
-    body, size = physique.tables, physique.height / STATURE
+    body, size = physique.tables, physique.size
     middle = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])
     return np.array([[sign * HALF_STANCE * size, body.sole, -middle, 0.0, 0.0, 1.0] for sign in (1.0, -1.0)])
 
@@ -129,7 +128,7 @@ def support_kernel(body, feet, centre, middle):
     Returns the margin [m] of the centre of mass (3,) in it.
     """
     points, corners = np.empty((12, 2)), np.empty((13, 2))
-    half = HALF_SOLE * body.sole / 0.02
+    half = HALF_SOLE * body.size
     count = 0
     for side in range(2):
         foot = feet[side]

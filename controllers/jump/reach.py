@@ -6,7 +6,6 @@ import numpy as np
 
 from ..body import end_positions, forward_kinematics
 from ..body.anatomy import centre_of_mass
-from ..body.human import STATURE
 from ..body.rotations import yaw
 from ..contract import Unable
 from ..navigation import gap
@@ -14,10 +13,16 @@ from . import style
 from .ballistics import along
 from .dynamics import Physique, turns
 from .path import Path, measures
+from .take_off import FLAT
 from .windup import strongest
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
+SLIP = 1.0
+"""Soles slip on the floor under a force that leans farther: their friction."""
+ASIDE = 0.45
+"""The force of a runner's push passes by the middle of the foot at most so far [m], at standard height: the foot is half
+of that, limbs that turn account for the rest."""
 STOPS = 6.0, 0.5
 """What legs give as they stop a fall, in an adult's weights on Earth at strength 1, and over which way [m], at
 standard height."""
@@ -46,17 +51,31 @@ def fault(physique: Physique, way: Path, around, floor: float) -> str:
     if not way.strong:
         return _weak(physique, way, floor)
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
-    if way.passing.any() and force > RUNNER * 9.81 * physique.strength:
+    if way.running and force > RUNNER * 9.81 * physique.strength:
         return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
                 f"where this one has {RUNNER * physique.strength:.1f}")
+    if way.running and not _grips(physique, way, floor):
+        gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.passing * FLAT)
+        return f"too {'far' if gains else 'near'} for this run: no foot {'speeds up' if gains else 'brakes'} so much in one step"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
-    size, down = physique.height / STATURE, -float(way.falling[1])
+    size, down = physique.size, -float(way.falling[1])
     spare = STOPS[0] * 9.81 * physique.strength + float(way.gravity[1])
     stops = np.sqrt(2.0 * STOPS[1] * size * max(spare, 0.0))
     if down > stops:
         return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s"
     return blocked(physique, way, around)
+
+
+def _grips(physique: Physique, way: Path, floor: float) -> bool:
+    """Whether the ground can give the push: up, without the foot slipping, and from about where it is."""
+    time = np.linspace(0.0, 0.75, 4) * way.push.duration
+    force = way.push.force(time)
+    gone, _ = way.push.moved(time, way.passing)
+    lean = force * FLAT / force[:, 1:2]
+    pressed = (way.low + gone) * FLAT - lean * (way.low + gone - floor)[:, 1:2]
+    return bool(np.linalg.norm(lean, axis=1).max() < SLIP
+                and np.linalg.norm(pressed - way.stance * FLAT, axis=1).max() < ASIDE * physique.size)
 
 
 def _weak(physique: Physique, way: Path, floor: float) -> str:
@@ -72,7 +91,7 @@ def blocked(physique: Physique, way: Path, around) -> str:
     """What the flying body would hit: "" or "its head would hit something at (x, y, z) m" and the like."""
     if not len(around):
         return ""
-    size, time = physique.height / STATURE, np.linspace(0.0, way.airtime, 25)
+    size, time = physique.size, np.linspace(0.0, way.airtime, 25)
     centre = along(way.leave, way.velocity, time, way.gravity)
     # legs are tucked in the middle of the flight
     tucked = np.interp(time / way.airtime, (0.0, 0.3, 0.75, 1.0), (1.0, 0.72, 0.72, 0.96))
@@ -95,9 +114,9 @@ def blocked(physique: Physique, way: Path, around) -> str:
 
 def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the head's middle (N, 3) and fingers, wrists and elbows (6, N, 3) are from the centre of mass, as it is carried."""
-    skeleton, running = physique.skeleton, bool(way.passing.any())
-    keys = style.shapes(0.0, float(np.linalg.norm(way.falling)), running, way.low_arms)[2:5]
-    angles = style.keyed(np.array([0.0, 0.45, 1.0]) * way.airtime, keys)(time)
+    skeleton = physique.skeleton
+    keys = style.shapes(0.0, 1.0, way.lean, way.fold, way.running, way.low_arms)[2:6]
+    angles = style.keyed(np.array([0.0, min(style.AFTER, 0.2 * way.airtime), 0.45 * way.airtime, way.airtime]), keys)(time)
     local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
     for one, posed in zip(angles, local):
         style.carry_kernel(one, style.joints_of(skeleton), posed)

@@ -8,6 +8,7 @@ The keys are ours, set by eye beside the counter-movement jumps of the motion ca
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
@@ -19,13 +20,18 @@ from ..compiled import kernel
 ANGLES = ("lean", "bend", "look", "swing", "spread", "elbow")
 STAND = np.radians([2.0, 2.0, 0.0, 2.0, 9.0, 14.0])
 CROUCH = np.radians([44.0, 26.0, -30.0, 52.0, 16.0, 22.0])
-TAKE_OFF = np.radians([10.0, -6.0, -4.0, -138.0, 18.0, 34.0])
+TAKE_OFF = np.radians([10.0, -6.0, -4.0, -122.0, 18.0, 34.0])
+RAISED = np.radians([11.0, -1.0, -5.0, -138.0, 20.0, 37.0])
 AIR = np.radians([14.0, 10.0, -6.0, -96.0, 24.0, 44.0])
 TOUCH = np.radians([20.0, 14.0, -8.0, -62.0, 26.0, 36.0])
-RUNNER_ARMS = np.radians([-84.0, -80.0])
-"""How far a runner's arms are swung at take-off and in the middle of the flight."""
-LOW_ARMS = np.radians([-22.0, -26.0, -30.0])
-"""How far arms are swung that something is above or before: at take-off, in the middle of the flight, at touch-down."""
+RUNNER_ARMS = np.radians([-76.0, -84.0, -80.0])
+"""How far a runner's arms are swung at take-off, a little later and in the middle of the flight."""
+LOW_ARMS = np.radians([-22.0, -23.0, -26.0, -30.0])
+"""How far arms are swung that something is above or before: the same, and at touch-down."""
+SWING = 0.33
+"""The arms swing up in no less [s]: they begin before the legs do."""
+AFTER = 0.08
+"""So long after take-off they are raised highest [s]."""
 ABSORB = np.radians([46.0, 26.0, -26.0, -34.0, 30.0, 40.0])
 
 FALL = np.radians([16.0, 12.0, -14.0, -40.0, 62.0, 46.0])
@@ -57,37 +63,44 @@ def carry_kernel(angles, joints, local):
         exp_kernel(0.0, -sign * angles[5], 0.0, local[joints[7 + k]])
 
 
-def shapes(effort: float, fall: float, running: bool, low: bool = False) -> np.ndarray:
-    """The keys (7, 6) of a jump: start, lowest point, take-off, middle of the flight, touch-down, lowest
+def shapes(crouch: float, absorbing: float, lean: float = 0.0, fold: float = 0.0, running: bool = False, low: bool = False) -> np.ndarray:
+    """The keys (8, 6) of a jump: start, lowest point, take-off, a little after it, middle of the flight, touch-down, lowest
     point of the landing, standing.
 
-    effort: the velocity that the push gives, fall: the velocity of the landing [m/s]. A runner hardly
-    winds up. low: the arms stay down.
+    crouch, absorbing: how deep before and after, 1 as in CROUCH and ABSORB. lean, fold: [rad] how much
+    farther forward it leans at take-off and at touch-down. low: the arms stay down.
     """
-    crouch = min(max(effort / 2.8, 0.25), 1.15) * (0.35 if running else 1.0)
-    leave, air = TAKE_OFF.copy(), AIR.copy()
+    flight = np.array([TAKE_OFF, RAISED, AIR, TOUCH])
+    flight[:, 0] += [lean, lean, 0.5 * (lean + fold), fold]
     if running:  # arms that swing against the legs have no time to rise above the head
-        leave[3], air[3] = RUNNER_ARMS
-    flight = np.array([leave, air, TOUCH])
+        flight[:3, 3] = RUNNER_ARMS
     if low:
         flight[:, 3] = LOW_ARMS
-    return np.array([STAND, STAND + crouch * (CROUCH - STAND), *flight, _absorbing(fall), STAND])
+    return np.array([STAND, STAND + crouch * (CROUCH - STAND), *flight, _absorbed(absorbing), STAND])
 
 
-def falling(fall: float) -> np.ndarray:
-    """The keys (4, 6) of a body that was struck: from the hit to touch-down, lowest point, standing. fall: as above."""
-    return np.array([FALL, FALL, _absorbing(fall), STAND])
+def falling(absorbing: float) -> np.ndarray:
+    """The keys (4, 6) of a body that was struck: from the hit to touch-down, lowest point, standing."""
+    return np.array([FALL, FALL, _absorbed(absorbing), STAND])
 
 
-def _absorbing(fall: float) -> np.ndarray:
-    return STAND + min(max(fall / 3.2, 0.25), 1.1) * (ABSORB - STAND)
+def _absorbed(share: float) -> np.ndarray:
+    return STAND + min(max(share, 0.25), 1.1) * (ABSORB - STAND)
 
 
-def keyed(times: np.ndarray, keys: np.ndarray) -> CubicHermiteSpline:
+def keyed(times: np.ndarray, keys: np.ndarray, first: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
     """The angles as a function of times within times[0] … times[-1] [s], through `keys` (K, 6) at `times` (K,).
 
-    Monotone between keys (PCHIP's slopes): nothing overshoots; at rest at both ends.
+    first: how much sooner [s] the arms come to their second key. Monotone between keys (PCHIP's slopes): nothing
+    overshoots; at rest at both ends.
     """
+    arms = np.array(times, float)
+    arms[1] -= first
+    trunk, limbs = _through(np.asarray(times, float), keys[:, :3]), _through(arms, keys[:, 3:])
+    return lambda time: np.concatenate([trunk(time), limbs(time)], axis=-1)
+
+
+def _through(times: np.ndarray, keys: np.ndarray) -> CubicHermiteSpline:
     slopes = PchipInterpolator(times, keys).derivative()(times)
     slopes[[0, -1]] = 0.0
     return CubicHermiteSpline(times, keys, slopes)

@@ -21,7 +21,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.human import STATURE
 from ..compiled import kernel
 from .chain import CHAIN, COLUMNS, RUNGE_KUTTA, links_kernel, thrust_kernel
 from .dynamics import GRAVITY, Physique, centre_kernel
@@ -174,7 +173,7 @@ def strength(physique: Physique, reading: Reading = "wedge", arm: Arm = "constan
     fixed, count, feet = frame(physique), len(physique.skeleton), flat_feet(physique)
     table = np.zeros((64, 5))
     found = strength_kernel(fixed, muscle(physique, reading, arm), gravity, feet, np.tile(np.eye(3), (count, 1, 1)),
-                            np.empty((count, 3)), np.empty((count, 3, 3)), 0.03 * physique.height / STATURE, DELAYS, table)
+                            np.empty((count, 3)), np.empty((count, 3, 3)), 0.03 * physique.size, DELAYS, table)
     return Strength(*np.ascontiguousarray(table[:found].T))
 
 
@@ -186,7 +185,7 @@ def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY, rea
     """
     velocity, gravity = upward(velocity, 1.0), upward(gravity, -1.0)
     able = strength(physique, reading, arm, -float(gravity[1]))
-    way = np.maximum(able.depth + rise, 0.02 * physique.height / STATURE)[:, None]
+    way = np.maximum(able.depth + rise, 0.02 * physique.size)[:, None]
     required = physique.mass * np.linalg.norm(velocity * velocity[1] / (2.0 * way) - gravity, axis=-1)
     kinetic = 0.5 * physique.mass * squared_kernel(velocity)
     spare = np.minimum(able.force / required, able.work / np.maximum(kinetic + able.spent, 1e-9)) - 1.0

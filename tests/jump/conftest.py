@@ -45,12 +45,26 @@ def ahead(state, far, up=0.0):
     return np.array([state.ground[0] + far * s, float(state.floor) + up, state.ground[1] + far * c])
 
 
+ASKED = {"up": (0.05, 0.0, 0.5), "far": (0.8, 0.0, None), "onto": (0.6, 0.25, None), "down": (0.8, -0.8, None),
+         "on the Moon": (1.0, 0.0, None), "at a run": (2.2, 0.0, None)}
+"""How far and how high [m], and for how long [s], jumps of many kinds go."""
+
+
 @pytest.fixture(scope="session")
-def plans(jump, standing, running):
-    """Jumps of many kinds: name, jumper, start, plan."""
+def starts(jump, standing, running):
+    """Who jumps and from which state, by name."""
     moon = Jump(gravity=(0.0, -1.62, 0.0))
-    asked = (("up", jump, standing, 0.05, 0.0, 0.5), ("far", jump, standing, 0.8, 0.0, None),
-             ("onto", jump, standing, 0.6, 0.25, None), ("down", jump, standing, 0.8, -0.8, None),
-             ("on the Moon", moon, standing, 1.0, 0.0, None), ("at a run", jump, running, 2.2, 0.0, None))
-    return {name: (who, state, who.plan(state, Intent(leap=Leap(ahead(state, far, up), airtime))))
-            for name, who, state, far, up, airtime in asked}
+    return {name: (moon if name == "on the Moon" else jump, running if name == "at a run" else standing) for name in ASKED}
+
+
+@pytest.fixture(scope="session")
+def places(starts):
+    """Where they shall land (3,) [m]."""
+    return {name: ahead(starts[name][1], far, up) for name, (far, up, _) in ASKED.items()}
+
+
+@pytest.fixture(scope="session")
+def plans(starts, places):
+    """Name, jumper, start, plan."""
+    return {name: (who, state, who.plan(state, Intent(leap=Leap(places[name], ASKED[name][2]))))
+            for name, (who, state) in starts.items()}

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from controllers.body.support import hull, margin
 from controllers.jump.ballistics import along
 from controllers.jump.controller import Jump
 from controllers.jump.dynamics import Physique
@@ -46,7 +47,27 @@ def test_soles_land_about_the_place(x, z, heading):
 
 @pytest.mark.parametrize("height", [1.1, 1.741, 2.0])
 def test_a_body_s_heights_grow_with_it(height):
-    one, adult = measures(Physique(73.0, height)), measures(Physique())
-    for name in ("stand", "leave", "touch"):
-        assert getattr(one, name) == pytest.approx(getattr(adult, name) * height / 1.741, rel=1e-3)
-    assert adult.leave > adult.stand
+    one, adult, size = measures(Physique(73.0, height)), measures(Physique()), height / 1.741
+    assert one.stand == pytest.approx(adult.stand * size, rel=1e-3)
+    for way in (0.0, 0.1, 0.25):
+        assert one.leave(way * size) == pytest.approx(adult.leave(way) * size, rel=1e-3)
+        assert one.touch(way * size) == pytest.approx(adult.touch(way) * size, rel=1e-3)
+    assert adult.leave(0.0) > adult.stand > adult.touch(0.0)
+
+
+@law
+@given(st.floats(0.0, 1.5), st.floats(-0.5, 0.3), st.floats(1.5, 15.0), st.floats(-3.1, 3.1))
+def test_a_standing_jumper_pushes_from_under_its_soles(jump, standing, far, up, g, aside):
+    """Of a mass where the centre of mass is, in any direction; half of the speeds are beyond what muscles can."""
+    who = Jump(gravity=(0.0, -g, 0.0))
+    start = who.start_of(standing)
+    here = who.middle(start, 0.0)
+    way = who.path(start, here + [far * np.sin(aside), up, far * np.cos(aside)], 0.0)
+    time = np.linspace(0.0, 0.95, 8) * way.push.duration
+    force, place = way.push.force(time), way.low + way.push.moved(time, way.passing)[0]
+    lean = force[:, [0, 2]] / force[:, 1:2]
+    pressed = place[:, [0, 2]] - lean * place[:, 1:2]
+    if np.hypot(*(way.leave - way.stance)[[0, 2]]) < 0.5:  # farther ahead no leg reaches, and it pushes what it can
+        corners = soles(start.planted(0.0, who.physique.tables), who.physique.tables)[:, [0, 2]]
+        assert np.array([margin(hull(corners), one) for one in pressed]).min() > -0.06
+    assert np.linalg.norm(lean, axis=1).max() < 1.0

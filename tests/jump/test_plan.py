@@ -31,7 +31,8 @@ def test_it_begins_as_the_body_was(plans, name):
     if state.elapsed:
         before = forward_kinematics(who.skeleton, *(np.asarray(a, float) for a in (state.previous.root, state.previous.rotations)))[0]
         went, goes = (begins - before) / state.elapsed, (positions[1] - positions[0]) * 60.0
-        assert np.linalg.norm(goes - went, axis=-1)[:6].max() < 1.6  # trunk and head [m/s]
+        far = np.linalg.norm(goes - went, axis=-1)
+        assert far[:6].max() < 0.4 and far.max() < 3.0  # trunk and head; hands and feet [m/s]
 
 
 @every
@@ -104,19 +105,20 @@ def test_knees_elbows_and_trunk_stay_within_their_limits(plans, name):
 
 
 @every
-def test_it_lands_on_both_feet_about_the_place(plans, name):
+def test_it_lands_on_both_soles_about_the_place_that_was_asked(plans, places, name):
+    """As soon as the soles are flat, whether it stops there or walks on."""
     who, _, made = plans[name]
-    positions, turned, *_ = poses(who, made, [min(made.touch_down + 0.3, made.through)])
+    positions, turned, *_ = poses(who, made, [made.touch_down + 0.1])
     corners = sole_corners(who.skeleton, positions, turned)[0].reshape(2, 6, 3)[:, [0, 1, 4, 5]]
-    landed = made.feet[:, :3].mean(0)
-    assert np.linalg.norm(corners.mean((0, 1)) - landed) < 0.12
+    assert np.linalg.norm(corners.mean((0, 1)) - places[name]) < 0.02
     assert np.ptp(corners[..., 1]) < 0.02
 
 
 @two_feet
-def test_balance_is_kept_while_both_feet_are_flat(plans, name):
+def test_balance_is_kept_as_it_winds_up(plans, name):
+    """Until the body falls ahead of its feet, which is what brings it forward: see the next law."""
     who, state, made = plans[name]
-    times = np.linspace(0.3 * made.push_off, made.push_off, 12)
+    times = np.linspace(0.2 * made.push_off, 0.7 * made.push_off, 12)
     positions, turned, _, centre = poses(who, made, times)
     for corners, over in zip(sole_corners(who.skeleton, positions, turned), centre):
         on = corners[corners[:, 1] < float(state.floor) + 0.012]
@@ -124,11 +126,36 @@ def test_balance_is_kept_while_both_feet_are_flat(plans, name):
 
 
 @every
-def test_the_ground_pushes_and_nothing_does_in_the_air(plans, name):
+def test_the_ground_gives_what_moves_the_body(plans, name):
+    """F = m (c̈ − g) of the played centre of mass, and it never pulls, slips or pushes from where no foot is."""
+    who, state, made = plans[name]
+    mass, g = who.physique.mass, who.gravity
+    centre = poses(who, made)[3]
+    ends = (0.0, made.take_off, float(state.floor)), (made.touch_down, min(made.through, made.duration), 0.0)
+    for first, last, floor in ends:
+        n = np.flatnonzero((made.times > first + 1e-9) & (made.times < last - 1e-9))[1:-1]
+        before, after = (made.times[n] - made.times[n - 1])[:, None], (made.times[n + 1] - made.times[n])[:, None]
+        bent = 2.0 * (after * centre[n - 1] - (before + after) * centre[n] + before * centre[n + 1]) / (before * after * (before + after))
+        even = (np.abs(before - after) < 1e-9)[:, 0]  # where steps change, the quotient is only roughly the derivative
+        force = made.forces[n]
+        np.testing.assert_allclose(force[even], mass * (bent - g)[even], atol=0.06 * mass * 9.81)
+        assert force[:, 1].min() > 0.0
+        held = force[:, 1] > -0.3 * mass * g[1]
+        assert np.linalg.norm(force[held][:, [0, 2]], axis=1).max() < np.max(force[held, 1])
+        if first == 0.0:
+            pressed = centre[n] - force / force[:, 1:2] * (centre[n, 1:2] - floor)
+            positions, turned, *_ = poses(who, made, [0.5 * made.push_off])
+            feet = sole_corners(who.skeleton, positions, turned)[0].reshape(2, 6, 3)
+            single = who.start_of(state).single
+            on = feet.reshape(-1, 3) if single is None else feet[single]
+            assert min(margin(hull(on[:, [0, 2]]), one[[0, 2]]) for one in pressed[held]) > (-0.06 if single is None else -0.25)
+
+
+@every
+def test_nothing_pushes_in_the_air(plans, name):
     _, _, made = plans[name]
     air = (made.times > made.take_off + 1e-9) & (made.times < made.touch_down)
     assert not made.forces[air].any() and not made.contacts[air].any()
-    assert made.forces[~air, 1].min() >= -1e-6
 
 
 def test_two_plans_of_one_jump_are_the_same_to_the_bit(plans):

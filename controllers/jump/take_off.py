@@ -1,0 +1,227 @@
+"""Where the centre of mass is lowest and where it leaves, so that the ground can give the force that this takes.
+
+The ground pushes from under the soles. Of a mass at height h, where the force leans by l from upright, the centre of
+pressure lies l h behind it: the point for which the force has no moment about the centre of mass. A body that wants to go
+forward lets itself fall ahead first and pushes when it is ahead of its feet; one that was planned to leave over them would
+be pulled by something. Limbs that turn shift that point; how far, `scripts/measure_jump.py` prints.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..body.rotations import yaw
+from .dynamics import Physique
+from .thrust import MOMENTS, risen, upward
+from .windup import crouch_depth, strength
+
+if TYPE_CHECKING:
+    from .path import Measures, Start
+
+FLAT = np.array([1.0, 0.0, 1.0])
+TOES = 0.03
+"""At take-off the ground pushes so far ahead of the balls of the feet [m], at standard height."""
+MOST_LEAD = 0.60
+"""How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
+YIELDS = 0.04
+"""How long a runner's foot gives before it pushes, at least [s]."""
+SHORTEST_PUSH = 0.08
+"""No foot pushes a runner off in less [s]."""
+STILL = 0.05
+"""A body that rises or sinks slower stands [m/s]."""
+STRIDE = 1.022
+"""How much higher a body leaves off one foot, whose heel is higher, than off two."""
+SLACK = 0.03
+"""So much higher a runner may leave, on a straighter leg [m], at standard height."""
+STRIKE = -0.5
+"""How a runner's centre of mass is accelerated as the foot has struck, over gravity: half its weight is carried."""
+LEANS, BACK, FORTH = 0.7, -0.15, 0.45
+"""How much of the angle from the feet to the centre of mass the trunk leans with at take-off; how far back and forth at most [rad]."""
+LEAST_CROUCH = 0.07
+"""A body crouches at least so deep [m], at standard height."""
+MOST = 2.0
+"""A wind-up that would need more foot than there is takes longer: at most so many times as long, on Earth."""
+SOONER, TIMES = 0.85, 5
+"""How much sooner a runner leaves that could not come up so far ahead of the foot, at most so often."""
+
+
+class TakeOff(NamedTuple):
+    """Lowest point and take-off of the centre of mass (3,) [m], its velocity (3,) [m/s] at the lowest point, the time until
+    there [s] and how much of that it goes down, how far the body leans forward as it leaves [rad], and whether the muscles
+    are strong enough."""
+
+    low: np.ndarray
+    leave: np.ndarray
+    passing: np.ndarray
+    wind_up: float
+    dip: float
+    lean: float
+    strong: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """A body that pushes off both feet: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
+    the soles can press [m]. floor [m], gravity (3,) [m/s²]."""
+
+    physique: Physique
+    start: Start
+    heights: Measures
+    middle: np.ndarray
+    balls: np.ndarray
+    reach: float
+    floor: float
+    gravity: np.ndarray
+
+    before = np.zeros(3)
+
+    def take_off(self, leave: np.ndarray, land: np.ndarray, velocity: np.ndarray, flight: float) -> TakeOff:
+        """The take-off from about `leave` (3,) [m] with about a velocity (3,) [m/s], to be at `land` (3,) after `flight` [s].
+
+        Until the lowest point the body falls about a pressed point as an inverted pendulum does; over the push
+        the force's lean is linear in time. At the lowest point it comes from the middle of the soles, at take-off from
+        the toes. Along the floor that is linear in both places.
+        """
+        size, g = self.physique.size, -float(self.gravity[1])
+        rise = leave[1] - self.floor - self.heights.stand
+        deep = crouch_depth(self.physique, velocity, rise, self.gravity)
+        strong = deep == deep  # not a number where the muscles can't
+        deep = max(deep, LEAST_CROUCH * size) if strong else float(strength(self.physique).depth[-1])
+        duration, level = upward(max(deep + rise, 0.02 * size), 0.0, float(velocity[1]), g)
+        low_height, start = self.heights.stand - deep, self.start
+        facing = yaw(start.heading)[:, 2]
+        toes = self.balls + TOES * size * facing
+        early, late = level * duration / low_height, level * duration / (leave[1] - self.floor)
+        quick = 0.34 + 0.9 * math.sqrt(max(start.centre[1] - self.floor - low_height, 0.0) / max(g, 3.0))
+
+        def fall(wind_up: float) -> _Fall:
+            return self._fall(wind_up, duration, early, late, toes, land, flight)
+
+        def short(wind_up: float) -> float:
+            """How much farther [m] than the soles go the body would have to press."""
+            return float(np.linalg.norm((fall(wind_up).pressed - self.middle) * FLAT)) - self.reach
+        wind_up = quick
+        if short(quick) > 0.0:
+            longest = MOST * max(math.sqrt(9.81 / g), 1.0) * quick
+            wind_up = longest if short(longest) > 0.0 else float(brentq(short, quick, longest, xtol=0.01))
+        low, ahead, passing, _ = fall(wind_up)
+        lead = (ahead - self.balls) * FLAT
+        lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
+        forward, aside = float(lead @ facing), float(np.linalg.norm(np.cross(lead, facing)))
+        height = self.heights.leave(forward, aside)
+        leave = self.balls * FLAT + lead + [0.0, self.floor + height, 0.0]
+        low = low * FLAT + [0.0, self.floor + low_height, 0.0]
+        # longer, and it would rise first
+        sinks = start.centre[1] - low[1]
+        dip = math.sqrt(18.0 * max(sinks, 0.0) / max(level - g, 1e-6)) if abs(start.velocity[1]) < STILL else math.inf
+        return TakeOff(low, leave, passing, wind_up, max(dip, 0.5 * wind_up), leaning(forward, height), strong)
+
+    def _fall(self, wind_up: float, duration: float, early: float, late: float, toes: np.ndarray, land: np.ndarray,
+              flight: float) -> _Fall:
+        """The fall of `wind_up` seconds that ends in a push of `duration` [s] to be at `land` (3,) after `flight` [s].
+
+        early, late: [1/s] the speed that the push gives for each metre that the body is ahead of what it presses, as it
+        begins and as it ends.
+        """
+        start, rate = self.start, math.sqrt(-float(self.gravity[1]) / self.heights.stand)
+        m0, m1, m2 = MOMENTS
+        falls = rate / math.tanh(0.5 * rate * wind_up)  # a pendulum's speed for each metre that it has fallen
+        # unknown are the lowest point and the take-off: the speed gained, then the way gone
+        a, b = falls + early * (m0 - m1), late * m1 + 1.0 / flight
+        c = 1.0 + duration * (falls + early * (m0 - 2.0 * m1 + m2))
+        d = duration * late * (m1 - m2) - 1.0
+        begun = falls * start.centre + start.velocity
+        gains = land / flight + begun + early * (m0 - m1) * self.middle + late * m1 * toes
+        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * self.middle + late * (m1 - m2) * toes)
+        low, ahead = (d * gains - b * goes) / (a * d - b * c), (a * goes - c * gains) / (a * d - b * c)
+        swing = rate * wind_up
+        fallen = (low - start.centre - start.velocity * math.sinh(swing) / rate) / (math.cosh(swing) - 1.0)
+        return _Fall(low, ahead, (falls * (low - start.centre) - start.velocity) * FLAT, start.centre - fallen)
+
+
+class _Fall(NamedTuple):
+    """Where (3,) [m] a body that falls ahead is lowest and where it leaves, with which velocity (3,) [m/s] it is lowest, and
+    where it presses until then. Heights are not told."""
+
+    low: np.ndarray
+    ahead: np.ndarray
+    passing: np.ndarray
+    pressed: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Running:
+    """A runner who pushes off one foot that has just struck: `ball` (3,) [m] of it. floor [m], gravity (3,) [m/s²]."""
+
+    physique: Physique
+    start: Start
+    heights: Measures
+    ball: np.ndarray
+    floor: float
+    gravity: np.ndarray
+
+    @property
+    def before(self) -> np.ndarray:
+        """The velocity (3,) [m/s] that it has."""
+        return self.start.velocity * FLAT
+
+    def take_off(self, leave: np.ndarray, land: np.ndarray, velocity: np.ndarray, flight: float) -> TakeOff:
+        """The take-off from about `leave` (3,) [m] with about a velocity (3,) [m/s], to be at `land` (3,) after `flight` [s].
+
+        The foot gives while the body passes, then pushes; it pushes as long as the body is about as far behind it
+        at first as ahead of it at last, or farther ahead if it is to become faster.
+        """
+        start, g, most = self.start, -float(self.gravity[1]), float(self.heights.leads[-1])
+        passing, pace = self.before, float(np.linalg.norm(self.before))
+        mean = 0.5 * (passing + velocity * FLAT)
+        along = mean / max(float(np.linalg.norm(mean)), 1e-6)
+        behind = (start.centre - self.ball) @ along
+        speed = max(float(np.linalg.norm(mean)), 0.3)
+        # the force's mean lean brings the velocity about
+        lean = float((velocity - passing) @ along) / max(float(velocity[1]) - float(start.velocity[1]) + g * 0.2, 1.0)
+        lead = min(2.0 * lean * self.heights.stand - behind, most)
+
+        def above(yielding: float, contact: float) -> float:
+            """How much too high [m] the body leaves if the foot gives so long [s]."""
+            pushed = contact - yielding
+            level = (float(velocity[1]) / pushed + g) / MOMENTS[0]
+            sinks = -0.5 * start.velocity[1] * yielding + (level - g - STRIKE * g) * yielding**2 / 12.0
+            return float(start.centre[1]) - sinks + risen(pushed, float(velocity[1]), g) - self._top(contact * speed + behind)
+
+        for _ in range(TIMES):  # who leaves sooner leaves higher
+            contact = max((lead - behind) / speed, YIELDS + SHORTEST_PUSH)
+            least, longest = YIELDS, contact - SHORTEST_PUSH
+            if above(longest, contact) <= SLACK * self.physique.size or longest <= least:
+                break
+            lead = behind + SOONER * (lead - behind)
+        if above(least, contact) <= 0.0:
+            yielding = least
+        elif above(longest, contact) >= 0.0:
+            yielding = longest
+        else:
+            yielding = brentq(above, least, longest, args=(contact,), xtol=1e-4)
+        rise = risen(contact - yielding, float(velocity[1]), g)
+        low = (start.centre + start.velocity * yielding) * FLAT
+        leave = low + mean * (contact - yielding)
+        leave[1] = self._top(contact * speed + behind) + min(above(yielding, contact), SLACK * self.physique.size)
+        low[1] = leave[1] - rise
+        return TakeOff(low, leave, passing, yielding, math.inf, 0.5 * leaning(lead, leave[1] - self.floor), True)
+
+    def _top(self, lead: float) -> float:
+        """How high it leaves so far ahead of its foot [m]."""
+        return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0))
+
+
+def leaning(lead: float, height: float) -> float:
+    """How far [rad] a body leans forward that leaves the floor so far ahead of its feet [m], at a height [m]."""
+    return min(max(LEANS * math.atan2(lead, height), BACK), FORTH)
+
+
+def over(height: float, aside: float) -> float:
+    """How high a centre of mass stands that leans `aside` from where it would stand `height` [m] high."""
+    return float(np.sqrt(max(height**2 - aside**2, 0.25 * height**2)))
