@@ -29,7 +29,7 @@ STEADY = 0.12
 """Half-life with which the pelvis loses the turn it landed with [s]."""
 LOWEST = 0.28
 """From touch-down to the lowest point of the landing [s]."""
-SAME = 5e-4
+SAME = 1e-3
 """The legs reach for a body turned to within this of how it lands [rad]."""
 
 
@@ -77,7 +77,7 @@ class Airborne:
     def _prepare_air(self) -> None:
         """The flight's times, arc and carriage."""
         way = self.way
-        self.flying = np.linspace(0.0, way.airtime, max(int(np.ceil(AIR_RATE * way.airtime)), 8) + 1)
+        self.flying = np.linspace(0.0, way.airtime, 3 * max(int(np.ceil(AIR_RATE * way.airtime / 3.0)), 3) + 1)
         t = self.flying[:, None]
         self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
         self.air_angles = self.carriage(self.leave + self.flying)
@@ -86,12 +86,13 @@ class Airborne:
             carry_on_kernel(angles, self.joints, left, local)
         self.air_roots, self.momentum = np.empty((len(t), 3)), np.empty(3)
 
-    def _miss(self, wanted: np.ndarray) -> np.ndarray:
-        """The rotation vector (3,) [rad] from how the body came down to how it should, somersaults counted."""
-        miss = vectors(wanted @ self.air[-1, 0].T)
+    def _miss(self, wanted: np.ndarray, air: np.ndarray) -> np.ndarray:
+        """The rotation vector (3,) [rad] from how a body in these poses (N, J, 3, 3) came down to how it should, somersaults
+        counted."""
+        miss = vectors(wanted @ air[-1, 0].T)
         across = yaw(self.start.heading)[:, 0]
-        turned = vectors(self.air[1:, 0] @ np.swapaxes(self.air[:-1, 0], -1, -2)) @ across
-        meant = vectors(wanted @ self.air[0, 0].T) @ across
+        turned = vectors(air[1:, 0] @ np.swapaxes(air[:-1, 0], -1, -2)) @ across
+        meant = vectors(wanted @ air[0, 0].T) @ across
         return miss + 2.0 * np.pi * np.round((meant - turned.sum() - miss @ across) / (2.0 * np.pi)) * across
 
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -146,7 +146,7 @@ class _Fall(Airborne):
         for _ in range(ROUNDS):
             spin *= min(1.0, TURNS / max(float(np.linalg.norm(spin)), 1e-9))
             self._fly(inertia @ spin, landed, 1e-4)
-            landed, miss = self.air[-1, 0].copy(), self._miss(wanted)
+            landed, miss = self.air[-1, 0].copy(), self._miss(wanted, self.air)
             if np.abs(miss).max() < CLOSE:
                 break
             spin = spin + miss / self.way.airtime

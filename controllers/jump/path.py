@@ -40,7 +40,7 @@ TRAIL = (0.16, 0.30)
 FOLDS = 0.8
 """How much farther it leans forward for each metre of that [rad]: who leaps far folds up as the legs reach ahead."""
 _LEAN = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-ROUNDS, SETTLED = 12, 1e-4
+ROUNDS, SETTLED = 12, 1.5e-3
 """Where a body leaves and how fast follow from each other: they are found in so many rounds at most, to so much [m]."""
 
 
@@ -219,7 +219,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             least_effort(leave, land, pushing.before, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
             apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
         velocity = take_off_velocity(leave, land, flight, gravity)
-        trail = min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0))
+        trail = 0.5 * (trail + min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)))
         soft = softened(g * flight - float(velocity[1]), size)
         found = pushing.take_off(leave, land, velocity, flight)
         if np.abs(found.leave - leave).max() < SETTLED:

@@ -31,6 +31,8 @@ FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
+COARSE = 3
+"""Until then, only every third pose is made."""
 
 
 def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Plan:
@@ -172,8 +174,8 @@ class _Draft(Airborne):
         spin = np.array([-1.0 / self.way.airtime, 0.0, 0.0])
         change = before = np.zeros(3)
         for _ in range(ROUNDS):
-            self._flight(spin, wanted, 1e-4)
-            miss = self._miss(wanted)
+            flown = self._flight(spin, wanted, 1e-4, COARSE)
+            miss = self._miss(wanted, flown)
             if change.any():
                 gain += np.outer(before - miss - gain @ change, change) / (change @ change)
             if np.abs(miss).max() < CLOSE:
@@ -182,14 +184,15 @@ class _Draft(Airborne):
             spin = spin + change
         # the legs reach for where this very body comes down, which changes a little how it turns
         for _ in range(ROUNDS):
-            landed = self.air[-1, 0].copy()
-            self._flight(spin, landed, 1e-9)
-            if np.abs(vectors(landed.T @ self.air[-1, 0])).max() < SAME:
+            landed = flown[-1, 0].copy()
+            flown = self._flight(spin, landed, 1e-9)
+            if np.abs(vectors(landed.T @ flown[-1, 0])).max() < SAME:
                 break
         return spin
 
-    def _flight(self, spin: np.ndarray, landed: np.ndarray, tolerance: float) -> None:
-        """The flight after a take-off with `spin`, its legs reaching as if it came down turned `landed` (3, 3)."""
+    def _flight(self, spin: np.ndarray, landed: np.ndarray, tolerance: float, every: int = 1) -> np.ndarray:
+        """The flight after a take-off with `spin`, its legs reaching as if it came down turned `landed` (3, 3): its poses
+        (N, J, 3, 3), of `every` so many only."""
         self._stand(spin, len(self.times) - 3)
         step = self.times[-1] - self.times[-2]
         placed = np.empty((2, self.count, 3)), np.empty((2, self.count, 3, 3))
@@ -197,14 +200,16 @@ class _Draft(Airborne):
             place_kernel(self.body, self.roots[k - 2], self.local[k - 2], placed[0][k], placed[1][k])
         momentum_kernel(self.body, placed[0][0], placed[1][0], placed[0][1], placed[1][1], step,
                         self.momentum, np.empty((3, 3)))
-        self.air[:, self.legs] = self._legs_in_flight(step, *self._touching(landed))
-        self.air[0] = self.local[-1]
+        air, arc, roots = (np.ascontiguousarray(part[::every]) for part in (self.air, self.arc, self.air_roots))
+        air[:, self.legs] = self._legs_in_flight(step, *self._touching(landed), self.flying[::every])
+        air[0] = self.local[-1]
         rate = vectors(self.local[-1, 0] @ self.local[-2, 0].T) / step
-        flight_kernel(self.body, self.arc, self.air, rate, self.momentum, self.flying[1], self.air_roots, tolerance)
+        flight_kernel(self.body, arc, air, rate, self.momentum, self.flying[every], roots, tolerance)
+        return air
 
-    def _legs_in_flight(self, step: float, end: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """The legs' local rotations (N, 8, 3, 3): out of the push straight, then tucked, then reaching; they
-        touch down with `bending` (8, 3) [rad/s]."""
+    def _legs_in_flight(self, step: float, end: np.ndarray, bending: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """The legs' local rotations (N, 8, 3, 3) at times (N,) [s] in the air: out of the push straight, then tucked, then
+        reaching; they touch down with `bending` (8, 3) [rad/s]."""
         airtime, ids = self.way.airtime, self.legs
         before, last, reach = vectors(self.local[-2, ids]), vectors(self.local[-1, ids]), vectors(end[ids])
         tuck = np.clip((airtime - 0.25) / 0.35, 0.0, 1.0)
@@ -217,11 +222,11 @@ class _Draft(Airborne):
         folded[[0, 4], 0] -= 0.45 * tuck
         folded[[1, 5], 0] += 0.85 * tuck
         folded[[2, 6], 0] += share * (0.25 - folded[[2, 6], 0])
-        times = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
+        keys = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
         values = np.stack([last, straight, folded, reach])
-        slopes = PchipInterpolator(times, values).derivative()(times)
+        slopes = PchipInterpolator(keys, values).derivative()(keys)
         slopes[0], slopes[3] = (last - before) / step, bending
-        return turns(hermite(times, values, slopes, self.flying))
+        return turns(hermite(keys, values, slopes, times))
 
 
 def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
