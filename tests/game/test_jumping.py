@@ -182,15 +182,29 @@ def test_what_is_drawn_is_drawn_for_the_overlays_that_show_it(played):
     assert not any(map(len, sketched(drawn, Overlays(), camera, 700.0)))
 
 
-def test_a_strip_shows_the_first_jump_from_its_side(played, somebody):
+def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(played, somebody):
     scenario, _ = played
-    scenes = strip(scenario, somebody, 6, Overlays(), (1200, 400))
-    assert [scene.part[0] for scene in scenes] == pytest.approx([n / 6 for n in range(6)])
+    scenes = strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="A")
+    assert [scene.part for scene in scenes] == [pytest.approx((n / 6, 0.0, 1 / 6, 1.0)) for n in range(6)]
     heights = [scene.figures[0].positions[:, 1].max() for scene in scenes]
     assert max(heights) > heights[0] + 0.1
+    assert heights[-1] == pytest.approx(heights[0] + 0.3, abs=0.08)  # up again, on the platform
     for scene in scenes:
         sight = scene.camera.target - scene.camera.eye
         assert abs(sight[2]) < 0.01 * abs(sight[0]) and np.linalg.norm(sight) > 3
+
+
+def test_every_actor_of_a_strip_has_a_row(played, somebody):
+    scenario, _ = played
+    scenes = strip(scenario, somebody, 4, Overlays(), (1200, 900))
+    assert [scene.part for scene in scenes] == [pytest.approx((n / 4, row / 3, 1 / 4, 1 / 3)) for row in range(3) for n in range(4)]
+    for row, start in enumerate((0.0, 3.0, -3.0)):
+        for scene in scenes[4 * row:4 * row + 4]:
+            assert len(scene.figures) == 1 and abs(scene.figures[0].positions[0, 0] - start) < 1.0
+
+
+def test_a_strip_of_nobody_and_of_no_time_is_refused(played, somebody):
+    scenario, _ = played
     with pytest.raises(ScenarioError, match="no actor is called 'Z'; there are A, B, C"):
         strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="Z")
     with pytest.raises(ScenarioError, match="nothing lies from 9 to 5 s"):
