@@ -31,7 +31,7 @@ from .rewind import Look
 from .scene import OVERLAYS, Camera, Overlays, Scene
 from .session import Moment, Timeline, refused
 from .studio import Studio
-from .views import scenes
+from .views import Previews, previews, scenes
 from .world import DT, FixedStep, World
 
 SHOWS = {"show_jump" if name == "jump" else name: name for name in OVERLAYS}
@@ -66,6 +66,7 @@ class Play:
         self.hud: Any = None
         self.undrawn = 0.0  # seconds since panels were drawn
         self.look: Look | None = None
+        self.previews: Previews = ()  # the jumps that are aimed at, as they were drawn last
 
     # --- what is shown
 
@@ -325,7 +326,8 @@ class Play:
     def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
         """What to draw now, one scene for each player; size: of the frame in pixels."""
         moment, fraction, cameras = self._shown(self.clock.alpha)
-        views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment))
+        self.previews = previews(moment, self.previews)
+        views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment), self.previews)
         self.reach.look(cameras[0], size[0] / (len(views) * size[1]))
         views = (replace(views[0], figures=self.reach.marked(views[0].figures, moment)), *views[1:])
         if self.helping:

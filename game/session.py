@@ -18,16 +18,17 @@ from controllers.contract import Intent
 from controllers.navigation import Steering, in_world, slide
 
 from . import settings, study
+from .aiming import preview
 from .camera import Follow, PlayerCamera, between, cycled
 from .input.aim import Aim
 from .input.pilot import STEERING, Pilot
 from .input.script import jumping
 from .input.wish import Wish
-from .jumping import jump_of
 from .methods import Methods, methods
 from .scene import TINT, Camera, Figure
 from .stage import COURSE
 from .study import Study
+from .sway import jump_of
 from .world import DT, RATE, Character, World, figures, ground_between
 
 KEPT = 30 * RATE
@@ -148,7 +149,7 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
         state = character.state
         if player.camera.flown:  # the sticks fly the camera
             wish = Wish()
-        jump = jump_of(character)
+        jump = jump_of(character.controller)
         aim = player.aim.step(wish, player.camera.yaw, state, jumping(state) is not None, DT) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
@@ -170,8 +171,9 @@ def refused(before: Moment, after: Moment) -> tuple[str, ...]:
     lines = []
     for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
         if old.aim.waiting > 0.0 and new.aim == Aim() and jumping(now.state) is None and now is not was:
-            why = getattr(was.state.memory, "refused", "") or "no foot stood ready"
-            lines.append(f"no jump: {why}")
+            seen = preview(was, old.aim, before.after.props)
+            why = seen.why if seen is not None else ""
+            lines.append(f"no jump: {why or getattr(was.state.memory, 'refused', '') or 'no foot stood ready'}")
     return tuple(lines)
 
 
@@ -182,7 +184,7 @@ def _filmed(moment: Moment, who: int, wish: Wish, stepped: bool) -> Player:
     still = moment.paused and not stepped
     velocity = np.zeros(2) if still else in_world(new.ground, new.velocity) / moment.slow
     player = moment.players[who]
-    return replace(player, camera=player.camera.step(
+    return replace(player, camera=player.camera.aimed(player.aim.looked, DT).step(
         ground_between(old, new, part), velocity, wish, DT, moment.after.props,
         first.level + part * (second.level - first.level)))
 

@@ -37,6 +37,9 @@ PATIENCE = 0.9
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
 
+LOOKED = 0.2
+"""Who holds the button for longer [s] looks where to jump."""
+
 
 @dataclass(frozen=True)
 class Aim:
@@ -80,6 +83,13 @@ class Aim:
     def facing(self) -> float | None:
         """The heading [rad] that a body about to jump from a stand turns to, if any."""
         if self.moving or not (self.aiming or self.waiting) or math.hypot(*self.offset) < NEAR:
+            return None
+        return math.atan2(*self.offset)
+
+    @property
+    def looked(self) -> float | None:
+        """The heading [rad] in which somebody looks for a place to land; None where nobody does."""
+        if not self.aiming or self.held < LOOKED or math.hypot(*self.offset) < NEAR:
             return None
         return math.atan2(*self.offset)
 

@@ -92,3 +92,13 @@ def test_a_wish_is_given_up_when_refused_at_rest_or_after_a_while():
     assert aimed(FREE, PATIENCE - 0.1, standing(), let_go).waiting > 0.0
     assert aimed(FREE, PATIENCE + 0.1, standing(), let_go) == Aim()
     assert let_go.step(HELD, 0.0, standing(), True, DT) == Aim(), "who jumps aims at nothing"
+
+
+def test_who_holds_the_button_looks_where_to_jump_and_who_taps_it_or_jumps_up_does_not():
+    push = Wish(jump=True, move=(0.6, 0.8))
+    held = aimed(push, 0.8, standing())
+    assert held.looked == pytest.approx(math.atan2(*held.offset))
+    assert aimed(push, 0.15, standing()).looked is None
+    assert aimed(HELD, 0.8, standing()).looked is None, "straight up"
+    assert held.step(FREE, 0.0, standing(), False, DT).looked is None
+    assert aimed(HELD, 0.8, standing((2.5, 0.0, 0.0), heading=1.0)).looked == pytest.approx(1.0)
