@@ -1,7 +1,8 @@
 """Aiming a jump: a button is held, a ring on the floor is moved, and letting go jumps there.
 
 Standing, the stick pushes the ring away from the feet; walking or running, the ring lies ahead at the
-distance that the speed gives. Without a push the jump goes straight up, the higher the longer it was held.
+distance that the speed gives, and stays where it is let go. Without a push the jump goes straight up, the higher the
+longer it was held.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ class Aim:
     """Where somebody aims.
 
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
-    aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead.
+    aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
+    [m] in the world where somebody who moved let go of the ring.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -54,6 +56,7 @@ class Aim:
     aiming: bool = False
     waiting: float = 0.0
     moving: bool = False
+    place: tuple[float, float] | None = None
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, jumping: bool, dt: float) -> Aim:
         """The aim `dt` seconds later. jumping: the body is in the air or about to be."""
@@ -61,7 +64,8 @@ class Aim:
             return Aim()
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE)
+                x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
             given_up = self.waiting <= dt or not self.moving and getattr(state.memory, "refused", "")
             return Aim() if given_up else replace(self, waiting=self.waiting - dt)
         velocity = in_world(state.ground, state.velocity)
@@ -106,7 +110,7 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * self.held, LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, airtime)
-        x, z = float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1]
+        x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
         return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]))
 
     def asked(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
