@@ -14,6 +14,9 @@ from controllers.jump import Jump, Physique
 HALFLIFE = 0.06
 """Of what follows the centre of mass [s]: corrections of feet are shorter, steps are longer."""
 
+ADULT = Physique()
+"""Whose body moves where nothing is said of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Sway:
@@ -45,7 +48,7 @@ def jump_of(controller: Any) -> Jump | None:
 def physique_of(controller: Any) -> Physique:
     """Whose body a controller moves; an adult's where it says nothing."""
     jump = jump_of(controller)
-    return Physique() if jump is None else jump.physique
+    return ADULT if jump is None else jump.physique
 
 
 def centre_of(controller: Any, joints: tuple[np.ndarray, np.ndarray]) -> np.ndarray:

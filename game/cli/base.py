@@ -95,6 +95,10 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
         return
     from ..methods import Learning, methods
 
+    known = methods(database)
+    wanted = [one for one in wanted if not known.knows(*one)]
+    if not wanted:
+        return
     with progress_bar() as bar:
         tasks: dict[str, Any] = {}
 
@@ -111,7 +115,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     if learning.fault:
         raise Mistake(learning.fault)
     for name, points in wanted:
-        methods(database)(name, points)
+        known(name, points)
 
 
 def pixels_of(text: str) -> tuple[int, int]:
