@@ -118,6 +118,18 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
         known(name, points)
 
 
+def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
+    """An input log and who moves in it; what its studies need is learnt. LogError for one that can't be played."""
+    from ..log import of_library, performer_of, read
+    from ..study import wanted
+
+    log = read(file)
+    performer = performer_of(log, controller)
+    of_library(log, performer)
+    learn(wanted(log.ticks), log.database or None)
+    return log, performer
+
+
 def pixels_of(text: str) -> tuple[int, int]:
     """Width and height from "WIDTHxHEIGHT". Mistake for anything else."""
     width, _, height = text.lower().partition("x")

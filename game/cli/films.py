@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, learn, overlays_of, person_of, pixels_of, plainly,
-                   progress_bar, say)
+                   progress_bar, replayed, say)
 from .motion import write_motion
 
 
@@ -71,18 +71,14 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
               preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
-    from ..log import of_library, read
     from ..shots import overlays
-    from ..study import wanted
     from ..views import filmed, frames
 
-    log = read(file)
+    log, controller = replayed(file, controller)
     start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
     if not start < end:
         raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
     shown = overlays(overlays_of(overlay or "mesh"))
-    of_library(log, controller)
-    learn(wanted(log.ticks))
 
     def stray() -> None:
         say(f"gambol: {file} was played with another version of Gambol, which walks another way: "

@@ -24,9 +24,10 @@ from game.handles import Grip, nearest, project, unproject
 from game.hosts.events import KeyEvent, MouseMove, Scroll
 from game.hud.legend import cells
 from game.input import Wish
-from game.log import LogWriter, read, replay, strayed
+from game.log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
 from game.play import Play
 from game.pointing import pointed, rows
+from game.recorded import Recorded
 from game.recorder import motion_clip
 from game.scenario import ScenarioError, load, shipped
 from game.scene import Camera, Dot, Overlays
@@ -294,6 +295,32 @@ def test_a_log_with_hands_on_points_replays_to_the_bit(tmp_path, walker):
     held = next(m for m in moments if m.study and m.study.pins and m.study.pins[0] == (1.09, 1.2, 1.0))
     assert held.study.pins[1] is not None and len(held.after.characters) == 3
     assert moments[-1].study is None and len(moments[-1].after.characters) == 1
+
+
+def test_a_clip_s_log_plays_again_with_its_clip_and_its_database(tmp_path, walker):
+    write_bvh(motion_clip("clip", walker.skeleton, [walker.start().pose] * 40, 60), tmp_path / "clip.bvh")
+    database = tmp_path / "mine.gambolmotion"
+    database.touch()
+    performer = Recorded.load(tmp_path / "clip.bvh", walker)
+    game = Play(performer, learnt=learning.methods(str(database)),
+                log=LogWriter(tmp_path / "a.gambol", performer, 1, tmp_path / "clip.bvh", database))
+    game.do(Study(("ours",), "4").action)
+    for _ in range(60):
+        game.tick(DT)
+    game.close()
+    log = read(tmp_path / "a.gambol")
+    again = performer_of(log, walker)
+    *_, last = replay(of_library(log, again), again)
+    assert not strayed(log, last) and last.methods is learning.methods(str(database)) and len(last.after.characters) == 2
+    (tmp_path / "clip.bvh").rename(tmp_path / "other.bvh")
+    with pytest.raises(LogError, match=r"a\.gambol: was played with the clip .*clip\.bvh, which is not there"):
+        performer_of(log, walker)
+    write_bvh(motion_clip("clip", walker.skeleton, [walker.start().pose] * 50, 60), tmp_path / "clip.bvh")
+    with pytest.raises(LogError, match="another clip than .*clip.bvh holds now"):
+        of_library(log, performer_of(log, walker))
+    database.unlink()
+    with pytest.raises(LogError, match=r"a\.gambol: was played with the motion database .*mine\.gambolmotion, which is not there"):
+        performer_of(log, walker)
 
 
 def test_going_back_and_the_same_again_is_the_same_again(walker):
