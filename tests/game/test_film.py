@@ -11,8 +11,8 @@ from game.obstacles import blocked
 from game.scenario import load, shipped
 from game.scene import Overlays
 from game.shots import parts
+from scenarios import written
 from stand_in import Glide
-from test_scenario import written
 
 HEAD = """
 title = "Test"

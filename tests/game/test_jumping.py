@@ -21,7 +21,7 @@ from game.session import Timeline, advance, begin, opening, refused
 from game.strip import strip
 from game.views import previews
 from game.world import Character, World, figures
-from test_scenario import written
+from scenarios import tells, written
 
 TEXT = """
 title = "Jumps"
@@ -133,10 +133,7 @@ FAULTS = [
 
 @pytest.mark.parametrize(("old", "new", "says"), FAULTS)
 def test_a_fault_is_one_line_that_names_the_field(tmp_path, old, new, says):
-    assert old in TEXT
-    with pytest.raises(ScenarioError) as error:
-        load(written(tmp_path, TEXT.replace(old, new, 1)))
-    assert says in str(error.value) and "\n" not in str(error.value)
+    tells(tmp_path, TEXT, old, new, says)
 
 
 def hands(seconds):

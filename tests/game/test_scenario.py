@@ -10,6 +10,7 @@ from game.scenario import Scenario, ScenarioError, load, shipped
 from game.scene import Overlays
 from game.shots import OVERLAYS
 from game.world import DT
+from scenarios import tells, written
 from stand_in import Glide
 
 GOOD = """
@@ -23,12 +24,6 @@ name = "B"
 start = [2, 0, 90]
 moves = [{ for = 1, velocity = [-0.5, 0, 0] }, { for = 0.5, stop = true, facing = 0 }]
 """
-
-
-def written(folder, text):
-    file = folder / "my.toml"
-    file.write_bytes(text.encode() if isinstance(text, str) else text)
-    return file
 
 
 def test_all_that_is_shipped_loads_and_is_what_the_issue_lists():
@@ -90,12 +85,7 @@ FAULTS = [
 
 @pytest.mark.parametrize(("old", "new", "says"), FAULTS)
 def test_a_fault_is_one_line_that_names_file_and_field(tmp_path, old, new, says):
-    assert old in GOOD
-    file = written(tmp_path, GOOD.replace(old, new, 1))
-    with pytest.raises(ScenarioError) as error:
-        load(file)
-    message = str(error.value)
-    assert says in message and message.startswith(str(file)) and "\n" not in message
+    tells(tmp_path, GOOD, old, new, says)
 
 
 BOUNDS = [
