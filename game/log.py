@@ -20,9 +20,10 @@ import numpy as np
 
 from .input.wish import STEPS, Wish
 from .methods import methods
+from .moment import Moment, opening
 from .output import named
 from .recorded import Recorded
-from .session import Moment, Timeline, opening
+from .session import Timeline
 from .settings import SettingError
 from .study import wanted
 from .world import RATE

@@ -9,9 +9,9 @@ from typing import Any
 from .aiming import Preview, preview
 from .jumping import broken, explained
 from .log import Log, replay, strayed
+from .moment import Moment
 from .pointing import pointed
 from .scene import Camera, Overlays, Scene
-from .session import Moment
 from .world import RATE, figures
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..session import Moment, owners
+from ..moment import Moment, owners
 from ..settings import SETTINGS, Setting
 from . import style
 from .duty import own

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..session import Moment
+from ..moment import Moment
 from ..world import RATE, Character, World
 from .duty import acting, own
 

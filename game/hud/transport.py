@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..session import Moment
+from ..moment import Moment
 from ..world import RATE
 from . import style
 from .duty import acting, why

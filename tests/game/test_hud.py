@@ -25,8 +25,9 @@ from game.hud.sliders import Row
 from game.hud.tetrahedra import Mesh, Orbit
 from game.hud.trace import STEPS, Trace
 from game.input import Wish
+from game.moment import opening, owners
 from game.play import Play
-from game.session import Timeline, opening, owners
+from game.session import Timeline
 from game.settings import SETTINGS
 from stand_in import Glide
 

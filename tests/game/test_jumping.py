@@ -14,10 +14,11 @@ from game.effort import pushed
 from game.input.script import jumping
 from game.input.wish import Wish
 from game.jumping import LAYERS, explained
+from game.moment import begin, opening
 from game.render.sketches import sketched
 from game.scenario import ScenarioError, load
 from game.scene import Camera, Line, Overlays, Patch
-from game.session import Timeline, advance, begin, opening, refused
+from game.session import Timeline, advance, refused
 from game.strip import strip
 from game.views import previews
 from game.world import Character, World, figures

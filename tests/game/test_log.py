@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from controllers.locomotion import Locomotion
 from game.input import Wish
 from game.log import LogError, LogWriter, fingerprint, of_library, read, replay, strayed
+from game.moment import opening
 from game.output import OutputError
-from game.session import Timeline, opening
+from game.session import Timeline
 from game.settings import SETTINGS
 from stand_in import Glide
 

@@ -13,11 +13,12 @@ from game.hosts.events import KeyEvent, MouseMove, Scroll
 from game.hud.legend import cells
 from game.input import Wish
 from game.log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
+from game.moment import opening
 from game.play import Play
 from game.pointing import rows
 from game.recorded import Recorded
 from game.recorder import motion_clip
-from game.session import Timeline, opening
+from game.session import Timeline
 from game.settings import SettingError
 from game.study import Study, opened, written
 from game.world import DT
