@@ -60,7 +60,7 @@ class Preview:
         """Why it can't be made, as somebody who plays is told."""
         if not self.fault or self.nearest is None:
             return self.fault
-        beyond, reach = (float(np.linalg.norm((a - b)[[0, 2]])) for a, b in ((self.place, self.nearest), (self.nearest, self.stand)))
+        beyond, reach = (float(np.linalg.norm(way[[0, 2]])) for way in (self.place - self.nearest, self.nearest - self.stand))
         if self.fault.startswith("too far:") and beyond > 0.05:
             return f"{beyond:.1f} m farther than this body can jump"
         return f"{self.fault}; it can jump {reach:.1f} m that way"

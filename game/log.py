@@ -83,7 +83,8 @@ def fingerprint(moment: Moment) -> int:
 class LogWriter:
     """Keeps a log as it is played; the file begins with the first `flush` that has something to write.
 
-    clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush` where it can't be written.
+    clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
+    where it can't be written.
     """
 
     def __init__(self, path: Path, controller: Any, players: int, clip: str | Path | None = None,
@@ -208,7 +209,10 @@ def _unpacked(block: bytes) -> tuple[list[tuple[Wish, ...]], int | None]:
 
 
 def performer_of(log: Log, controller: Any) -> Any:
-    """Who moved in a log: a controller, or the recording that the log names. LogError where a file that it needs is not there."""
+    """Who moved in a log: a controller, or the recording that the log names.
+
+    LogError where a file that it needs is not there.
+    """
     for what, file, needed in (("clip", log.clip, True), ("motion database", log.database, bool(wanted(log.ticks)))):
         if file and needed and not Path(file).is_file():
             raise LogError(f"{log.path}: was played with the {what} {file}, which is not there: put it back")

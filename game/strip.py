@@ -30,7 +30,8 @@ def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size
     """`count` moments of an actor, or of each in its row, in equal steps from `start` to `end` [s].
 
     By default those of the first jump, from before the wind-up until the body stands or walks again, or all of the
-    scenario if there is none. size: of the whole picture in pixels. ScenarioError for an actor or a time that there is not.
+    scenario if there is none. size: of the whole picture in pixels. ScenarioError for an actor or a time that
+    there is not.
     """
     names = [one.name for one in scenario.actors]
     if actor is not None and actor not in names:
@@ -81,8 +82,8 @@ def _first_jump(frames: Sequence[Frame], cast: Sequence[int]) -> tuple[float | N
         begins = next((n for n, now in enumerate(states) if now is not None), None)
         if begins is not None:
             # one that strikes something falls under another plan
-            ends = next((n for n, now in enumerate(states) if n > begins and (now is None or now.plan is not states[begins].plan
-                                                                           and not now.hits)), len(frames) - 1)
+            own = [now is not None and (now.plan is states[begins].plan or now.hits > 0) for now in states]
+            ends = next((n for n in range(begins, len(frames)) if not own[n]), len(frames) - 1)
             spans.append((begins, next((n for n in range(ends, len(frames)) if _up(people[n])), len(frames) - 1)))
     if not spans:
         return None, None

@@ -32,7 +32,7 @@ LOW_CLOSURE, HIGH_CLOSURE = math.radians(3.0), math.radians(14.0)
 
 @dataclass(eq=False)
 class SpacePanel:
-    """What the panel remembers. chosen: the primitive whose clip is watched, or None. own: of whom it is about, see `duty.own`."""
+    """What the panel remembers. chosen: the primitive whose clip is watched, or None. own: `duty.own` of whom it is about."""
 
     orbit: Orbit = Orbit()
     chosen: int | None = None
@@ -44,7 +44,7 @@ class SpacePanel:
     own: np.ndarray = field(default_factory=lambda: np.ones(3))
 
     def draw(self, character: Character, trail: np.ndarray, dt: float, scale: float) -> None:
-        """Fill the current window. trail: (N, 3) blended velocities up to now, in the character's own size as all that is told."""
+        """Fill the current window. trail: (N, 3) blended velocities up to now, of the character's own size."""
         self.own, character = own(character), acting(character)
         gait = family(character)
         if not gait:  # the library stays, for when it is walked by again

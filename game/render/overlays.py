@@ -90,8 +90,10 @@ def smooth(points: np.ndarray, pieces: int = 4) -> np.ndarray:
 
 def ribbon(points: np.ndarray, colour, opacity: np.ndarray, half: float, kind: float, dash: float = 0.12,
            eye: np.ndarray | None = None, metre: float = math.inf) -> np.ndarray:
-    """Marks (K, 10) of a flat band along points (N, 3) [m]; opacity: its ends' two values. eye: from where (3,) it is seen, no
-    thinner than THIN; metre: how many pixels a metre has that is one metre away."""
+    """Marks (K, 10) of a flat band along points (N, 3) [m]; opacity: its ends' two values.
+
+    eye: (3,) from where it is seen, no thinner than THIN; metre: how many pixels a metre has that is one metre away.
+    """
     points = smooth(points)
     if len(points) < 2:
         return np.zeros((0, 10))
