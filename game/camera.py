@@ -25,6 +25,13 @@ from .scene import Camera, Prop
 
 CUT = 1.5
 """An eye that moves farther than this [m] in one step has been put elsewhere: nothing lies between."""
+BESIDE, OVER = 0.62, 0.16
+"""How far beside a jump a camera swings that would look along it, and how much higher [rad]: seen from behind, the body
+hides where it jumps to."""
+CHANGES = 0.3
+"""A jump aimed at by so much to the camera's side [rad] makes it swing to the other one."""
+COMES, GOES = 0.16, 0.6
+"""Half-lives [s] of swinging there and back."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -33,7 +40,8 @@ class Follow(Armed):
 
     focus: (3,) [m] where the character is, ahead: (3,) how far before it the camera looks, slack:
     (3,) what is left of the change from another camera; target is their sum. still: seconds
-    since the player turned it.
+    since the player turned it. aside: how far it has swung out of the line of a jump [rad], which leaves its yaw, and so
+    the sticks' directions, as they are.
     """
 
     kind: ClassVar[str] = "follow"
@@ -41,6 +49,7 @@ class Follow(Armed):
     ahead: np.ndarray = field(default_factory=lambda: np.zeros(3))
     slack: np.ndarray = field(default_factory=lambda: np.zeros(3))
     still: float = 10.0
+    aside: float = 0.0
 
     @staticmethod
     def behind(ground, settings: CameraSettings = CameraSettings(), yaw: float | None = None,
@@ -62,6 +71,20 @@ class Follow(Armed):
     def recentred(self, heading: float) -> Follow:
         """The player asks for the view from behind `heading` [rad]."""
         return replace(super().recentred(heading), still=10.0)
+
+    def aimed(self, heading: float | None, dt: float) -> Follow:
+        """The camera a little out of the line of a jump along `heading` [rad]; back behind where nobody aims at one."""
+        if heading is None:
+            return self if self.aside == 0.0 else replace(self, aside=float(damp(self.aside, 0.0, GOES, dt)))
+        line = float(wrap(heading - self.yaw))
+        side = 1.0 if self.aside >= 0.0 else -1.0
+        if side * line > CHANGES:
+            side = -side
+        wanted = side * max(BESIDE + side * line, 0.0) if abs(line) < 0.5 * math.pi else 0.0
+        return replace(self, aside=float(damp(self.aside, wanted, COMES, dt)))
+
+    def _looks(self) -> tuple[float, float]:
+        return self.yaw + self.aside, min(self.pitch + OVER * min(abs(self.aside) / BESIDE, 1.0), self.settings.highest)
 
     def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Follow:
         """The camera `dt` seconds later.

@@ -34,6 +34,7 @@ Seconds = _positive(3600)
 Moment = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]  # s
 Point = tuple[Metres, Metres]
 Point3 = tuple[Metres, Metres, Metres]
+Place = Annotated[tuple[Metres, ...], Field(min_length=2, max_length=3)]  # x, z on whatever is highest there, or x, y, z
 Velocity = tuple[Speed, Turning, Speed]
 Colour = tuple[*(Annotated[float, Field(ge=0, le=1)],) * 3]
 Gravity = Annotated[float, Field(ge=0.2, le=50, allow_inf_nan=False)]  # m/s²

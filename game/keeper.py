@@ -9,8 +9,8 @@ import numpy as np
 
 from .input import Wish
 from .log import LogWriter
+from .moment import Moment
 from .output import OutputError
-from .session import Moment
 from .studio import Studio
 from .world import DT, RATE
 

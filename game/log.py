@@ -19,9 +19,13 @@ from typing import Any
 import numpy as np
 
 from .input.wish import STEPS, Wish
+from .methods import methods
+from .moment import Moment, opening
 from .output import named
-from .session import Moment, Timeline, opening
+from .recorded import Recorded
+from .session import Timeline
 from .settings import SettingError
+from .study import wanted
 from .world import RATE
 
 FORMAT = 1
@@ -38,7 +42,8 @@ class Log:
     """What was played. players: at the beginning. ticks: for each, one wish for each player.
 
     library: the `digest` of what it was played with. character: the name of the body that was worn,
-    if any. prints: tick number → `fingerprint`.
+    if any. prints: tick number → `fingerprint`. clip, database: the files of the recording that the first player was, and
+    of what the methods of reconstruction learn from; empty where there was none but Gambol's own.
     """
 
     players: int
@@ -47,6 +52,8 @@ class Log:
     ticks: tuple[tuple[Wish, ...], ...]
     prints: dict[int, int] = field(default_factory=dict)
     path: Path = Path("log")
+    clip: str = ""
+    database: str = ""
 
     @property
     def duration(self) -> float:
@@ -76,13 +83,16 @@ def fingerprint(moment: Moment) -> int:
 class LogWriter:
     """Keeps a log as it is played; the file begins with the first `flush` that has something to write.
 
-    OutputError from `flush` where it can't be written.
+    clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
+    where it can't be written.
     """
 
-    def __init__(self, path: Path, controller: Any, players: int):
+    def __init__(self, path: Path, controller: Any, players: int, clip: str | Path | None = None,
+                 database: str | Path | None = None):
         self.path, self._file = Path(path), None
+        needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file}
         self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
-                      "library": digest(controller), "character": getattr(getattr(controller, "body", None), "name", "")}
+                      "library": digest(controller), "character": getattr(getattr(controller, "body", None), "name", ""), **needs}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
 
     @property
@@ -142,7 +152,8 @@ def read(path: str | Path) -> Log:
             prints[len(ticks)] = print_
     if not ticks:
         raise LogError(f"{path}: nothing was played yet")
-    return Log(head["players"], head["library"], head["character"], tuple(ticks), prints, path)
+    return Log(head["players"], head["library"], head["character"], tuple(ticks), prints, path, head.get("clip", ""),
+               head.get("database", ""))
 
 
 def _head(path: Path, line: bytes) -> dict:
@@ -152,7 +163,8 @@ def _head(path: Path, line: bytes) -> dict:
             raise ValueError
         if head["format"] != FORMAT:
             raise LogError(f"{path}: line 1: a log of format {head['format']}; this Gambol reads format {FORMAT}")
-        if head["players"] not in (1, 2) or not all(isinstance(head[key], str) for key in ("library", "character")):
+        names = head["library"], head["character"], head.get("clip", ""), head.get("database", "")
+        if head["players"] not in (1, 2) or not all(isinstance(name, str) for name in names):
             raise ValueError
     except LogError:
         raise
@@ -196,9 +208,22 @@ def _unpacked(block: bytes) -> tuple[list[tuple[Wish, ...]], int | None]:
             for t, rows in enumerate(numbers.tolist())], print_
 
 
+def performer_of(log: Log, controller: Any) -> Any:
+    """Who moved in a log: a controller, or the recording that the log names.
+
+    LogError where a file that it needs is not there.
+    """
+    for what, file, needed in (("clip", log.clip, True), ("motion database", log.database, bool(wanted(log.ticks)))):
+        if file and needed and not Path(file).is_file():
+            raise LogError(f"{log.path}: was played with the {what} {file}, which is not there: put it back")
+    return Recorded.load(log.clip, controller) if log.clip else controller
+
+
 def of_library(log: Log, controller: Any) -> Log:
     """The log, if it was played with a library and a body that move like this controller's; else LogError."""
     if log.library != digest(controller):
+        if log.clip:
+            raise LogError(f"{log.path}: was played with another clip than {log.clip} holds now")
         wearing = f"the character {log.character!r}" if log.character else "the mannequin"
         raise LogError(f"{log.path}: was played as {wearing}, and with another gait library or in another size: "
                        "name them with --library and --character")
@@ -210,7 +235,7 @@ def replay(log: Log, controller: Any) -> Iterator[Moment]:
 
     LogError for what can't be played.
     """
-    timeline = Timeline(opening(controller, log.players))
+    timeline = Timeline(opening(controller, log.players, methods(log.database or None)))
     yield timeline.now
     for number, wishes in enumerate(log.ticks):
         try:

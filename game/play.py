@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from . import session, settings, study
+from . import settings, study
+from .deeds import ACTIONS
 from .hosts.events import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
 from .ink import PANELS
 from .input import (DEFAULT, HOLDING, Bindings, Keyboard, Wish, drivers, help_sheet, mode_of, mouse_wish, pad_held, pad_pressed,
@@ -25,13 +26,14 @@ from .jumping import broken
 from .keeper import Keeper
 from .log import Log, LogWriter, strayed
 from .methods import Methods
+from .moment import Moment, begin, opening
 from .pointing import rows
 from .reach import Reach
 from .rewind import Look
 from .scene import OVERLAYS, Camera, Overlays, Scene
-from .session import Moment, Timeline, refused
+from .session import Timeline, refused
 from .studio import Studio
-from .views import scenes
+from .views import Previews, previews, scenes
 from .world import DT, FixedStep, World
 
 SHOWS = {"show_jump" if name == "jump" else name: name for name in OVERLAYS}
@@ -54,8 +56,8 @@ class Play:
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
                  log: LogWriter | None = None, studio: Studio | None = None, tape: Log | None = None,
                  learnt: Methods | None = None, stream: Any = None):
-        self.timeline = Timeline(session.opening(controller, players, learnt) if world is None else
-                                 session.begin(world, players, learnt))
+        self.timeline = Timeline(opening(controller, players, learnt) if world is None else
+                                 begin(world, players, learnt))
         self.bindings, self.kept, self.tape = bindings, Keeper(log, studio), tape
         self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
         self.reach = Reach(self.now.methods, stream)
@@ -66,6 +68,7 @@ class Play:
         self.hud: Any = None
         self.undrawn = 0.0  # seconds since panels were drawn
         self.look: Look | None = None
+        self.previews: Previews = ()  # the jumps that are aimed at, as they were drawn last
 
     # --- what is shown
 
@@ -172,7 +175,7 @@ class Play:
             self.kept.film(self.now, self._overlays())
         elif action == "export":
             self.kept.motion(self.history)
-        elif action in session.ACTIONS or "=" in action or action == "resume":
+        elif action in ACTIONS or "=" in action or action == "resume":
             self._ask(action, player)
 
     def _ask(self, action: str, player: int) -> None:
@@ -325,7 +328,8 @@ class Play:
     def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
         """What to draw now, one scene for each player; size: of the frame in pixels."""
         moment, fraction, cameras = self._shown(self.clock.alpha)
-        views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment))
+        self.previews = previews(moment, self.previews)
+        views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment), self.previews)
         self.reach.look(cameras[0], size[0] / (len(views) * size[1]))
         views = (replace(views[0], figures=self.reach.marked(views[0].figures, moment)), *views[1:])
         if self.helping:

@@ -12,9 +12,9 @@ import numpy as np
 from .handles import Grip, nearest
 from .ink import Ink
 from .methods import Learning, Methods
+from .moment import Moment
 from .pointing import RADIUS, Row
 from .scene import Camera, Dot, Figure
-from .session import Moment
 from .study import Study, written
 
 HELD = (0.95, 0.95, 0.92)

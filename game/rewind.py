@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .input.wish import Wish
+from .moment import Moment, Player
 from .scene import Camera
-from .session import Moment, Player
 from .world import DT
 
 HELD = 18

@@ -116,6 +116,10 @@ class Turned:
         """The player asks for the view along `heading` [rad]; it turns there the shorter way."""
         return replace(self, wanted_yaw=self.yaw + float(wrap(heading - self.yaw)), wanted_pitch=0.25)
 
+    def aimed(self, heading: float | None, dt: float):
+        """The camera `dt` seconds later for somebody who looks where to jump, along `heading` [rad]; None: nobody does."""
+        return self
+
     def _pitches(self) -> tuple[float, float]:
         return self.settings.lowest, self.settings.highest
 
@@ -151,8 +155,12 @@ class Armed(Turned):
     def view(self) -> Camera:
         """What to draw with: along the arm, too, where props have pushed the eye onto what it looks at."""
         met = np.linalg.norm(self.target - self.eye) < MET
-        target = self.eye + forward(self.yaw, self.pitch) if met else self.target
+        target = self.eye + forward(*self._looks()) if met else self.target
         return Camera(self.eye, target, fov=self.settings.fov)
+
+    def _looks(self) -> tuple[float, float]:
+        """Yaw and pitch of the arm."""
+        return self.yaw, self.pitch
 
     def placed(self, ground, props: Sequence[Prop]):
         """The camera at rest, as far from its target as props let it; ground: (3,) of whom it spares."""
@@ -164,8 +172,9 @@ class Armed(Turned):
         root = outside(self.target, props)
         # the eye slides along the floor instead of going under it
         longest = max(self.arm, damp(self.arm, self.distance, self.settings.arm_halflife, dt))
-        pitch = max(self.pitch, -math.asin(min(max((root[1] - FLOOR) / longest, -1.0), 1.0)))
-        back = -_forwards(self.yaw, pitch)
+        yaw, pitch = self._looks()
+        pitch = max(pitch, -math.asin(min(max((root[1] - FLOOR) / longest, -1.0), 1.0)))
+        back = -_forwards(yaw, pitch)
         free = free_way(root, back, props)
         slope = self.distance / WHISKER
         soft = min(float((free + slope * np.abs(_FAN).sum(-1)).min()), self.distance)

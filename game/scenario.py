@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path as File
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
@@ -130,7 +130,8 @@ def locate(name: str | File) -> File:
     if file.suffix == ".toml" or file.is_file():  # a folder of that name shadows nothing
         return file
     if str(name) not in shipped():
-        raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}")
+        raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}"
+                            + toml.did_you_mean(str(name), shipped()))
     return asset("scenarios", f"{name}.toml")
 
 
@@ -141,11 +142,34 @@ def load(name: str | File) -> Scenario:
     try:
         return Scenario.model_validate(tables, context={"folder": file.parent})
     except ValidationError as error:
-        faults = error.errors()
-        # a list whose items are faulty also counts as too short: that line would only mislead
-        inner = [fault for fault in faults if not (fault["type"] == "too_short" and any(
-            f["loc"][:len(fault["loc"])] == fault["loc"] and f is not fault for f in faults))]
-        raise ScenarioError("\n".join(_fault(file, fault) for fault in inner)) from None
+        raise ScenarioError("\n".join(_fault(file, fault) for fault in _told(error.errors()))) from None
+
+
+def _told(faults: list[dict]) -> list[dict]:
+    """The faults without those that only follow from others."""
+    misspelt = {(*fault["loc"][:-1], name) for fault in faults if fault["type"] == "extra_forbidden"
+                for name in toml.meant(fault["loc"][-1], _fields(fault["loc"]))}
+    return [fault for fault in faults if not (
+        # a list whose items are faulty also counts as too short
+        fault["type"] == "too_short" and any(f["loc"][:len(fault["loc"])] == fault["loc"] and f is not fault for f in faults)
+        or fault["type"] == "missing" and fault["loc"] in misspelt)]
+
+
+def _fields(loc: tuple[str | int, ...]) -> set[str]:
+    """The fields that there could be where a fault is."""
+    tables = [Scenario]
+    for part in loc[:-1]:
+        inner = [one for table in tables for name, field in table.model_fields.items() if (field.alias or name) == part
+                 for one in _tables(field.annotation)]
+        tables = inner or tables  # a list's number leads nowhere else
+    return {field.alias or name for table in tables for name, field in table.model_fields.items()}
+
+
+def _tables(annotation: object) -> list[type[Table]]:
+    """The tables that a field may hold."""
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return [annotation]
+    return [one for part in get_args(annotation) for one in _tables(part)]
 
 
 def _fault(file: File, fault: dict) -> str:
@@ -157,11 +181,11 @@ def _fault(file: File, fault: dict) -> str:
         where += f"[{part}]" if isinstance(part, int) else f"{'.' if where else ''}{part}"
     kind, text = fault["type"], fault["msg"].removeprefix("Value error, ")
     if kind == "extra_forbidden":
-        text = "there is no such field"
+        text = "there is no such field" + toml.did_you_mean(fault["loc"][-1], _fields(fault["loc"]))
     elif kind == "missing":
         text = "is missing, and needed"
     elif kind == "union_tag_invalid":
         text = f"kind should be one of {', '.join(PROPS)}, got {short(fault['ctx']['tag'])}"
     elif kind not in ("value_error",):
-        text = f"{text[0].lower()}{text[1:]}, got {short(fault['input'])}"
+        text = f"{text[0].lower()}{text[1:]}, got {short(fault['input'])}".replace("tuple", "list", 1)
     return f"{file}: {where + ': ' if where else ''}{text}"

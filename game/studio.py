@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from .log import SUFFIX
+from .moment import Moment
 from .output import OutputError, named, output_file, output_folder
-from .session import Moment
 
 OUT = Path("out")
 """Where what is kept while playing goes, unless it is named."""

@@ -19,8 +19,8 @@ from controllers.navigation import floor_at
 from controllers.reconstruction.chart import SKELETON
 from controllers.reconstruction.controls import parse
 
-from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, Length, Mass, Metres, Moment, Pace, Point,
-                     Point3, Seconds, Stature, Strength, Table, Velocity)
+from .fields import (Airtime, Colour, Degrees, FileName, Flexibility, Gravity, Length, Mass, Metres, Moment, Pace, Place,
+                     Point, Point3, Seconds, Stature, Strength, Table, Velocity)
 from .follow import Follows, Hidden
 from .input.script import Jump, Move, Script
 from .methods import METHODS, TINTS
@@ -41,7 +41,7 @@ class MoveTable(Table):
     walk_to: Point | None = None
     path: Annotated[tuple[Point, ...], Field(min_length=1)] | None = None
     stop: Literal[True] | None = None
-    jump_to: Point | Point3 | None = None
+    jump_to: Place | None = None
     jump: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] | None = None
     airtime: Airtime | None = None
     within: Length | None = None

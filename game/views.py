@@ -3,29 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import zip_longest
 from typing import Any
 
-from .jumping import broken, explained, preview
+from .aiming import Preview, preview
+from .jumping import broken, explained
 from .log import Log, replay, strayed
+from .moment import Moment
 from .pointing import pointed
 from .scene import Camera, Overlays, Scene
-from .session import Moment
 from .world import RATE, figures
 
 
+Previews = tuple[Preview | None, ...]
+
+
+def previews(moment: Moment, before: Previews = ()) -> Previews:
+    """The jumps that players aim at. before: those of a picture earlier."""
+    return tuple(preview(character, player.aim, moment.after.props, old)
+                 for player, character, old in zip_longest(moment.players, moment.after.characters[:len(moment.players)],
+                                                           before[:len(moment.players)]))
+
+
 def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays: Overlays,
-           text: Sequence[tuple[str, ...]] = ()) -> tuple[Scene, ...]:
+           text: Sequence[tuple[str, ...]] = (), aimed: Previews | None = None) -> tuple[Scene, ...]:
     """One scene for each camera.
 
     fraction: how far from `moment.before` to `moment.after` (0 … 1). text: for each camera, the
-    lines in its corner; why a jump that is aimed at can't be made comes after them.
+    lines in its corner; why a jump that is aimed at can't be made comes after them. aimed: `previews`.
     """
     before, after, width = moment.before, moment.after, 1.0 / len(cameras)
-    aimed = [preview(character, player.aim, after.props) for player, character in zip(moment.players, after.characters)]
+    aimed = previews(moment) if aimed is None else aimed
     people = explained(figures(before, after, fraction), before, after, fraction, overlays, aimed)
     people = pointed(people, before, after, fraction, overlays)
     text = tuple(text) or ((),) * len(cameras)
-    text = tuple((*lines, *broken(f"no jump: {seen.fault}")) if seen is not None and seen.fault else lines
+    text = tuple((*lines, *broken(f"no jump: {seen.why}")) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))
     return tuple(Scene(camera, people, moment.after.props, overlays, lines, part=(i * width, 0.0, width, 1.0))
                  for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))
@@ -42,7 +54,7 @@ def filmed(log: Log, controller: Any, fps: int, start: float, end: float, overla
 
     LogError where the log can't be played.
     """
-    moments, told = replay(log, controller), False
+    moments, told, aimed = replay(log, controller), False, ()
     moment, first = next(moments), round(start * RATE)
     for frame in range(frames(log, fps, start, end)):
         # in whole numbers, so that no frame rate drifts
@@ -52,5 +64,5 @@ def filmed(log: Log, controller: Any, fps: int, start: float, end: float, overla
             if not told and strayed(log, moment):
                 stray()
                 told = True
-        alpha = rest / fps
-        yield scenes(moment, moment.fraction(alpha), [player.view(alpha) for player in moment.players], overlays)
+        alpha, aimed = rest / fps, previews(moment, aimed)
+        yield scenes(moment, moment.fraction(alpha), [player.view(alpha) for player in moment.players], overlays, aimed=aimed)

@@ -21,6 +21,7 @@ from controllers.reconstruction.controller import towards
 
 from .follow import KEPT, Follows, errors
 from .scene import TINT, Figure, Prop
+from .sway import Sway, centre_of
 
 RATE = 60
 """Simulation steps a second, whatever the display does."""
@@ -42,7 +43,7 @@ class Character:
     `body` (`game.render.mesh.Body`) is drawn in it.
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
     follows: whose points it follows, None for somebody with a will. told: (N, 4) its `follow.errors`, oldest first.
-    opacity: 1 for a body, less for a ghost.
+    opacity: 1 for a body, less for a ghost. sway: how its centre of mass is borne; None before its first step.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Character:
     follows: Follows | None = None
     told: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
     opacity: float = 1.0
+    sway: Sway | None = None
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -75,7 +77,10 @@ class Character:
         if number % TRAIL_EVERY == 0:
             here = np.array([[state.ground[0], float(state.floor) + FLOOR_LIFT, state.ground[1]]])
             trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
-        return replace(self, state=state, intent=intent, trail=trail)
+        made = replace(self, state=state, intent=intent, trail=trail)
+        centre = centre_of(made.controller, made.joints)
+        sway = self.sway or Sway.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
+        return replace(made, sway=sway.step(centre, DT))
 
     def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
         """One step on of a follower, whose performer has made that step."""

@@ -162,7 +162,7 @@ def draw(path: Path, title: str, times, ours: Curves, theirs: Curves, at, inside
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("clips", nargs="*", help="files under ../shared/mocap; by default those of the issue")
-    parser.add_argument("--plots", type=Path, help="a folder for pictures (needs matplotlib: pip install gambol[report])")
+    parser.add_argument("--plots", type=Path, help="a folder for pictures (needs matplotlib, which the extra `report` brings)")
     given = parser.parse_args()
     if not MOCAP.is_dir():
         print("no ../shared/mocap beside the project: recorded jumps are not to be had here; nothing compared")

@@ -24,7 +24,7 @@ from controllers.locomotion import Locomotion  # noqa: E402
 from game.hosts.events import KeyEvent, MouseMove, PadState  # noqa: E402
 from game.log import LogWriter, of_library, read, replay  # noqa: E402
 from game.play import Play  # noqa: E402
-from game.session import Moment  # noqa: E402
+from game.moment import Moment  # noqa: E402
 
 FRAME = 1.0 / 60.0
 TAPS = ("TAB", "C", "V", "V", "V", "R")

@@ -88,7 +88,7 @@ def _weak(physique: Physique, way: Path, floor: float) -> str:
 
 
 def blocked(physique: Physique, way: Path, around) -> str:
-    """What the flying body would hit: "" or "its head would hit something at (x, y, z) m" and the like."""
+    """What the flying body would hit: "" or "its head would hit something 0.8 m ahead" and the like."""
     if not len(around):
         return ""
     size, time = physique.size, np.linspace(0.0, way.airtime, 25)
@@ -107,8 +107,8 @@ def blocked(physique: Physique, way: Path, around) -> str:
         for thing in around:
             near = gap(places, thing)
             if near.min() < radius * size - GRAZE:
-                x, y, z = places[int(near.argmin())]
-                return f"its {name} would hit something at ({x:.1f}, {y:.1f}, {z:.1f}) m"
+                ahead = np.linalg.norm((places[int(near.argmin())] - way.leave)[[0, 2]])
+                return f"its {name} would hit something {ahead:.1f} m ahead"
     return ""
 
 

@@ -4,8 +4,12 @@ A user's mistake gets one clear line and exit code 2; a machine without a displa
 Everything heavy is imported where it is used, so that help comes at once.
 """
 
-from . import play, films, motion, library, database, reconstruct  # in the order of the help
-from .base import app
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: threads cost small matrices far more than they save
+
+from . import play, films, motion, library, database, reconstruct  # noqa: E402, in the order of the help
+from .base import app  # noqa: E402
 
 __all__ = ["app", "database", "films", "library", "main", "motion", "play", "reconstruct"]
 

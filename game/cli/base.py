@@ -95,6 +95,10 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
         return
     from ..methods import Learning, methods
 
+    known = methods(database)
+    wanted = [one for one in wanted if not known.knows(*one)]
+    if not wanted:
+        return
     with progress_bar() as bar:
         tasks: dict[str, Any] = {}
 
@@ -111,7 +115,19 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     if learning.fault:
         raise Mistake(learning.fault)
     for name, points in wanted:
-        methods(database)(name, points)
+        known(name, points)
+
+
+def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
+    """An input log and who moves in it; what its studies need is learnt. LogError for one that can't be played."""
+    from ..log import of_library, performer_of, read
+    from ..study import wanted
+
+    log = read(file)
+    performer = performer_of(log, controller)
+    of_library(log, performer)
+    learn(wanted(log.ticks), log.database or None)
+    return log, performer
 
 
 def pixels_of(text: str) -> tuple[int, int]:

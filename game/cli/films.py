@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, learn, overlays_of, person_of, pixels_of, plainly,
-                   progress_bar, say)
+                   progress_bar, replayed, say)
 from .motion import write_motion
 
 
@@ -71,18 +71,14 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
               preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
-    from ..log import of_library, read
     from ..shots import overlays
-    from ..study import wanted
     from ..views import filmed, frames
 
-    log = read(file)
+    log, controller = replayed(file, controller)
     start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
     if not start < end:
         raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
     shown = overlays(overlays_of(overlay or "mesh"))
-    of_library(log, controller)
-    learn(wanted(log.ticks))
 
     def stray() -> None:
         say(f"gambol: {file} was played with another version of Gambol, which walks another way: "
@@ -120,8 +116,8 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
           count: Annotated[int, typer.Option("-n", min=2, max=60, help="How many poses.")] = 12,
           start: Annotated[float | None, typer.Option("--from", min=0.0, help="The first one, in seconds; the first jump by default.")] = None,
           end: Annotated[float | None, typer.Option("--to", min=0.0, help="The last one, in seconds.")] = None,
-          actor: Annotated[str | None, typer.Option(help="Whose; the first actor's by default.")] = None,
-          size: Annotated[str, typer.Option(help="Width x height in pixels.")] = "2400x480",
+          actor: Annotated[str | None, typer.Option(help="Whose; a row for each actor by default.")] = None,
+          size: Annotated[str | None, typer.Option(help="Width x height in pixels; 2400 wide and 480 a row by default.")] = None,
           overlay: Annotated[str, typer.Option(help="What to draw, with commas.")] = "mesh,jump,balance",
           library: Library = None, character: Wearing = None) -> None:
     """Draw a motion as a strip of poses, one picture beside the other."""
@@ -134,8 +130,10 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     from ..strip import strip as poses
 
     output_file(out, ".png")
-    pixels = pixels_of(size)
-    film, controller = scenarios.load(scenario), person_of(library, character)
+    film = scenarios.load(scenario)
+    rows = len(film.actors) if actor is None else 1
+    pixels = (2400, min(480 * rows, 8192)) if size is None else pixels_of(size)
+    controller = person_of(library, character)
     learn(film.wanted, film.database)
     made = poses(film, controller, count, overlays(overlays_of(overlay)), pixels,
                  start, end, actor)

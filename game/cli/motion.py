@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Wearing, app, learn, person_of, plainly, progress_bar, say
+from .base import Library, Wearing, app, learn, person_of, plainly, progress_bar, replayed, say
 
 
 @app.command()
@@ -18,8 +18,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
            library: Library = None, character: Wearing = None) -> None:
     """Write the motion of a scenario or an input log for other programs."""
     from ..export import checked, sampled, takes, write
-    from ..log import SUFFIX, of_library, read, replay
-    from ..study import wanted
+    from ..log import SUFFIX, replay
 
     checked(out)
     if not what.lower().endswith(SUFFIX):
@@ -28,9 +27,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
         film = scenarios.load(what)
         write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character))
         return
-    log, controller = read(what), person_of(library, character)
-    of_library(log, controller)
-    learn(wanted(log.ticks))
+    log, controller = replayed(Path(what), person_of(library, character))
     with progress_bar() as bar:
         moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)
         done = takes(sampled(moments, fps or 60))

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, Wearing, app, learn, person_of, pixels_of, plainly, say
+from .base import Library, Mistake, Preset, Quality, Wearing, app, learn, person_of, pixels_of, plainly, replayed, say
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -28,19 +28,19 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     pixels, hands = pixels_of(size), load_bindings(bindings)
     controller = person_of(library, character)
 
-    from ..log import LogWriter, of_library, read
+    from ..log import LogWriter
+    from ..methods import methods
     from ..play import Play
     from ..studio import OUT, Studio, log_file
-    from ..study import wanted
 
-    tape = None if replay is None else of_library(read(replay), controller)
-    if tape is not None:
-        learn(wanted(tape.ticks))
-    players = players if tape is None else tape.players
-    log = LogWriter(log_file(record), controller, players)
+    tape, clip, database = None, None, None
+    if replay is not None:
+        tape, controller = replayed(replay, controller)
+        players, clip, database = tape.players, tape.clip or None, tape.database or None
+    log = LogWriter(log_file(record), controller, players, clip, database)
     studio = Studio(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
-    game = Play(controller, players, bindings=hands, log=log, studio=studio, tape=tape)
+    game = Play(controller, players, bindings=hands, log=log, studio=studio, tape=tape, learnt=methods(database))
     show(game, pixels, preset, log, studio)
 
 
@@ -66,7 +66,6 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
     stream: a `controllers.reconstruction.sources.Source` of these points, placed where the first player's would be.
-    A log is kept of all but clips.
     """
     from controllers.reconstruction.controls import SETS
 
@@ -85,7 +84,7 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     from ..study import Study
 
     performer = controller if clip is None else Recorded.load(clip, controller)
-    log = LogWriter(log_file(None), performer, 1) if clip is None else None
+    log = LogWriter(log_file(None), performer, 1, clip, database)
     studio = Studio(OUT)
     game = Play(performer, bindings=load_bindings(), log=log, studio=studio, learnt=methods(database), stream=stream)
     game.open(Study(wanted, points))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from controllers.scaled import Scaled
 from controllers.supervisor import Duty
 
@@ -23,6 +25,15 @@ def acting(character: Character) -> Character:
         state, intent = controller.within(state, intent)
         controller = controller.controller
     return replace(character, controller=controller, state=state, intent=intent)
+
+
+def own(character: Character) -> np.ndarray:
+    """What velocities (v_f, ω, v_l) of the library (3,) are multiplied by to be those of the character's own body."""
+    controller = character.controller
+    if isinstance(character.state.memory, Duty):
+        controller = controller.controllers[character.state.memory.active]
+    root = controller.factor**0.5 if isinstance(controller, Scaled) else 1.0
+    return np.array([root, 1.0 / root, root])
 
 
 def why(character: Character) -> str:

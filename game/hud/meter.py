@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..moment import Moment
 from ..quality import Quality, quality_of
-from ..session import Moment
 from . import style
 from .toolkit import imgui
 from .trace import STEPS, recent

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from ..hosts.events import Event
 from ..ink import PANELS, Ink
+from ..moment import Moment
 from ..pointing import Row
 from ..scene import Figure
-from ..session import Moment
 from . import legend, meter, plots, sliders, space, transport
 from .canvas import Canvas
 from .ghost import ghost

@@ -9,10 +9,16 @@ from functools import lru_cache
 from itertools import groupby
 from typing import Any
 
-from ..session import Moment, owners
+import numpy as np
+
+from ..moment import Moment, owners
 from ..settings import SETTINGS, Setting
 from . import style
+from .duty import own
 from .toolkit import imgui
+
+DIAL = 0.5
+"""How much of a setting's line is its slider; the rest has its digits."""
 
 
 @lru_cache(maxsize=None)
@@ -29,6 +35,7 @@ def meaning(owner: type, field: str) -> str:
 def draw(moment: Moment, who: int, scale: float) -> list[str]:
     """Fill the current window; what was changed, as actions "name=value"."""
     actions: list[str] = []
+    small = bool(np.any(own(moment.after.characters[who]) != 1.0))
     rows = [Row.of(setting, held) for held in [owners(moment, who)] for setting in SETTINGS]
     rows = [row for row in rows if row is not None]
     touched = [row for row in rows if row.differs]
@@ -41,7 +48,7 @@ def draw(moment: Moment, who: int, scale: float) -> list[str]:
     imgui.begin_child("settings")
     for owner, group in groupby(rows, key=lambda row: row.setting.name.partition(".")[0]):
         imgui.spacing()
-        imgui.text_disabled(owner)
+        imgui.text_disabled(owner + (" of the library's body" if owner == "locomotion" and small else ""))
         for row in group:
             actions += _slider(row, scale)
     imgui.end_child()
@@ -80,7 +87,7 @@ class Row:
 
 def _slider(row: Row, scale: float) -> list[str]:
     setting, value = row.setting, row.value
-    name, unit = f"##{setting.name}", setting.unit.replace("%", "%%")
+    name = f"##{setting.name}"
     imgui.align_text_to_frame_padding()
     imgui.text_colored(imgui.ImVec4(*(style.ACCENT if row.differs else style.TEXT)),
                        setting.name.partition(".")[2].replace("_", " "))
@@ -88,14 +95,17 @@ def _slider(row: Row, scale: float) -> list[str]:
     left, wide = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
     button = 1.6 * imgui.get_font_size()
     imgui.same_line(left + 0.44 * wide)
-    imgui.set_next_item_width(0.56 * wide - button - 6 * scale)
+    room = 0.56 * wide - button - 6 * scale
     if setting.whole and (setting.low, setting.high) == (0, 1):
         edited, new = imgui.checkbox(name, bool(value))
     else:
         digits = 0 if setting.whole else 3 if setting.high - setting.low < 1.0 else 2
-        edited, new = imgui.slider_float(name, value, setting.low, setting.high, f"%.{digits}f {unit}".rstrip(),
-                                         imgui.SliderFlags_.always_clamp)
+        imgui.set_next_item_width(DIAL * room)
+        edited, new = imgui.slider_float(name, value, setting.low, setting.high, "", imgui.SliderFlags_.always_clamp)
         new = round(new) if setting.whole else new
+        _tooltip(row)
+        imgui.same_line(0.0, 6 * scale)  # beside the knob, which would cover them
+        imgui.text(f"{value:.{digits}f} {setting.unit}".rstrip())
     _tooltip(row)
     actions = [f"{setting.name}={float(new):.6g}"] if edited else []
     if row.differs:

@@ -7,13 +7,13 @@ flat lines and discs, projected here and drawn from back to front.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..world import Character
 from . import style
-from .duty import acting
+from .duty import acting, own
 from .reason import family
 from .tetrahedra import Mesh, Orbit
 from .toolkit import imgui
@@ -32,7 +32,7 @@ LOW_CLOSURE, HIGH_CLOSURE = math.radians(3.0), math.radians(14.0)
 
 @dataclass(eq=False)
 class SpacePanel:
-    """What the panel remembers. chosen: the primitive whose clip is watched, or None."""
+    """What the panel remembers. chosen: the primitive whose clip is watched, or None. own: `duty.own` of whom it is about."""
 
     orbit: Orbit = Orbit()
     chosen: int | None = None
@@ -41,10 +41,11 @@ class SpacePanel:
     meshes: tuple[Mesh, ...] = ()
     turning: bool = False
     over: bool = False
+    own: np.ndarray = field(default_factory=lambda: np.ones(3))
 
     def draw(self, character: Character, trail: np.ndarray, dt: float, scale: float) -> None:
-        """Fill the current window. trail: (N, 3) blended velocities up to now."""
-        character = acting(character)
+        """Fill the current window. trail: (N, 3) blended velocities up to now, of the character's own size."""
+        self.own, character = own(character), acting(character)
         gait = family(character)
         if not gait:  # the library stays, for when it is walked by again
             imgui.text_disabled("the active controller blends nothing")
@@ -70,7 +71,7 @@ class SpacePanel:
         self._simplex(pen, character, active, view, scale)
         self._vertices(pen, weights, active, view, scale)
         self._axes(pen, active, view, (corner.x, corner.x + width, corner.y), scale)
-        self._query(pen, character, active.family, trail, view, scale)
+        self._query(pen, character, active.family, trail / self.own, view, scale)
         pen.pop_clip_rect()
         self._bars(weights, bars, scale)
 
@@ -95,14 +96,14 @@ class SpacePanel:
         (left, right, top), line = box, imgui.get_text_line_height()
         low, high = mesh.points.min(0), mesh.points.max(0)
         for name, axis, marks in AXES:
-            marks = [m for m in marks if low[axis] - 0.3 <= m <= high[axis] + 0.3]
+            marks = [m for m in marks if low[axis] - 0.3 <= m / self.own[axis] <= high[axis] + 0.3]
             ends = np.zeros((2, 3))
             ends[:, 0] = 0.0 if low[0] <= 0.0 else low[0]
             ends[:, axis] = low[axis] - 0.08 * (high - low)[axis], high[axis] + 0.2 * (high - low)[axis]
             (x0, y0, _), (x1, y1, _) = self.orbit.project(ends, view)
             pen.add_line((x0, y0), (x1, y1), style.packed(style.DIM, 0.7), scale)
             places = np.repeat(ends[:1], len(marks), 0)
-            places[:, axis] = marks
+            places[:, axis] = np.array(marks) / self.own[axis]
             for mark, (x, y, _) in zip(marks, self.orbit.project(places, view)):
                 pen.add_circle_filled((x, y), 1.8 * scale, style.packed(style.DIM))
                 if mark:
@@ -160,7 +161,7 @@ class SpacePanel:
             self._tell(self.hovered)
 
     def _tell(self, number: int) -> None:
-        one, (v_f, omega, v_l) = self.library.primitives[number], self.library.velocities[number]
+        one, (v_f, omega, v_l) = self.library.primitives[number], self.library.velocities[number] * self.own
         imgui.set_tooltip(f"{one.label}\n{one.clip} at {one.start:.2f} s{', mirrored' if one.mirrored else ''}\n"
                           f"forward {v_f:.2f} m/s, turning {omega:.2f} rad/s, left {v_l:.2f} m/s\n"
                           f"closes to {math.degrees(one.closure):.1f}°, averaged from {one.averaged}\n"

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..session import Moment
+from ..moment import Moment
 from ..world import RATE, Character, World
-from .duty import acting
+from .duty import acting, own
 
 STEPS = 10 * RATE
 """How many steps of the world the plots and the quality meter look back."""
@@ -17,7 +17,7 @@ STEPS = 10 * RATE
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """N steps of one character, oldest first; the last is the moment looked at. All in the size of its library.
+    """N steps of one character, oldest first; the last is the moment looked at. All in its own body's size.
 
     numbers: (N,) of the steps. asked, blended, achieved: (N, 3) v_f, ω, v_l [m/s, rad/s, m/s]; what
     the hands ask for, what the blended primitives have, how the root moves. phase: (N,) of the gait.
@@ -80,9 +80,9 @@ def weights(character: Character) -> np.ndarray | None:
 
 
 def _row(world: World, who: int) -> np.ndarray:
-    character = acting(world.characters[who])
-    state = character.state
+    whole = world.characters[who]
+    character, state = acting(whole), whole.state
     share = weights(character)
     blend, phase = (np.full(3, np.nan), np.nan) if share is None else \
-        (share @ character.controller.library.velocities, state.memory["phase"])
-    return np.concatenate([[world.number], character.intent.velocity, blend, state.velocity, [phase], state.contacts])
+        (share @ character.controller.library.velocities * own(whole), character.state.memory["phase"])
+    return np.concatenate([[world.number], whole.intent.velocity, blend, state.velocity, [phase], state.contacts])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..session import Moment
+from ..moment import Moment
 from ..world import RATE
 from . import style
 from .duty import acting, why
@@ -21,7 +21,7 @@ def draw(now: Moment, shown: Moment, behind: int, kept: int, who: int, scale: fl
     pen, at, line = imgui.get_window_draw_list(), imgui.get_cursor_screen_pos(), imgui.get_text_line_height()
     pen.add_circle_filled((at.x + 0.4 * line, at.y + 0.5 * line), 0.28 * line, style.packed(style.family_colour(gait)))
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 1.1 * line)
-    imgui.text(f"{reason(character)}")
+    imgui.text(reason(shown.after.characters[who]))
     kind, controller = type(character.controller).__name__.lower(), character.controller
     fit = controller.precondition(character.state, character.intent)
     imgui.same_line()

@@ -1,7 +1,8 @@
 """Aiming a jump: a button is held, a ring on the floor is moved, and letting go jumps there.
 
 Standing, the stick pushes the ring away from the feet; walking or running, the ring lies ahead at the
-distance that the speed gives. Without a push the jump goes straight up, the higher the longer it was held.
+distance that the speed gives, and stays where it is let go. Without a push the jump goes straight up, the higher the
+longer it was held.
 """
 
 from __future__ import annotations
@@ -37,13 +38,17 @@ PATIENCE = 0.9
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
 
+LOOKED = 0.2
+"""Who holds the button for longer [s] looks where to jump."""
+
 
 @dataclass(frozen=True)
 class Aim:
     """Where somebody aims.
 
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
-    aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead.
+    aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
+    [m] in the world where somebody who moved let go of the ring.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -51,6 +56,7 @@ class Aim:
     aiming: bool = False
     waiting: float = 0.0
     moving: bool = False
+    place: tuple[float, float] | None = None
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, jumping: bool, dt: float) -> Aim:
         """The aim `dt` seconds later. jumping: the body is in the air or about to be."""
@@ -58,7 +64,8 @@ class Aim:
             return Aim()
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE)
+                x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
             given_up = self.waiting <= dt or not self.moving and getattr(state.memory, "refused", "")
             return Aim() if given_up else replace(self, waiting=self.waiting - dt)
         velocity = in_world(state.ground, state.velocity)
@@ -84,6 +91,13 @@ class Aim:
         return math.atan2(*self.offset)
 
     @property
+    def looked(self) -> float | None:
+        """The heading [rad] in which somebody looks for a place to land; None where nobody does."""
+        if not self.aiming or self.held < LOOKED or math.hypot(*self.offset) < NEAR:
+            return None
+        return math.atan2(*self.offset)
+
+    @property
     def stands(self) -> bool:
         """Whether the sticks move the ring and not the body."""
         return (self.aiming or self.waiting > 0.0) and not self.moving
@@ -96,7 +110,7 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * self.held, LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, airtime)
-        x, z = float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1]
+        x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
         return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]))
 
     def asked(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:

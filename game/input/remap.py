@@ -6,7 +6,6 @@ an empty list none; [sticks] and [mouse] are the fields of `Sticks` and `Mouse`.
 
 from __future__ import annotations
 
-import difflib
 import os
 import sys
 from collections.abc import Iterable, Mapping
@@ -187,10 +186,7 @@ def _unknown(kind: str, table: Mapping[str, tuple[str, ...]]) -> Iterable[str]:
 
 def _near(name: str, known: Iterable[str]) -> str:
     """What somebody may have meant, in words."""
-    known = sorted(known)
-    # SHIFT and CTRL are parts of names rather than misspellings of them
-    near = [k for k in known if len(name) > 2 and name in k][:2] or difflib.get_close_matches(name, known, 2, 0.6)
-    return f"; did you mean {' or '.join(near)}?" if near else "; `gambol bindings` shows the names"
+    return toml.did_you_mean(name, known) or "; `gambol bindings` shows the names"
 
 
 def _fault(file: str | Path, fault: Mapping[str, Any]) -> str:

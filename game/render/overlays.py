@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -20,6 +21,8 @@ LEFT, RIGHT, MIDDLE = (0.12, 0.55, 0.95), (0.95, 0.45, 0.10), (0.85, 0.85, 0.80)
 AHEAD = (0.85, 0.50, 0.02)
 DISC, BAND, DASHES = 0.0, 1.0, 2.0
 """What a mark is; see mark.frag. `sketches` has more of them."""
+THIN = 4.0
+"""No trail or path is drawn thinner than this [pixels], from however far above it is seen."""
 SOLE = 0.02
 """How high heels and balls stand over their floor [m]."""
 _SIDES = np.array([LEFT if n.startswith("Left") else RIGHT if n.startswith("Right") else MIDDLE
@@ -85,16 +88,20 @@ def smooth(points: np.ndarray, pieces: int = 4) -> np.ndarray:
     return np.concatenate([curve.reshape(-1, 3), points[-1:]])
 
 
-def ribbon(points: np.ndarray, colour, opacity: np.ndarray, half: float, kind: float, dash: float = 0.12
-           ) -> np.ndarray:
-    """Marks (K, 10) of a flat band along points (N, 3) [m]; opacity: its ends' two values."""
+def ribbon(points: np.ndarray, colour, opacity: np.ndarray, half: float, kind: float, dash: float = 0.12,
+           eye: np.ndarray | None = None, metre: float = math.inf) -> np.ndarray:
+    """Marks (K, 10) of a flat band along points (N, 3) [m]; opacity: its ends' two values.
+
+    eye: (3,) from where it is seen, no thinner than THIN; metre: how many pixels a metre has that is one metre away.
+    """
     points = smooth(points)
     if len(points) < 2:
         return np.zeros((0, 10))
     flat = points[:, [0, 2]]
     run = np.gradient(flat, axis=0)
     run /= np.maximum(np.linalg.norm(run, axis=1, keepdims=True), 1e-9)
-    across = np.stack([run[:, 1], -run[:, 0]], 1) * half
+    away = 0.0 if eye is None else np.linalg.norm(points - eye, axis=1, keepdims=True)
+    across = np.stack([run[:, 1], -run[:, 0]], 1) * np.maximum(half, 0.5 * THIN * away / metre)
     far = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(flat, axis=0), axis=1))])
     edges = np.zeros((len(points), 2, 10))
     for k, sign in enumerate((-1.0, 1.0)):
@@ -107,15 +114,15 @@ def ribbon(points: np.ndarray, colour, opacity: np.ndarray, half: float, kind: f
     return np.stack([a, b, c, a, c, d], 1).reshape(-1, 10)
 
 
-def marks(figures: Sequence[Figure], shown: Overlays) -> np.ndarray:
-    """All that lies on the floor: rows (K, 10) of position [m], linear RGB, opacity, shape (3)."""
+def marks(figures: Sequence[Figure], shown: Overlays, eye: np.ndarray | None = None, metre: float = math.inf) -> np.ndarray:
+    """All that lies on the floor: rows (K, 10) of position [m], linear RGB, opacity, shape (3); eye, metre: see `ribbon`."""
     rows = [np.zeros((0, 10))]
     for figure in figures:
         tint = np.asarray(figure.tint, float)
         if shown.trail:
-            rows.append(ribbon(figure.trail, tint**1.7, (0.0, 0.9), 0.028, BAND))
+            rows.append(ribbon(figure.trail, tint**2.2, (0.25, 1.0), 0.028, BAND, eye=eye, metre=metre))
         if shown.path:
-            rows.append(ribbon(figure.path, AHEAD, (1.0, 0.35), 0.028, DASHES))
+            rows.append(ribbon(figure.path, AHEAD, (1.0, 0.35), 0.028, DASHES, eye=eye, metre=metre))
         if shown.contacts:
             rows.append(discs(figure))
     return np.concatenate(rows)
@@ -146,7 +153,7 @@ class OverlayPass:
                    metre: float) -> None:
         """metre: how many pixels a metre has that is one metre away."""
         within, through = sketched(figures, shown, camera, metre)
-        first = np.concatenate([marks(figures, shown), within])
+        first = np.concatenate([marks(figures, shown, np.asarray(camera.eye, float), metre), within])
         rows = np.concatenate([first, through])
         if len(rows):
             rows[:, :3] -= origin

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from controllers.navigation import drift
 from game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, Aim
 from game.input.wish import Wish
 from game.scene import Box
@@ -92,3 +93,25 @@ def test_a_wish_is_given_up_when_refused_at_rest_or_after_a_while():
     assert aimed(FREE, PATIENCE - 0.1, standing(), let_go).waiting > 0.0
     assert aimed(FREE, PATIENCE + 0.1, standing(), let_go) == Aim()
     assert let_go.step(HELD, 0.0, standing(), True, DT) == Aim(), "who jumps aims at nothing"
+
+
+def test_who_holds_the_button_looks_where_to_jump_and_who_taps_it_or_jumps_up_does_not():
+    push = Wish(jump=True, move=(0.6, 0.8))
+    held = aimed(push, 0.8, standing())
+    assert held.looked == pytest.approx(math.atan2(*held.offset))
+    assert aimed(push, 0.15, standing()).looked is None
+    assert aimed(HELD, 0.8, standing()).looked is None, "straight up"
+    assert held.step(FREE, 0.0, standing(), False, DT).looked is None
+    assert aimed(HELD, 0.8, standing((2.5, 0.0, 0.0), heading=1.0)).looked == pytest.approx(1.0)
+
+
+def test_a_runner_s_ring_stays_where_it_was_let_go():
+    state, velocity = standing((2.5, 0.0, 0.6), heading=0.8), np.array([2.5, 0.0, 0.6])
+    aim, place = aimed(HELD, 0.5, state), None
+    for _ in range(20):
+        moved = drift(state.ground, velocity, np.array([DT]))[0]
+        state, aim = replace(state, ground=moved), aim.step(FREE, 0.0, state, False, DT)
+        target = aim.asked(state, (), 9.81).place
+        assert place is None or np.array_equal(target, place)
+        place = target
+    assert np.hypot(*(place[[0, 2]] - state.ground[:2])) < 1.3, "it has come nearer"

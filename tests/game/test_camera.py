@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game.camera import CUT, CameraSettings, Follow, Free, between, cycled
+from controllers.body.rotations import wrap
+from game.camera import BESIDE, CUT, CameraSettings, Follow, Free, between, cycled
 from game.input import Wish
 from game.obstacles import FLOOR, MARGIN, above_floor, free_way, outside
 from game.rail import dolly, fixed, on_rail
-from game.rig import forward
+from game.rig import angles, forward
 from game.scene import Box, Goal, Pillar
 
 STILL = Wish()
@@ -286,6 +287,7 @@ def test_rails_begin_and_end_where_they_should_and_stay_above_the_floor():
 
 
 @given(st.lists(st.tuples(*[st.floats(-9, 9)] * 3), min_size=2, max_size=6, unique=True))
+@settings(max_examples=40)
 def test_a_rail_goes_through_its_points_at_one_speed(points):
     along = np.array([on_rail(points, u) for u in np.linspace(0, 1, 2001)])
     for point in points:
@@ -298,3 +300,26 @@ def test_an_eye_that_props_push_onto_its_target_looks_along_its_arm():
     camera = Follow.behind(HERE, yaw=0.5)
     met = replace(camera, eye=camera.target.copy()).view()
     assert np.allclose(met.target - met.eye, forward(0.5, 0.25))
+
+
+@given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-3.0, 3.0))
+@settings(max_examples=25)
+def test_who_looks_where_to_jump_sees_it_beside_the_body_and_the_sticks_stay_as_they_are(first, then, heading):
+    camera = Follow.behind(np.array([0.0, 0.0, heading]))
+    for line in (first, then):
+        for _ in range(100):
+            camera = camera.aimed(heading + line, 1 / 60).step(np.array([0.0, 0.0, heading]), QUIET, STILL, 1 / 60)
+        yaw, pitch, _ = angles(camera.view().target - camera.view().eye)
+        assert abs(wrap(heading + line - yaw)) > BESIDE - 0.02
+        assert camera.yaw == pytest.approx(heading) and pitch >= camera.pitch - 1e-3
+    for _ in range(300):
+        camera = camera.aimed(None, 1 / 60).step(np.array([0.0, 0.0, heading]), QUIET, STILL, 1 / 60)
+    assert angles(camera.view().target - camera.view().eye)[0] == pytest.approx(float(wrap(heading)), abs=0.01)
+
+
+def test_a_camera_swings_to_a_jump_without_a_jerk():
+    camera, eyes = Follow.behind(HERE), []
+    for tick in range(240):
+        camera = camera.aimed(0.1 * math.sin(0.1 * tick), 1 / 60).step(HERE, QUIET, STILL, 1 / 60)
+        eyes.append(camera.eye)
+    assert np.linalg.norm(np.diff(eyes, axis=0), axis=1).max() < 0.25

@@ -8,6 +8,8 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,8 @@ from controllers.reconstruction.chart import SKELETON  # noqa: E402
 from controllers.reconstruction.controls import parse  # noqa: E402
 from controllers.reconstruction.placing import stances  # noqa: E402
 from game import cli  # noqa: E402
+
+WORN = "lwrist", "rwrist", "lankle", "rankle"
 
 
 def gambol(*arguments):
@@ -98,26 +102,39 @@ def test_a_port_in_use_is_a_mistake(motion, tmp_path):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no signals of this kind there")
-@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, None])
-def test_a_stream_is_recorded_until_it_is_ended_and_never_lost(motion, tmp_path, end):
-    """A performer 1.4 m tall who stands in T-pose and then walks; the body is of standard size and follows."""
+def test_streams_are_recorded_until_they_are_ended_and_never_lost(motion, tmp_path):
+    """By Ctrl-C, by whoever ends the program from outside, and when the time is up: all three at once."""
+    with ExitStack() as stack:
+        free = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(3)]
+        for one in free:
+            one.bind(("127.0.0.1", 0))
+        ports = [one.getsockname()[1] for one in free]
+    ends, programs = (signal.SIGINT, signal.SIGTERM, None), []
+    for port, end in zip(ports, ends):
+        programs.append(subprocess.Popen(
+            [sys.executable, "-m", "game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(WORN),
+             "--method", "nearest", "--database", str(motion[0]), "-o", str(tmp_path / f"{port}.bvh"), *([] if end else ["--seconds", "2"])],
+            stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)))  # a shell's background jobs are deaf to Ctrl-C
+    with ThreadPoolExecutor(3) as pool:
+        for told in pool.map(lambda *given: performed(motion[2], *given), programs, ports, ends):
+            assert "packets were broken" in told
+    for port in ports:
+        made = load(tmp_path / f"{port}.bvh")
+        assert 60 <= len(made) <= 200
+        heights = made.kinematics()[0][..., 1]
+        assert 1.3 < heights.max(1).mean() < 1.8 and heights.min() > -0.1
+
+
+def performed(clip, program, port, end):
+    """What a program says to a performer 1.4 m tall who stands in T-pose and then walks; the body is of standard size."""
     from test_stream import bundle, tracker
 
-    database, _, clip = motion
-    controls = parse("4", SKELETON)
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    out, size, names = tmp_path / "live.bvh", 0.8, ("lwrist", "rwrist", "lankle", "rankle")
-    program = subprocess.Popen(
-        [sys.executable, "-m", "game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(names),
-         "--method", "nearest", "--database", str(database), "-o", str(out), *([] if end else ["--seconds", "2"])],
-        stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # a shell's background jobs are deaf to Ctrl-C
     for line in program.stderr:
         if "stand upright" in line:
             break
-    walk, told = controls.extract(clip), []
+    controls = parse("4", SKELETON)
+    walk, told, size = controls.extract(clip), [], 0.8
     listener = threading.Thread(target=lambda: told.extend(program.stderr))
     listener.start()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
@@ -130,15 +147,11 @@ def test_a_stream_is_recorded_until_it_is_ended_and_never_lost(motion, tmp_path,
                 break
             points = stances(controls)[1] if since < 0.3 else walk[min(int((since - 0.3) * 60), len(walk) - 1)]
             there = size * points * [-1.0, 1.0, 1.0] + [0.3, 0.1, -0.2]
-            sender.sendto(bundle(*(tracker(name, place) for name, place in zip(names, there))), ("127.0.0.1", port))
+            sender.sendto(bundle(*(tracker(name, place) for name, place in zip(WORN, there))), ("127.0.0.1", port))
             sender.sendto(b"not OSC", ("127.0.0.1", port))
             time.sleep(1 / 90)
     if end:
         program.send_signal(end)
     assert program.wait(60) == 0, told
     listener.join()
-    assert "packets were broken" in "".join(told)
-    made = load(out)
-    assert 60 <= len(made) <= 200
-    heights = made.kinematics()[0][..., 1]
-    assert 1.3 < heights.max(1).mean() < 1.8 and heights.min() > -0.1
+    return "".join(told)

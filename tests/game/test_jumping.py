@@ -1,20 +1,28 @@
 """Jumps from end to end: scripts that jump, refusals, logs with jumps, what is drawn of them. One library, one run each."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from controllers.contract import Intent, Leap
+from controllers.jump import Physique
 from controllers.person import person
 from game import film
+from game.aiming import CAN, CANNOT, aimed, previewed
+from game.effort import pushed
 from game.input.script import jumping
 from game.input.wish import Wish
-from game.jumping import LAYERS, explained, pushed
-from game.scenario import ScenarioError, load
-from game.scene import Camera, Line, Overlays
+from game.jumping import LAYERS, explained
+from game.moment import begin, opening
 from game.render.sketches import sketched
-from game.session import Timeline, opening
+from game.scenario import ScenarioError, load
+from game.scene import Camera, Line, Overlays, Patch
+from game.session import Timeline, advance, refused
 from game.strip import strip
-from game.world import figures
-from test_scenario import written
+from game.views import previews
+from game.world import Character, World, figures
+from scenarios import tells, written
 
 TEXT = """
 title = "Jumps"
@@ -126,10 +134,7 @@ FAULTS = [
 
 @pytest.mark.parametrize(("old", "new", "says"), FAULTS)
 def test_a_fault_is_one_line_that_names_the_field(tmp_path, old, new, says):
-    assert old in TEXT
-    with pytest.raises(ScenarioError) as error:
-        load(written(tmp_path, TEXT.replace(old, new, 1)))
-    assert says in str(error.value) and "\n" not in str(error.value)
+    tells(tmp_path, TEXT, old, new, says)
 
 
 def hands(seconds):
@@ -153,6 +158,61 @@ def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
     assert jumped == 6, "three jumps, twice"
     assert np.array_equal(ends[0].pose.rotations, ends[1].pose.rotations) and np.array_equal(ends[0].ground, ends[1].ground)
     assert ends[0].floor == 0.0 and np.isfinite(ends[0].pose.root).all()
+
+
+@pytest.fixture(scope="module")
+def beyond(somebody):
+    """Somebody who aims farther than it can jump, and what it sees of that."""
+    timeline = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1))
+    for wish in [Wish(jump=True)] * 10 + [Wish(jump=True, move=(0.0, 1.0))] * 110:
+        timeline.advance((wish.rounded(),))
+    return timeline, previews(timeline.now)[0]
+
+
+def test_where_a_jump_is_refused_the_nearest_place_is_one_that_can_be_jumped_to(beyond, somebody):
+    timeline, seen = beyond
+    who, jump = timeline.now.after.characters[0], somebody.controllers["jump"]
+    state = who.controller.active(who.state)[1]
+    assert seen.fault and seen.nearest is not None
+    assert not previewed(jump, state, Leap(seen.nearest), ()).fault
+    assert previewed(jump, state, Leap(seen.nearest + 0.1 * (seen.place - seen.nearest)), ()).fault
+    far, near = (np.linalg.norm((place - seen.stand)[[0, 2]]) for place in (seen.place, seen.nearest))
+    assert seen.why == f"{far - near:.1f} m farther than this body can jump"
+    rings = {sketch.tint for sketch in aimed(seen, ()) if isinstance(sketch, Patch)}
+    assert rings == {CAN, CANNOT}
+
+
+def test_the_nearest_place_is_not_sought_anew_while_one_aims_the_same_way(beyond, somebody, monkeypatch):
+    timeline, seen = beyond
+    sought = []
+    monkeypatch.setattr(type(somebody.controllers["jump"]), "plan", lambda jump, state, intent: sought.append(intent))
+    again, = previews(timeline.now, (seen,))
+    assert again.nearest is seen.nearest and not sought
+    turned = replace(seen, nearest=seen.stand + [0.5, 0.0, 1.5])
+    previews(timeline.now, (replace(turned, place=seen.stand + [0.6, 0.0, 1.8]),))
+    assert len(sought) == 1
+
+
+def test_who_lets_go_is_told_why_not_without_coordinates(beyond):
+    timeline, seen = beyond
+    moment, told = timeline.now, []
+    for _ in range(60):
+        after = advance(moment, (Wish(),))
+        told += refused(moment, after)
+        moment = after
+    assert told == [f"no jump: {seen.why}"]
+
+
+def test_a_runner_sees_one_arc_through_all_of_a_stride(somebody):
+    timeline, lengths = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1)), []
+    run = Wish(move=(0.0, 1.0), run=1.0)
+    for wish in [run] * 150 + [replace(run, jump=True)] * 50:
+        timeline.advance((wish.rounded(),))
+        if wish.jump:
+            seen, = previews(timeline.now)
+            assert not seen.fault
+            lengths.append(float(np.linalg.norm((seen.arc[-1] - seen.arc[0])[[0, 2]])))
+    assert min(lengths) > 0.5 * max(lengths)
 
 
 def test_cameras_follow_a_jumper_without_a_jerk(somebody):
@@ -182,15 +242,29 @@ def test_what_is_drawn_is_drawn_for_the_overlays_that_show_it(played):
     assert not any(map(len, sketched(drawn, Overlays(), camera, 700.0)))
 
 
-def test_a_strip_shows_the_first_jump_from_its_side(played, somebody):
+def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(played, somebody):
     scenario, _ = played
-    scenes = strip(scenario, somebody, 6, Overlays(), (1200, 400))
-    assert [scene.part[0] for scene in scenes] == pytest.approx([n / 6 for n in range(6)])
+    scenes = strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="A")
+    assert [scene.part for scene in scenes] == [pytest.approx((n / 6, 0.0, 1 / 6, 1.0)) for n in range(6)]
     heights = [scene.figures[0].positions[:, 1].max() for scene in scenes]
     assert max(heights) > heights[0] + 0.1
+    assert heights[-1] == pytest.approx(heights[0] + 0.3, abs=0.08)  # up again, on the platform
     for scene in scenes:
         sight = scene.camera.target - scene.camera.eye
         assert abs(sight[2]) < 0.01 * abs(sight[0]) and np.linalg.norm(sight) > 3
+
+
+def test_every_actor_of_a_strip_has_a_row(played, somebody):
+    scenario, _ = played
+    scenes = strip(scenario, somebody, 4, Overlays(), (1200, 900))
+    assert [scene.part for scene in scenes] == [pytest.approx((n / 4, row / 3, 1 / 4, 1 / 3)) for row in range(3) for n in range(4)]
+    for row, start in enumerate((0.0, 3.0, -3.0)):
+        for scene in scenes[4 * row:4 * row + 4]:
+            assert len(scene.figures) == 1 and abs(scene.figures[0].positions[0, 0] - start) < 1.0
+
+
+def test_a_strip_of_nobody_and_of_no_time_is_refused(played, somebody):
+    scenario, _ = played
     with pytest.raises(ScenarioError, match="no actor is called 'Z'; there are A, B, C"):
         strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="Z")
     with pytest.raises(ScenarioError, match="nothing lies from 9 to 5 s"):
@@ -201,12 +275,26 @@ def test_the_ground_pushes_whoever_stands_or_walks_and_nobody_in_the_air(played)
     _, frames = played
     shares = []
     for frame in frames[:240]:
-        old, new = frame.before.characters[2], frame.after.characters[2]
+        new = frame.after.characters[2]
         if jumping(new.state) is None:
-            push = pushed(old, new, new.controller.controllers["jump"].physique, 9.81)
+            push = pushed(new, new.controller.controllers["jump"].physique, 9.81)
             grounded = bool(new.state.contacts.any())
             assert grounded or not push.any()
-            if new.state.elapsed > 0.0:
-                shares.append(push[1] / (73.0 * 9.81))
+            shares.append(push[1] / (73.0 * 9.81))
     # over many steps it carries the weight, and no more
     assert len(shares) > 60 and min(shares) >= 0.0 and np.mean(shares) == pytest.approx(1.0, abs=0.2)
+
+
+def test_the_ground_s_push_does_not_tremble_and_is_the_same_after_going_back(somebody):
+    walker = Character("A", somebody, somebody.start())
+    shares, walk = [], Intent(np.array([1.2, 0.0, 0.0]))
+    for number in range(1, 301):
+        walker = walker.step(walk, number)
+        shares.append(pushed(walker, Physique(), 9.81)[1] / (73.0 * 9.81))
+    steady = np.array(shares[120:])
+    assert np.ptp(steady) > 0.2, "it still tells of the steps"
+    # two humps in a step of half a second: no more turns than that
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(steady))))
+    assert turns / (len(steady) / 60) < 10.0 and np.abs(np.diff(steady)).max() < 0.15
+    once, again = (walker.step(walk, 301).sway for _ in range(2))
+    assert np.array_equal(once.acceleration, again.acceleration)

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from controllers.locomotion import Locomotion
 from game.input import Wish
 from game.log import LogError, LogWriter, fingerprint, of_library, read, replay, strayed
+from game.moment import opening
 from game.output import OutputError
-from game.session import Timeline, opening
+from game.session import Timeline
 from game.settings import SETTINGS
 from stand_in import Glide
 
@@ -59,7 +60,7 @@ wish = st.builds(Wish, move=sticks, look=st.just((0.0, 0.0)) | sticks, turn=st.f
 stretch = st.tuples(wish, wish, st.integers(1, 12))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.lists(stretch, min_size=1, max_size=10), st.sampled_from([1, 2]))
 def test_a_log_replays_to_the_bit_whatever_the_hands_did(locomotion, stretches, players):
     """Rewinds, resets, joins, settings, slow motion and cameras among it; every number of every state."""

@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controllers.locomotion import Locomotion
+from game.deeds import SLOWER
 from game.input import Wish
-from game.session import KEPT, SLOWER, Timeline, advance, opening
+from game.moment import opening
+from game.session import KEPT, Timeline, advance
 from game.settings import SETTINGS, SettingError
 from stand_in import Glide
 

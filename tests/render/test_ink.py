@@ -10,9 +10,10 @@ from game.hud import Hud
 from game.hud.panels import PANELS, layout
 from game.ink import VERTEX, Ink, Stroke
 from game.input import Wish
+from game.moment import opening
 from game.render.ink import InkPass
 from game.scene import Scene
-from game.session import Timeline, opening
+from game.session import Timeline
 from poses import STRIDE, camera, figure
 
 WHITE = np.full((1, 1, 4), 255, np.uint8)

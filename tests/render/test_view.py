@@ -42,6 +42,13 @@ def test_ribbons_survive_all_points_in_one_place_and_pass_through_theirs():
         assert np.linalg.norm(curve - p, axis=1).min() < 1e-9
 
 
+def test_a_ribbon_seen_from_afar_is_no_thinner_than_some_pixels():
+    way, metre = np.linspace([0.0, 0.0, 0.0], [0.0, 0.0, 3.0], 7), 700.0
+    for high, wide in ((2.0, 0.04), (40.0, overlays.THIN * 40.0 / metre)):
+        rows = overlays.ribbon(way, (1, 1, 1), (0, 1), 0.02, overlays.BAND, eye=np.array([0.0, high, 0.0]), metre=metre)
+        assert np.ptp(rows[rows[:, 2] == 0.0, 0]) == pytest.approx(wide, rel=0.01)
+
+
 def test_marks_only_for_what_is_shown():
     posed = figure(options=dict(contacts=np.array([1, 0, 0, 1], bool)))
     assert len(overlays.marks([posed], Overlays())) == 0

@@ -1,0 +1,226 @@
+"""Bodies from points in play: that all of it is a value and a log, keys, hands, streams."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from controllers.mocap import write_bvh
+from game import methods as learning
+from game.handles import project
+from game.hosts.events import KeyEvent, MouseMove, Scroll
+from game.hud.legend import cells
+from game.input import Wish
+from game.log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
+from game.moment import opening
+from game.play import Play
+from game.pointing import rows
+from game.recorded import Recorded
+from game.recorder import motion_clip
+from game.session import Timeline
+from game.settings import SettingError
+from game.study import Study, opened, written
+from game.world import DT
+from steady import no_database, walker  # noqa: F401, fixtures
+
+
+def played(walker, ticks, path=None):
+    timeline, moments = Timeline(opening(walker)), []
+    writer = None if path is None else LogWriter(path, walker, 1)
+    for wish in ticks:
+        timeline.advance((wish.rounded(),))
+        moments.append(timeline.now)
+        if writer is not None:
+            writer.add((wish.rounded(),))
+            if len(moments) % 30 == 0:
+                writer.flush(timeline.now)
+    if writer is not None:
+        writer.flush(timeline.now)
+        writer.close()
+    return timeline, moments
+
+
+WALK = Wish(move=(0.2, 1.0))
+HANDS = [Wish(pressed=("study=ours lpcr@4",)), *[WALK] * 40, Wish(pressed=("pins=hold",)),
+         *[Wish(pressed=(f"pin=0:{0.9 + 0.01 * k:.4f}/1.2000/1.0000",)) for k in range(20)],
+         Wish(pressed=("pin=1:",)), *[Wish()] * 10, Wish(pressed=("study=ours@4",)), *[Wish()] * 5,
+         Wish(pressed=("pins=",)), *[WALK] * 20, Wish(pressed=("back=30",)), *[WALK] * 10,
+         Wish(pressed=("study=ours lpca@2",)), *[WALK] * 5, Wish(pressed=("reset",)), *[WALK] * 5, Wish(pressed=("study=",)), WALK]
+
+
+def same(a, b):
+    assert a.study == b.study and [c.name for c in a.after.characters] == [c.name for c in b.after.characters]
+    for x, y in zip(a.after.characters, b.after.characters, strict=True):
+        assert np.array_equal(x.state.pose.root, y.state.pose.root) and np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
+        assert np.array_equal(x.told, y.told, equal_nan=True)
+
+
+def test_a_log_with_hands_on_points_replays_to_the_bit(tmp_path, walker):
+    path = tmp_path / "a.gambol"
+    _, moments = played(walker, HANDS, path)
+    log = read(path)
+    again = list(replay(log, walker))[1:]
+    for a, b in zip(moments, again, strict=True):
+        same(a, b)
+        assert not strayed(log, b)
+    held = next(m for m in moments if m.study and m.study.pins and m.study.pins[0] == (1.09, 1.2, 1.0))
+    assert held.study.pins[1] is not None and len(held.after.characters) == 3
+    assert moments[-1].study is None and len(moments[-1].after.characters) == 1
+
+
+def test_a_clip_s_log_plays_again_with_its_clip_and_its_database(tmp_path, walker):
+    write_bvh(motion_clip("clip", walker.skeleton, [walker.start().pose] * 40, 60), tmp_path / "clip.bvh")
+    database = tmp_path / "mine.gambolmotion"
+    database.touch()
+    performer = Recorded.load(tmp_path / "clip.bvh", walker)
+    game = Play(performer, learnt=learning.methods(str(database)),
+                log=LogWriter(tmp_path / "a.gambol", performer, 1, tmp_path / "clip.bvh", database))
+    game.do(Study(("ours",), "4").action)
+    for _ in range(60):
+        game.tick(DT)
+    game.close()
+    log = read(tmp_path / "a.gambol")
+    again = performer_of(log, walker)
+    *_, last = replay(of_library(log, again), again)
+    assert not strayed(log, last) and last.methods is learning.methods(str(database)) and len(last.after.characters) == 2
+    (tmp_path / "clip.bvh").rename(tmp_path / "other.bvh")
+    with pytest.raises(LogError, match=r"a\.gambol: was played with the clip .*clip\.bvh, which is not there"):
+        performer_of(log, walker)
+    write_bvh(motion_clip("clip", walker.skeleton, [walker.start().pose] * 50, 60), tmp_path / "clip.bvh")
+    with pytest.raises(LogError, match="another clip than .*clip.bvh holds now"):
+        of_library(log, performer_of(log, walker))
+    database.unlink()
+    with pytest.raises(LogError, match=r"a\.gambol: was played with the motion database .*mine\.gambolmotion, which is not there"):
+        performer_of(log, walker)
+
+
+def test_going_back_and_the_same_again_is_the_same_again(walker):
+    timeline, moments = played(walker, HANDS[:60])
+    timeline.advance((replace(HANDS[35], pressed=("back=25",)).rounded(),))
+    same(timeline.now, moments[35])
+    for wish, wanted in zip(HANDS[36:60], moments[36:], strict=True):
+        timeline.advance((wish.rounded(),))
+        same(timeline.now, wanted)
+
+
+def test_the_body_goes_where_it_is_pulled_and_hands_take_it_over_without_a_jump(walker):
+    timeline, _ = played(walker, HANDS[:41])
+    before = timeline.now.after.characters[1]
+    timeline.advance((Wish(pressed=("pins=hold",)),))
+    body = timeline.now.after.characters[1]
+    assert np.linalg.norm(body.joints[0] - before.joints[0], axis=-1).max() < 0.08
+    goal = np.array(timeline.now.study.pins[0]) + [0.05, 0.25, 0.05]
+    for k in range(90):
+        old = body.joints[0]
+        timeline.advance((Wish(pressed=(f"pin=0:{written(goal)}",) if k == 0 else ()),))
+        body = timeline.now.after.characters[1]
+        if k:
+            assert np.linalg.norm(body.joints[0] - old, axis=-1).max() < 0.15
+    assert np.linalg.norm(body.follows.controls.on(*body.joints)[0] - goal) < 0.05
+    assert math.isnan(body.told[-1, 0]) and cells(rows(timeline.now.after)[0])[1] == "–"
+
+
+@pytest.mark.parametrize("action", ["study=best@4", "study=ours", "study=ours ours@4", "study=ours@nose", "pin=0:1/2/3",
+                                    "pins=hold", "pins=1/2/3"])
+def test_actions_that_say_nothing_sound_are_refused(walker, action):
+    with pytest.raises(SettingError, match=action.partition("=")[0]):
+        Timeline(opening(walker)).advance((Wish(pressed=(action,)),))
+
+
+@pytest.mark.parametrize("action", ["pin=9:1/2/3", "pin=0:1/2", "pin=0:nan/1/1", "pin=0:1e9/0/0", "pins=1/2/3", "pin=x:1/2/3"])
+def test_pins_that_can_not_be_are_refused(walker, action):
+    timeline, _ = played(walker, HANDS[:45])
+    with pytest.raises(SettingError, match=action):
+        timeline.advance((Wish(pressed=(action,)),))
+
+
+def test_a_study_reads_as_it_writes():
+    for study, count in ((Study(), 4), (Study(("nearest",), "lwrist,head+0/0.1/0"), 2), (Study().more_points(), 5), (Study().other_ghosts(), 4)):
+        assert opened(study.action) == study and study.count == count
+    assert opened("study=") is None
+    cycle, seen = Study(points="2"), []
+    for _ in range(5):
+        seen.append(cycle.points)
+        cycle = cycle.more_points()
+    assert seen == ["2", "3", "4", "5", "6"] and cycle.points == "2"
+
+
+def game(walker, **options):
+    play = Play(walker, **options)
+    for name in ("ours", "lpcr", "lpca"):
+        play.reach.methods(name, "4")
+    return play
+
+
+def ticks(play, count=1):
+    for _ in range(count):
+        play.tick(DT)
+        play.scene((1280, 720))
+
+
+def test_keys_open_hold_and_leave(walker):
+    play = game(walker)
+    play.handle(KeyEvent("X", True))
+    ticks(play, 3)
+    assert play.now.study is not None and [one.name for one in play.now.after.characters[1:]] == ["ours", "local PCR", "local PCA"]
+    scene = play.scene((1280, 720))
+    assert scene.ink is not None and len(scene.figures) == 4
+    play.do("study_hands")
+    ticks(play, 2)
+    pins = play.now.study.pins
+    camera, aspect = play.reach.camera, play.reach.aspect
+    number = 0
+    x, y = project(camera, aspect, np.array(pins[number]))[:2]
+    play.handle(MouseMove(float(x), float(y), 0.0, 0.0))
+    play.handle(KeyEvent("LEFT_BUTTON", True))
+    assert play.reach.grip is not None and play.reach.grip.number == number
+    play.handle(MouseMove(float(x), float(y) - 0.1, 0.0, -0.1))
+    ticks(play, 2)
+    up = play.now.study.pins[number]
+    assert up[1] > pins[number][1] + 0.2 and play.now.study.pins[1:] == pins[1:]
+    before = play.now.players[0].camera.distance
+    play.handle(Scroll(0.0, 5.0))
+    ticks(play, 2)
+    deeper = project(camera, aspect, np.array(play.now.study.pins[number]))[2]
+    assert deeper > project(camera, aspect, np.array(up))[2] + 0.3 and play.now.players[0].camera.distance == before
+    play.handle(KeyEvent("LEFT_BUTTON", False))
+    held = play.now.study.pins[number]
+    play.handle(MouseMove(0.1, 0.9, 0.0, 0.0))
+    ticks(play, 3)
+    assert play.now.study.pins[number] == held  # released, it stays
+    x, y = project(play.reach.camera, aspect, np.array(held))[:2]
+    play.handle(MouseMove(float(x), float(y), 0.0, 0.0))
+    play.handle(KeyEvent("U", True))
+    ticks(play, 2)
+    assert play.now.study.pins[number] is None
+    play.handle(KeyEvent("ESCAPE", True))
+    ticks(play, 2)
+    assert play.now.study.pins is None and not play.done
+    play.handle(KeyEvent("ESCAPE", True))
+    assert play.done
+
+
+def test_a_stream_holds_the_points(walker):
+    class Somebody:
+        def at(self, time):
+            return np.array([[0.4, 1.0, 0.3], [np.nan] * 3, [0.1, 0.07, 0.0], [-0.1, 0.07, 0.0]])
+    play = game(walker, stream=Somebody())
+    play.do("study")
+    ticks(play, 5)
+    assert play.now.study.pins[1] is None
+    assert play.now.study.pins[0] == pytest.approx(np.array([0.4, 1.0, 0.3]) + play.now.study.beside, abs=1e-4)
+    play.do("study_points")
+    play.do("study_hands")
+    ticks(play, 3)
+    assert play.now.study.points == "4" and play.now.study.pins is not None  # they are the stream's
+    play.do("quit")
+    assert play.done
+
+
+def test_what_can_not_be_learnt_is_told_in_one_line(tmp_path):
+    wrong = tmp_path / "wrong.gambolmotion"
+    wrong.write_bytes(b"nothing")
+    other = learning.Learning([("ours", "4")], wrong)
+    other.wait()
+    assert other.done and other.fault == f"{wrong}: is no motion database; `gambol database build` makes one"
