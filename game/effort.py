@@ -21,7 +21,7 @@ from .sway import physique_of
 from .world import Character
 
 GROUND, WEIGHT = (0.02, 0.42, 0.10), (0.10, 0.11, 0.13)
-NEWTON = 0.42 / (73.0 * 9.81)
+NEWTON = 0.42 / (Physique.mass * 9.81)
 """How long forces are drawn [m/N]: an adult's weight on Earth is 0.42 m."""
 MOST_DRAWN = 4.0
 """No longer arrows of the ground's force are drawn, in weights."""

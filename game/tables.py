@@ -13,8 +13,7 @@ from controllers.body.human import STATURE
 from controllers.contract import Intent
 from controllers.jump import Jump as JumpController
 from controllers.jump import Physique
-from controllers.jump.ballistics import apex_airtime
-from controllers.jump.path import measures
+from controllers.jump.path import airtime_up
 from controllers.navigation import floor_at
 from controllers.reconstruction.chart import SKELETON
 from controllers.reconstruction.controls import parse
@@ -82,7 +81,7 @@ class MoveTable(Table):
         points = self.path or ((self.walk_to,) if self.walk_to is not None else ())
         leap = None
         if self.jump is not None:
-            leap = Jump(airtime=_airtime_up(jumper, self.jump))
+            leap = Jump(airtime=airtime_up(jumper.physique, self.jump, jumper.gravity))
         elif self.jump_to is not None:
             x, z = self.jump_to[0], self.jump_to[-1]
             y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
@@ -273,13 +272,6 @@ def _kind(prop) -> str:
 
 PropTable = Annotated[Annotated[BoxTable, Tag("box")] | Annotated[PillarTable, Tag("pillar")] | Annotated[GoalTable, Tag("goal")],
                       Discriminator(_kind)]
-
-
-def _airtime_up(jumper: JumpController, height: float) -> float:
-    """The airtime [s] in which a body rises by `height` [m] after it has left the floor."""
-    heights = measures(jumper.physique)
-    start, end = np.array([0.0, heights.leave, 0.0]), np.array([0.0, heights.touch, 0.0])
-    return apex_airtime(start, end, max(height, end[1] - start[1]), jumper.gravity)
 
 
 def _forward(velocity) -> tuple[float, float, float]:

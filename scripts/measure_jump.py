@@ -33,6 +33,7 @@ from controllers.body.support import sole_corners  # noqa: E402
 from controllers.contract import Intent, Leap  # noqa: E402
 from controllers.jump.controller import Jump  # noqa: E402
 from controllers.jump.dynamics import Physique  # noqa: E402
+from controllers.jump.path import airtime_up  # noqa: E402
 from controllers.jump.reach import Refused  # noqa: E402
 from controllers.locomotion import Locomotion  # noqa: E402
 from controllers.locomotion.cycles import joint_acceleration  # noqa: E402
@@ -152,7 +153,7 @@ def report_counter_movement(locomotion: Locomotion) -> None:
     middle = sole_corners(jump.skeleton, *(a[None] for a in forward_kinematics(
         jump.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))))[0].mean(0) * [1, 0, 1]
     for height in (0.30, 0.35, 0.40):
-        made = jump.plan(state, Intent(leap=Leap(middle, 2.0 * np.sqrt(2.0 * height / 9.81))))
+        made = jump.plan(state, Intent(leap=Leap(middle, airtime_up(jump.physique, height, jump.gravity))))
         seen = Motion.of(jump, made, np.arange(0.0, made.take_off, 1 / FINE))
         centre = seen.centre[:, 1]
         lowest = int(centre.argmin())

@@ -39,7 +39,7 @@ UNBOUND = 0.3
 def rise(physique: Physique) -> float:
     """From standing to take-off [m]."""
     heights = measures(physique)
-    return heights.leave - heights.stand
+    return heights.leave(0.0) - heights.stand
 
 
 def speed(height: float, g: float = G) -> float:
@@ -280,7 +280,7 @@ def draw(folder: Path, runs, poses, by_height, thrusts) -> None:
     figure, axis = plt.subplots(figsize=(9, 3))
     heights = measures(ADULT)
     for far, up in ((0.6, 0.0), (1.2, 0.0), (1.2, 0.4), (1.5, -1.0)):
-        start, end = np.array([0.0, heights.leave, 0.0]), np.array([0.0, heights.touch + up, far])
+        start, end = np.array([0.0, heights.leave(0.0), 0.0]), np.array([0.0, heights.touch(0.0) + up, far])
         airtime = max(least_effort(start, end), 0.3)
         velocity = take_off_velocity(start, end, airtime)
         arc = along(start, velocity, np.linspace(0, airtime, 60))

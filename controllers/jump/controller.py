@@ -129,6 +129,10 @@ class Jump:
         if around and below < place[1] - FLUSH:
             return (self.path(start, place, floor, airtime),
                     f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m")
+        body = self.physique.tables
+        corners = soles(landing_feet(place, start.heading, body), body)
+        if around and min(floor_at(x, z, around, place[1] + FLUSH) for x, _, z in corners) < place[1] - FLUSH:
+            return self.path(start, place, floor, airtime), "too near an edge: only part of its feet would find floor"
         return self.arc(start, place, floor, airtime, around)
 
     def arc(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,

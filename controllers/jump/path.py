@@ -149,6 +149,13 @@ def folding(trail: float, size: float) -> float:
     return FOLDS * trail / size
 
 
+def airtime_up(physique: Physique, height: float, gravity: np.ndarray) -> float:
+    """The airtime [s] in which a body that jumps in place rises by `height` [m] after it has left the floor."""
+    heights = measures(physique)
+    leave, touch = heights.leave(0.0), heights.touch(0.0)
+    return apex_airtime([0.0, leave, 0.0], [0.0, touch, 0.0], max(height, touch - leave), gravity)
+
+
 def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray, ahead: float = 0.0) -> float:
     """The centre of mass's height over two feet, `ahead` [m] of the origin, the legs `share` of their length."""
     body, skeleton = physique.tables, physique.skeleton

@@ -11,6 +11,7 @@ from controllers.body import end_positions, forward_kinematics
 from controllers.contract import Intent, Leap
 from controllers.jump.controller import Jump, Jumping
 from controllers.jump.dynamics import Physique
+from controllers.jump.path import soles
 from controllers.jump.reach import Refused
 from controllers.navigation import gap
 from controllers.supervisor import Supervisor
@@ -180,3 +181,13 @@ def test_ten_jumps_straight_up_stay_where_they_are(jump, locomotion):
     assert jumps == 10
     places.append(jump.middle(jump.start_of(replace(state, memory=None)), 0.0))
     assert np.linalg.norm(np.array(places) - places[0], axis=1).max() < 0.02
+
+
+@pytest.mark.parametrize("inside", [0.005, 0.06])
+def test_nobody_lands_with_heels_over_an_edge(jump, standing, inside):
+    """A place just within a platform is none to stand on; farther in there is."""
+    step = Box((0.0, 0.1, 1.5), (2.0, 0.2, 2.0))
+    with pytest.raises(Refused, match="too near an edge"):
+        jump.plan(standing, leap(0.5 + inside, 0.2, around=(step,)))
+    made = jump.plan(standing, leap(0.5 + inside + 0.14, 0.2, around=(step,)))
+    assert soles(made.feet, jump.physique.tables)[:, 2].min() > 0.5
