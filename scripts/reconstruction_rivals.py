@@ -126,7 +126,7 @@ RIVALS = {
         {"hidden": (384, 384), "rate": 1e-3, "batches": 6000, "loosening": 10.0},
         {"hidden": ((256, 256), (384, 384)), "rate": (1e-3, 2e-3), "loosening": (1.0, 10.0, 100.0)}),
     OURS: Rival(lambda database, controls: ours(database, controls), "",
-                ("ours.py", "moments.py", "learning.py", "filters.py", "method.py", "beliefs.py", "prior.py", "solver*.py",
+                ("ours.py", "moments.py", "learning.py", "filters.py", "method.py", "beliefs.py", "prior.py", "solver*.py", "frame_kernel.py",
                  "baselines/regressors.py")),
 }
 """By name, in the order of the tables."""
