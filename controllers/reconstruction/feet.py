@@ -6,7 +6,7 @@ import numpy as np
 
 from ..body import Pose, Skeleton
 from ..body.contact import contact_height, contact_points
-from ..body.ik import two_bone_turns
+from ..body.ik import pole_of, two_bone_turns
 
 GIVE = 0.01
 """So deep [m] a foot may stay in the floor: the lift begins with no slope, so that nothing pops."""
@@ -32,9 +32,10 @@ def above(skeleton: Skeleton, pose: Pose, positions: np.ndarray, orientations: n
     for side, by in zip(("Left", "Right"), up, strict=True):
         if by > 0.0:
             hip, knee, ankle = (skeleton.index(side + name) for name in ("UpLeg", "Leg", "Foot"))
-            upper, lower = two_bone_turns(positions[hip], positions[knee], positions[ankle],
-                                          positions[ankle] + [0.0, by, 0.0], 0.1 * orientations[knee][:, 2] +
-                                          positions[knee] - 0.5 * (positions[hip] + positions[ankle]))
+            leg = positions[hip], positions[knee], positions[ankle]
+            # where the knee is now, so that nothing turns at the least lift; a straight leg's goes forward
+            pole = pole_of(*leg) + 1e-6 * orientations[knee][:, 2]
+            upper, lower = two_bone_turns(*leg, positions[ankle] + [0.0, by, 0.0], pole)
             thigh, shank = upper @ orientations[hip], lower @ orientations[knee]
             rotations[hip] = orientations[skeleton.parents[hip]].T @ thigh
             rotations[knee] = thigh.T @ shank
