@@ -93,26 +93,10 @@ def methods(file: str | Path | None = None) -> Methods:
 
 def learnt(name: str, database: Database, controls: Controls, progress: Progress | None = None) -> Any:
     """A method of `METHODS`, ready: nothing of it is compiled or read later. Rivals as they are best on recorded takes."""
-    from controllers.reconstruction.baselines import SGPLVM, LocalPCA, LocalPCR, Nearest, Samples, network, ridge
-    from controllers.reconstruction.method import Local, LocalRegression, Method
-    from controllers.reconstruction.ours import cells, ours
-    from controllers.reconstruction.prior import FLOOR, Regression
-    from controllers.reconstruction.solver import Solver
+    from controllers.reconstruction.ours import ours
+    from controllers.reconstruction.rivals import rival
 
-    solver = Solver(controls, 1 / database.fps)
-    local = {"lpcr": lambda: LocalPCR(share=0.99, loosening=300.0, bandwidth="knn"),
-             "lpca": lambda: LocalPCA(share=0.999, most=12, loosening=3.0),
-             "mousas": lambda: LocalRegression(Regression("paper", ridge=0.1, loosening=100.0)),
-             "nearest": lambda: Nearest(10.0 * FLOOR)}
-    if name == "ours":
-        method = ours(database, controls, progress=progress)
-    elif name in local:
-        method = Method(Local(local[name](), cells(database, controls)), solver)
-    elif name == "gplvm":
-        method = Method(SGPLVM.of(database, solver), solver)
-    else:
-        samples = Samples.of(database, solver)
-        method = Method(ridge(samples, 1e-4) if name == "ridge" else network(samples, batches=6000), solver)
+    method = ours(database, controls, progress=progress) if name == "ours" else rival(name, database, controls)
     rehearse(method, controls)
     return method
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from .frame_kernel import fuse_kernel
+
 
 @dataclass(frozen=True, eq=False)
 class Gaussian:
@@ -57,16 +59,14 @@ def _fuse_plain(belief, plain):
 
     The belief is mean + √variance·ε + factorᵀ·η. Given η all columns are apart; and η itself is told from plain.mean.
     """
-    total = belief.variance + plain.variance
-    gain = belief.variance / total
-    error = plain.mean - belief.mean
-    factor = belief.factor * (1.0 - gain)
-    if not factor.size:
-        return Gaussian(belief.mean + gain * error, gain * plain.variance, factor)
-    weighed = belief.factor / total
-    lower = np.linalg.cholesky(np.eye(len(factor)) + weighed @ belief.factor.T)
-    factor, told = _unfold(lower, factor), _unfold(lower, weighed @ error)
-    return Gaussian(belief.mean + gain * error + told @ factor, gain * plain.variance, factor)
+    if not belief.factor.size:
+        gain = belief.variance / (belief.variance + plain.variance)
+        return Gaussian(belief.mean + gain * (plain.mean - belief.mean), gain * plain.variance, belief.factor)
+    mean, variance = np.empty(len(belief.mean)), np.empty(len(belief.mean))
+    given = (np.ascontiguousarray(value, float) for value in
+             (belief.mean, belief.variance, belief.factor, plain.mean, plain.variance))
+    factor = fuse_kernel(*given, mean, variance)
+    return Gaussian(mean, variance, factor)
 
 
 def _fuse_full(a, b):

@@ -16,14 +16,15 @@ import numpy as np
 from ..body import Pose, Skeleton, forward_kinematics, human
 from ..body.contact import HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact_points
 from ..body.human import STATURE
-from ..body.rotations import exp, heading_of, log, wrap
+from ..body.rotations import heading_of, wrap
 from ..body.springs import damp, settle
 from ..contract import CharacterState, Intent, Status, Unable
-from .chart import SKELETON, YAW_RATE, decode, encode
+from .carrying import difference, guessed_past, joints_of, moved
+from .chart import SKELETON, decode
 from .controls import Controls
+from .feet import above
 from .gating import Gate
-from .method import SPAN
-from .starts import Starts, backed
+from .starts import Starts
 
 READY, HOLDS = 1.0, 1.2
 """How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""
@@ -42,7 +43,6 @@ LEAP = 0.2
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
 _CALMED = 0.5
-_FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
 _SMOOTH = 0.1  # s, half-life of the ground frame's heading and of its velocity
 
 
@@ -100,11 +100,11 @@ class Reconstruction:
         return f"Reconstruction {','.join(self.controls.names)} × {self.factor:.6f}"
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
-        """READY if a point is seen; while points are followed, how firmly it holds on."""
+        """READY if a point is seen; while points are followed, how firmly it holds on, but to no other number of them."""
         if intent.points is None:
             return 0.0
         if isinstance(state.memory, Following):
-            return HOLDS
+            return HOLDS if np.shape(intent.points) == (len(self.controls), 3) else 0.0
         return READY if np.isfinite(intent.points).any() else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
@@ -115,12 +115,12 @@ class Reconstruction:
         pose = self._shrunk(state.pose, state.floor)
         away = self._possible(seen, self._points(pose))
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, state.floor)
-        rate = np.zeros((1 + len(SKELETON), 3)) if past is None else _difference(pose, past) / state.elapsed
+        rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
         alike = away <= ANEW or self.starts is None
-        frames, tracks = _past(pose, past, state.elapsed, self.dt) if alike else self.starts.find(seen)
+        frames, tracks = guessed_past(pose, past, state.elapsed, self.dt) if alike else self.starts.find(seen)
         begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen)
         # what the body would do next by itself is where the fading begins
-        offset = _difference(_moved(pose, rate * self.dt), begun.pose)
+        offset = difference(moved(pose, rate * self.dt), begun.pose)
         return replace(state, memory=replace(begun, ahead=self.dt, offset=offset))
 
     def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0) -> CharacterState:
@@ -149,16 +149,24 @@ class Reconstruction:
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
 
-        The method makes a frame each of its own steps; in between, poses are interpolated.
+        The method makes a frame each of its own steps; in between, poses are interpolated. Another number of points
+        than it follows ends it: the body coasts for this step, and `status` says why. No foot is deep in the floor.
         """
         if not 0.0 < dt <= 0.1:
             raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
         if not isinstance(state.memory, Following):
             raise ValueError("this state's memory is not of a reconstruction: enter it first")
-        following, seen = state.memory, self._seen(state, intent)
+        following = state.memory
+        try:
+            seen = self._seen(state, intent)
+        except Unable as reason:  # the body coasts, and the next step is somebody else's
+            seen, following = np.full((len(self.controls), 3), np.nan), replace(following, fault=str(reason))
         due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
         ahead = following.ahead - dt + due * self.dt
         start = following.seen
+        if due:
+            gate, seen = following.gate.named(seen, due * self.dt)
+            following = replace(following, gate=gate)
         for k in range(1, due + 1):
             points = seen if k == due else start + (seen - start) * (k / due)
             following = self._frame(following, points)
@@ -168,8 +176,9 @@ class Reconstruction:
         following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
         shown = following.pose
         if following.ahead > 0.0:
-            shown = _moved(shown, _difference(following.before, shown) * (following.ahead / self.dt))
-        pose = self._grown(_moved(shown, offset), state.floor)
+            shown = moved(shown, difference(following.before, shown) * (following.ahead / self.dt))
+        shown = moved(shown, offset)
+        pose = self._grown(above(SKELETON, shown, *joints_of(shown), 0.0), state.floor)
         return self._after(state, pose, following, dt), pose
 
     def status(self, state: CharacterState) -> Status:
@@ -181,7 +190,7 @@ class Reconstruction:
 
     def _frame(self, following: Following, points: np.ndarray) -> Following:
         """One frame of the method on."""
-        now, earlier = _placed(following.pose), _placed(following.before)
+        now, earlier = joints_of(following.pose), joints_of(following.before)
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
@@ -190,13 +199,13 @@ class Reconstruction:
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
-        if np.linalg.norm(_placed(pose)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
+        if np.linalg.norm(joints_of(pose)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
             return after
         # the body goes on as it did, and what it would have leapt fades; less fast each time, or leaps upon leaps
         # would carry it away
-        step = _CALMED * _difference(following.pose, following.before)
-        ahead = _moved(following.pose, step)
-        return replace(after, before=_moved(pose, -step), offset=_difference(_moved(ahead, following.offset), pose))
+        step = _CALMED * difference(following.pose, following.before)
+        ahead = moved(following.pose, step)
+        return replace(after, before=moved(pose, -step), offset=difference(moved(ahead, following.offset), pose))
 
     def _after(self, state: CharacterState, pose: Pose, following: Following, dt: float) -> CharacterState:
         """The state with a new pose: its ground frame, velocity and contacts are told from the body."""
@@ -241,7 +250,7 @@ class Reconstruction:
 
     def _points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""
-        return self.controls.on(*_placed(pose))
+        return self.controls.on(*joints_of(pose))
 
     def _shrunk(self, pose: Pose, floor: float) -> Pose:
         return Pose((np.asarray(pose.root, float) - [0.0, float(floor), 0.0]) / self.factor,
@@ -266,37 +275,3 @@ def towards(state: CharacterState, points: np.ndarray) -> np.ndarray:
         return np.zeros(3)
     bearing = float(wrap(np.arctan2(way[0], way[1]) - heading))
     return np.array([min(1.4, distance) * max(np.cos(bearing), 0.0), np.clip(2.0 * bearing, -2.0, 2.0), 0.0])
-
-
-def _placed(pose: Pose) -> tuple[np.ndarray, np.ndarray]:
-    """A standard body's joints: positions (J, 3) [m] and orientations (J, 3, 3)."""
-    return forward_kinematics(SKELETON, pose.root, pose.rotations)
-
-
-def _difference(to: Pose, start: Pose) -> np.ndarray:
-    """What moves one pose onto another (1 + J, 3): of the root [m], and of the joints as rotation vectors [rad]."""
-    return np.concatenate([(to.root - start.root)[None], log(np.swapaxes(start.rotations, -1, -2) @ to.rotations)])
-
-
-def _moved(pose: Pose, by: np.ndarray) -> Pose:
-    """The inverse of `_difference`."""
-    return Pose(pose.root + by[0], pose.rotations @ exp(by[1:]))
-
-
-def _past(pose: Pose, before: Pose | None, elapsed: float, dt: float) -> tuple[np.ndarray, np.ndarray]:
-    """Frames (SPAN, D) and ground tracks (SPAN, 3) that end in a pose, from it and maybe one `elapsed` [s] before.
-
-    Farther back it is guessed: the hips went as fast all the time, the joints had begun to move not long before.
-    """
-    if before is None:
-        frames, tracks = encode(pose.root[None], pose.rotations[None], dt)
-        return frames, tracks
-    pair, tracks = encode(np.stack([before.root, pose.root]), np.stack([before.rotations, pose.rotations]), elapsed)
-    newest = pair[1]
-    back = -np.arange(SPAN - 1, -1, -1) * dt
-    frames = newest + (np.expm1(back / _FADING) * _FADING)[:, None] * (newest - pair[0]) / elapsed
-    frames[:, YAW_RATE:] = newest[YAW_RATE:]
-    way = [tracks[1]]
-    for _ in range(SPAN - 1):
-        way.insert(0, backed(way[0], newest, dt))
-    return frames, np.stack(way)

@@ -1,8 +1,8 @@
 """The database of those who have no motion capture: Gambol's own motion, made on first use.
 
 A walker walks, turns, side-steps, runs, stops and jumps after a fixed list of wishes, one take a
-list. It takes some seconds, once: the file lies beside the compiled kernels, under a name that
-changes with Gambol's sources and its gait library.
+list. It takes some seconds, once: the file lies with all that is learnt, under a name that changes
+with the gait library and with the sources that make the motion, and with no others.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body import Clip, Pose
-from ..compiled import cache_folder
 from ..contract import Intent, Leap
 from ..jump import Jump, Physique
 from ..locomotion import DEFAULT_LIBRARY, Locomotion
@@ -24,6 +23,11 @@ from ..supervisor import Supervisor
 from .chart import encode
 from .database import FPS, SUFFIX, Database, Writer
 from .database_build import sound
+from .store import folder
+
+_CONTROLLERS = Path(__file__).parent.parent
+_SOURCES = ("contract.py", "supervisor.py", "body/*.py", "locomotion/*.py", "jump/*.py", "reconstruction/chart.py",
+            "reconstruction/database*.py")
 
 # seconds, then forward [m/s], yaw [rad/s] and leftward velocity [m/s]
 _WALKS = {
@@ -48,9 +52,14 @@ _LONGEST_WAIT = 3.0  # s, until a jump begins and until it is over
 
 def default_database() -> Database:
     """Gambol's own motion, made on the first call; the same frames on every machine of a kind."""
-    version = hashlib.sha1(Path(DEFAULT_LIBRARY).read_bytes()).hexdigest()[:8]
-    path = cache_folder() / f"own-{version}{SUFFIX}"
-    if not path.exists():
+    told = hashlib.sha1(Path(DEFAULT_LIBRARY).read_bytes())
+    for pattern in _SOURCES:
+        for source in sorted(_CONTROLLERS.glob(pattern)):
+            told.update(source.read_bytes())
+    path = folder() / f"own-{told.hexdigest()[:12]}{SUFFIX}"
+    if path.exists():
+        os.utime(path)  # it is wanted still
+    else:
         path.parent.mkdir(parents=True, exist_ok=True)
         own = path.with_name(f"{os.getpid()}-{path.name}")  # another process may be at it, too
         write_own(own)

@@ -10,6 +10,7 @@ frame, also weighted.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,7 +33,7 @@ class Weights:
     points: float = 2.0
     speeds: float = 0.2
 
-    @property
+    @cached_property
     def columns(self) -> np.ndarray:
         """The weight of each column of a frame (WIDTH,) float32."""
         root = dict.fromkeys(ROOT, self.velocity) | {"height": self.height, "pitch": self.tilt, "roll": self.tilt,
@@ -55,18 +56,15 @@ def of_points(points: np.ndarray, before: np.ndarray, track: np.ndarray, dt: flo
     """
     # in double, since x and z may be kilometres from the origin
     points, before, track = (np.asarray(a, float) for a in (points, before, track))
-    origin = np.stack([track[..., 0], np.zeros_like(track[..., 0]), track[..., 1]], -1)[..., None, :]
-    places = _in_heading(points - origin, track[..., 2])
-    speeds = _in_heading((points - before) / dt, track[..., 2])
-    both = np.concatenate([weights.points * places, weights.speeds * speeds], -2)
-    return both.reshape(*both.shape[:-2], -1).astype(np.float32)
-
-
-def _in_heading(vectors, heading):
-    """Vectors (..., n, 3) of the world seen in a heading (...): x leftward, z forward."""
-    c, s = np.cos(heading)[..., None], np.sin(heading)[..., None]
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    return np.stack([c * x - s * z, y, s * x + c * z], -1)
+    c, s = np.cos(track[..., 2, None]), np.sin(track[..., 2, None])
+    x, z = points[..., 0] - track[..., 0, None], points[..., 2] - track[..., 1, None]
+    rate, weight = (points - before) * (weights.speeds / dt), weights.points
+    both = np.empty((*points.shape[:-2], 2, *points.shape[-2:]), np.float32)
+    both[..., 0, :, 0], both[..., 0, :, 2] = weight * (c * x - s * z), weight * (s * x + c * z)
+    both[..., 0, :, 1] = weight * points[..., 1]
+    both[..., 1, :, 0], both[..., 1, :, 2] = c * rate[..., 0] - s * rate[..., 2], s * rate[..., 0] + c * rate[..., 2]
+    both[..., 1, :, 1] = rate[..., 1]
+    return both.reshape(*points.shape[:-2], -1)
 
 
 def places(frames: np.ndarray, joints: tuple[int, ...]) -> np.ndarray:

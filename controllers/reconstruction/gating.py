@@ -1,4 +1,5 @@
-"""Points as trackers give them, made fit to be followed: lost ones stay away, wild ones are refused, returning ones eased in.
+"""Points as trackers give them, made fit to be followed: exchanged ones get their names back, lost ones stay away, wild
+ones are refused, returning ones eased in.
 
 Whatever comes back is first taken to be where the body has it already, with the body's velocity; the difference
 then settles (inertialisation), so that nothing pops.
@@ -34,7 +35,8 @@ class Gate:
     """What is remembered of n points. raw: (n, 3) [m] where they were last seen, NaN where they were not.
 
     rate, smooth: (n, 3) [m/s] how they move, and how they did in the last frames, which noise blurs less. steady: (n,) [s] for how long they have moved like a body. trusted: (n,) bool
-    which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has settled.
+    which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has settled. order: (n,) under
+    which number each one comes now.
     """
 
     raw: np.ndarray
@@ -44,13 +46,30 @@ class Gate:
     trusted: np.ndarray
     offset: np.ndarray
     slip: np.ndarray
+    order: np.ndarray
 
     @staticmethod
     def before(seen: np.ndarray, motion: np.ndarray) -> Gate:
         """When points were seen for the first time, at (n, 3) [m], NaN where not; taken to move as the body does
         [m/s]. None is followed yet."""
         zero = np.zeros_like(motion)
-        return Gate(seen, motion, motion, np.zeros(len(seen)), np.zeros(len(seen), bool), zero, zero)
+        return Gate(seen, motion, motion, np.zeros(len(seen)), np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)))
+
+    def named(self, seen: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
+        """Points (n, 3) [m] as they come dt [s] after the last ones, under their own numbers, and the gate that knows them.
+
+        Two that leapt at once, each to where the other one was going, have only exchanged their numbers. Closer to each
+        other than `SUDDEN` they can't be told apart.
+        """
+        seen, order = seen[self.order], self.order.copy()
+        ahead = self.raw + self.rate * dt
+        apart = _length(seen[:, None] - ahead)  # of each seen one from where each one was going
+        leapt = np.flatnonzero((self.steady > 0.0) & (np.diagonal(apart) > SUDDEN))
+        for k, i in enumerate(leapt):
+            for j in leapt[k + 1:]:
+                if apart[i, j] <= SUDDEN and apart[j, i] <= SUDDEN:
+                    seen[[i, j]], order[[i, j]] = seen[[j, i]], order[[j, i]]
+        return replace(self, order=order), seen
 
     def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """The gate dt [s] later, and the points (n, 3) [m] to follow, NaN where there is nothing to believe.

@@ -27,7 +27,8 @@ TURNED = 0.08
 """How far off [rad] the heading is taken to be in half of the samples, a standard deviation."""
 DISTANCE, ANGLE = 0.05, math.radians(10.0)
 """Errors of a joint's place [m] and of its angle [rad] that are equally bad."""
-_HIDDEN = (384, 384)
+_HIDDEN = (768, 768)
+_RATE = 2e-3
 _SIZE = 256  # samples in a batch
 _ROUNDS = 14  # how often each sample is seen, as far as
 _LEAST, _MOST = 1500, 9000  # batches allow
@@ -161,7 +162,9 @@ class Networks:
 
     def predict(self, inputs: np.ndarray) -> np.ndarray:
         """Placed poses (..., D) for inputs (..., P)."""
-        inputs = np.asarray(inputs, np.float32)
+        inputs = np.ascontiguousarray(inputs, np.float32)
+        if inputs.ndim == 1:
+            return sum(_predicted(member, inputs) for member in self.members) / len(self.members)
         return sum(member.predict(inputs) for member in self.members) / len(self.members)
 
     def save(self, folder: Path) -> None:
@@ -177,6 +180,28 @@ class Networks:
         if not members:
             raise ValueError(f"{folder}: has no networks")
         return Networks(members, members[0].errors)
+
+
+def _predicted(layers, x):
+    """`Layers.predict` for one input (P,), several times as fast."""
+    x, last = (x - layers.ins[0]) / layers.ins[1], len(layers.weights) - 1
+    for number, (weights, biases) in enumerate(zip(layers.weights, layers.biases, strict=True)):
+        x = layer_kernel(x, weights, biases, number < last)
+    return x * layers.outs[1] + layers.outs[0]
+
+
+@kernel(fastmath=EXACT, error_model="numpy")
+def layer_kernel(x, weights, biases, rectified):
+    """One layer of a network (outputs,). Half of what a layer sees is zero, and their weights are not even read."""
+    out = biases.copy()
+    for i in range(len(x)):
+        if x[i] != 0.0:
+            for j in range(len(out)):
+                out[j] += x[i] * weights[i, j]
+    if rectified:
+        for j in range(len(out)):
+            out[j] = max(out[j], np.float32(0.0))
+    return out
 
 
 def learn(samples: Samples, seeds: int = 2, batches: int | None = None, hidden: tuple[int, ...] = _HIDDEN,
@@ -204,7 +229,7 @@ def _learn(samples, seed, batches, hidden, progress):
     ins, outs = (np.stack([a.mean(0), np.maximum(a.std(0), 1e-3)]).astype(np.float32)
                  for a in draw(samples, rng.integers(len(samples), size=_JUDGED), rng))
     values = starting((len(ins[0]), *hidden, len(outs[0])), rng)
-    count, adam = len(hidden) + 1, Adam(values, batches)
+    count, adam = len(hidden) + 1, Adam(values, batches, _RATE)
     for batch in range(batches):
         inputs, truth = draw(samples, rng.integers(len(samples), size=_SIZE), rng)
         found = forward(values[:count], values[count:], ((inputs - ins[0]) / ins[1]).astype(np.float32))

@@ -13,19 +13,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..body import Pose, Skeleton
 from .beliefs import Gaussian
-from .chart import FORWARD, LEFTWARD, SKELETON, WIDTH, YAW_RATE, decode
+from .chart import FORWARD, LEFTWARD, SKELETON, WIDTH, YAW_RATE
 from .controls import Controls
 from .database import Database
 from .filters import Motion, noise
+from .frame_kernel import seen_kernel
 from .learning import LAGS, WORLD, Networks, learn, placed, seen_from, view
 from .baselines.windows import Samples
-from .method import SPAN, Fused, Local, LocalRegression, Memory, Method
+from .method import SPAN, Fused, Local, LocalRegression, Memory, Method, posed
 from .moments import Moments
 from .neighbours_cells import Cells
 from .prior import FLOOR, Regression
@@ -48,8 +50,10 @@ RESTING = 0.95
 """What is left of the body's velocity a frame later where no point is seen: a third of it after a third of a second."""
 NEIGHBOURS = 60
 """From how many recorded segments the local regression is learnt; more gain nothing."""
-LISTENED = Regression(loosening=3e4)
+LISTENED = Regression("paper", ridge=0.1, loosening=1e4)
 """How the local regression is learnt, and how little it is believed: ten times more, and the body strays with it."""
+NEAR = 1.5
+"""Neighbours that are farther away than this, in the features' units, are hardly believed: they move in another way."""
 ACCELERATION = 10.0
 """How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
 ROUGH = 0.003
@@ -99,16 +103,30 @@ class Expectation:
         if memory.hint is not None:
             last: Expected = memory.hint
             lasting = KEPT * last.lasting
-            error = _error(seen_from(last.ground, placed(memory.frames[0], memory.track), WORLD), last.pose)
+            newest = memory.frames[0].copy()
+            newest[[LEFTWARD, FORWARD, YAW_RATE]] = memory.track
+            error = _error(_seen_from(last.ground, newest, WORLD), last.pose)
             off = lasting + FADING * (error - lasting)
-        mean = seen_from(memory.track, pose + off, ground)
+        mean = _seen_from(memory.track, pose + off, ground)
         mean[YAW_RATE:] /= self.dt
         if not known[0].any():  # it goes on as it went, and comes to rest
             mean = memory.frames[0].copy()
             mean[YAW_RATE:] *= RESTING
+        return Gaussian(mean, *self._spread), Expected(pose, ground, lasting)
+
+    @cached_property
+    def _spread(self):
+        """Variance (D,) and factor (D, D) of what is believed."""
         errors = self.networks.errors.copy()
         errors[:, YAW_RATE:] /= self.dt
-        return Gaussian(mean, FLOOR ** 2, errors).loosened(LOOSENING), Expected(pose, ground, lasting)
+        return LOOSENING * FLOOR ** 2, np.sqrt(LOOSENING) * errors
+
+
+def _seen_from(ground, pose, other):
+    """`seen_from` for one pose (D,), quicker."""
+    out = np.empty(len(pose))
+    seen_kernel(pose, other, ground, out)
+    return out
 
 
 def _error(poses, expected):
@@ -166,7 +184,7 @@ class Ours:
         else:
             pose = memory.pose.towards(found, reach / (ROUGH + 2.0 * level))
         frame = pose.place
-        return Remembered(after, recent, filtered, pose), Pose(*decode(frame, frame[[LEFTWARD, FORWARD, YAW_RATE]]))
+        return Remembered(after, recent, filtered, pose), posed(frame, frame[[LEFTWARD, FORWARD, YAW_RATE]])
 
 
 def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETON, steady: bool = True,
@@ -185,7 +203,7 @@ def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETO
     moments = kept("moments", database, points, lambda: Moments.of(Samples.of(database, plain)), Moments.save,
                    Moments.load, (*_SOURCES, "moments.py"))
     prior = Fused((Expectation(networks, moments, 1 / database.fps),
-                   Local(LocalRegression(LISTENED), cells(database, controls), NEIGHBOURS)))
+                   Local(LocalRegression(LISTENED, NEAR), cells(database, controls), NEIGHBOURS)))
     return Ours(Method(prior, replace(plain, skeleton=skeleton)), steady)
 
 

@@ -14,6 +14,7 @@ from scipy.linalg import get_lapack_funcs
 
 from .beliefs import Gaussian, compact
 from .chart import FORWARD, HEIGHT, LEFTWARD, WIDTH, YAW_RATE
+from .frame_kernel import regress_kernel
 
 BANDWIDTHS = ("knn", "paper")
 FORMS = ("auto", "dual", "primal", "projection")
@@ -86,8 +87,16 @@ def regress(query: np.ndarray, X: np.ndarray, Y: np.ndarray, distances: np.ndarr
             how: Regression = Regression()) -> Gaussian:
     """The belief about the frame after `query` (P,), from K segments X (K, P) and the frames Y (K, D) after them.
 
-    distances: (K,) of X from the query; their Euclidean ones by default.
+    distances: (K,) of X from the query; their Euclidean ones by default. The usual settings are compiled, and as exact.
     """
+    if distances is not None and 2 <= len(X) and how.covariance == "diagonal" and (
+            how.form == "dual" or how.form == "auto" and len(X) <= X.shape[1]):
+        mean, variance = np.empty(Y.shape[1]), np.empty(Y.shape[1])
+        floor = np.empty_like(mean)
+        floor[:] = how.floor
+        whole = (np.ascontiguousarray(value, X.dtype) for value in (query, X, Y, distances))
+        if regress_kernel(*whole, how.bandwidth == "knn", how.ridge, floor, mean, variance):
+            return Gaussian(mean, variance).loosened(how.loosening)
     return believe(fit(query, X, Y, distances, how), how)
 
 

@@ -80,6 +80,9 @@ class Solver:
         number = math.prod(batch)
 
         def flat(value, *shape):
+            if not batch and isinstance(value, np.ndarray) and value.shape == shape and value.dtype == float and (
+                    value.flags.carray):
+                return value[None]
             value = np.asarray(value, float)
             if value.shape != (*batch, *shape):
                 value = np.broadcast_to(value, (*batch, *shape))
@@ -91,7 +94,8 @@ class Solver:
         begin = mean if start is None else flat(start, size)
         frames, points, energies = np.empty((number, size)), np.empty((number, count, 3)), np.empty(number)
         exact = flat(self.sigma if sigma is None else sigma, count)
-        found = solve_all_kernel(mean, variance, factor, begin, flat(goals, count, 3), exact, *self._body, self.steps, self.tolerance, frames, points, energies)
+        found = solve_all_kernel(mean, variance, factor, begin, flat(goals, count, 3), exact, *self._body, self.steps,
+                                 self.tolerance, frames, points, energies)
         if not found:
             raise ValueError("the prior, or where to start, is not finite")
         return Solution(frames.reshape(*batch, size), points.reshape(*batch, count, 3), energies.reshape(batch))
@@ -109,15 +113,28 @@ class Solver:
 
 def on_ground(points: np.ndarray, track: np.ndarray) -> np.ndarray:
     """World points (..., n, 3) [m] as seen from ground tracks (..., 3) of the chart: x, z [m] and heading."""
-    track = np.asarray(track, float)[..., None, :]
-    c, s = np.cos(track[..., 2]), np.sin(track[..., 2])
-    x, z = points[..., 0] - track[..., 0], points[..., 2] - track[..., 1]
-    return np.stack([c * x - s * z, points[..., 1], s * x + c * z], -1)
+    x, z, heading = _parts(track)
+    return _turned(points[..., 0] - x, points[..., 1], points[..., 2] - z, np.cos(heading), -np.sin(heading))
 
 
 def in_world(points: np.ndarray, track: np.ndarray) -> np.ndarray:
     """The inverse of `on_ground`."""
-    track = np.asarray(track, float)[..., None, :]
-    c, s = np.cos(track[..., 2]), np.sin(track[..., 2])
-    x, z = points[..., 0], points[..., 2]
-    return np.stack([c * x + s * z + track[..., 0], points[..., 1], c * z - s * x + track[..., 1]], -1)
+    x, z, heading = _parts(track)
+    out = _turned(points[..., 0], points[..., 1], points[..., 2], np.cos(heading), np.sin(heading))
+    out[..., 0] += x
+    out[..., 2] += z
+    return out
+
+
+def _parts(track):
+    """The numbers of ground tracks (..., 3), each with one axis more, for the points."""
+    track = np.asarray(track, float)
+    return track[..., 0, None], track[..., 1, None], track[..., 2, None]
+
+
+def _turned(x, y, z, c, s):
+    """Points (..., 3) that are turned about the vertical by an angle of that cosine and sine."""
+    left = c * x + s * z
+    out = np.empty((*left.shape, 3))
+    out[..., 0], out[..., 1], out[..., 2] = left, y, c * z - s * x
+    return out

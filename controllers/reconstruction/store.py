@@ -35,16 +35,21 @@ def identity(database: Database) -> str:
     return told.hexdigest()
 
 
+def folder() -> Path:
+    """Where all of it lies: beside the folders of compiled kernels, and not tied to every source as those are."""
+    return cache_folder().parent / "learnt"
+
+
 def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], save: Callable[[T, Path], None],
          load: Callable[[Path], T], sources: tuple[str, ...] = ()) -> T:
     """What `make` makes of a database, made only if it does not lie on disk already.
 
-    settings: all else that it depends on, of a telling repr. save, load: write it to a path and read it. sources: modules of this folder whose change makes it stale. It lies beside the
-    folders of compiled kernels; what nobody wanted for two months is removed.
+    settings: all else that it depends on, of a telling repr. save, load: write it to a path and read it. sources:
+    modules of this folder whose change makes it stale. What nobody wanted for two months is removed.
     """
     name = hashlib.sha1(f"{identity(database)} {settings!r} {_stamp(sources)}".encode()).hexdigest()[:16]
-    folder = cache_folder().parent / "learnt"
-    path = folder / f"{kind}-{name}"
+    home = folder()
+    path = home / f"{kind}-{name}"
     try:
         found = load(path)
         os.utime(path)
@@ -53,11 +58,11 @@ def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], sa
         pass
     made = make()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for old in folder.iterdir():
+        home.mkdir(parents=True, exist_ok=True)
+        for old in home.iterdir():
             if time.time() - old.stat().st_mtime > _UNUSED:
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
-        own = folder / f"{os.getpid()}-{path.name}"  # another process may be at it, too
+        own = home / f"{os.getpid()}-{path.name}"  # another process may be at it, too
         save(made, own)
         if path.is_dir():  # a damaged one, which no file system replaces by itself
             shutil.rmtree(path)

@@ -17,6 +17,7 @@ from controllers.locomotion import Locomotion
 from controllers.reconstruction.chart import SKELETON
 from controllers.reconstruction.controller import LOST, Reconstruction, towards
 from controllers.reconstruction.controls import SETS, parse
+from controllers.reconstruction.feet import GIVE
 from controllers.reconstruction.metrics import position_error
 from controllers.reconstruction.starts import Starts
 from controllers.scaled import Scaled
@@ -133,6 +134,37 @@ def test_points_of_no_such_body_are_refused_with_a_reason(follower, points, wron
     someone = person(follower)
     after, pose = someone.step(someone.start(), Intent(points=here), DT)
     assert after.memory.active == "locomotion" and np.isfinite(pose.rotations).all()
+
+
+def test_another_number_of_points_ends_it_and_the_body_goes_on(follower, points):
+    """As if nobody wanted any; and it is said why. Who steps it nevertheless gets a body, and is told."""
+    someone = person(follower)
+    other, none = (played(someone, someone.start(), list(points[40:80]) + [which] * 20) for which in (points[80][:3], None))
+    assert [state.memory.active for state in other] == ["reconstruction"] * 40 + ["locomotion"] * 20
+    assert "4 are followed" in other[-1].memory.refused
+    assert np.array_equal(bodies(SKELETON, other), bodies(SKELETON, none))
+    after, pose = follower.step(follower.begin(points[0]), Intent(points=points[1][:3]), DT)
+    assert follower.status(after).kind == "failed" and "4 are followed" in follower.status(after).reason
+    assert np.isfinite(pose.rotations).all()
+
+
+@pytest.mark.parametrize("step", [1, 2])
+def test_trackers_that_exchange_their_points_change_nothing(follower, points, step):
+    some = points[::step]
+    torn = some.copy()
+    torn[40:90, [0, 1]] = some[40:90, [1, 0]]
+    one, other = (played(follower, follower.begin(some[0]), which[1:], step * DT) for which in (some, torn))
+    assert np.array_equal(bodies(SKELETON, one), bodies(SKELETON, other))
+
+
+def test_a_lost_foot_stays_above_the_floor(follower, points):
+    """With both ankles lost and the hands low the body crouches, or sinks: its feet stay on the floor."""
+    low = points[60:].copy()
+    low[10:, 2:] = np.nan
+    low[:, :2, 1] -= np.minimum(np.arange(len(low)) / 60.0, 0.5)[:, None]
+    states = played(follower, follower.begin(points[60]), low[1:90])
+    feet = bodies(SKELETON, states)[:, [SKELETON.index(side + "Toe") for side in ("Left", "Right")], 1]
+    assert feet.min() > -GIVE
 
 
 @given(st.data())

@@ -42,6 +42,20 @@ def test_noise_is_no_fault(deviation, seed):
     assert np.isfinite(goals).all()
 
 
+@given(st.integers(30, 100), st.integers(1, 60), st.permutations(range(3)), st.sampled_from([1, 2]))
+@settings(max_examples=40)
+def test_exchanged_points_are_told_apart(first, count, order, step):
+    """Two of three that swing, half a metre or more apart, exchange their numbers for a while; at half the rate, too."""
+    seen = (swinging() + 0.6 * np.arange(3)[:, None] * [0.0, 1.0, 0.0])[::step]
+    torn, (a, b, _) = seen.copy(), order
+    torn[first:first + count, [a, b]] = seen[first:first + count, [b, a]]
+    gate = Gate.before(2 * seen[0] - seen[1], (seen[1] - seen[0]) / (step * DT))
+    for now, truth in zip(torn, seen):
+        gate, own = gate.named(now, step * DT)
+        assert np.array_equal(own, truth)
+        gate, _ = gate.admit(own, truth, np.zeros_like(truth), step * DT)
+
+
 @given(st.integers(60, 120), st.integers(1, 30), st.floats(0.3, 1.4))
 @settings(max_examples=40)
 def test_a_point_that_comes_back_elsewhere_comes_there_without_a_pop(lost, count, away):

@@ -15,7 +15,7 @@ from controllers.reconstruction.chart import FORWARD, HEIGHT, JOINTS, LEFTWARD, 
 from controllers.reconstruction.controls import parse
 from controllers.reconstruction.database import Database, DatabaseError, Writer
 from controllers.reconstruction.learning import LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view
-from controllers.reconstruction.method import Fused, SPAN, Method
+from controllers.reconstruction.method import Fused, SPAN, Method, posed
 from controllers.reconstruction.moments import Moments
 from controllers.reconstruction.ours import KEPT, LASTING, FADING, Expectation, Ours, cells, ours
 from controllers.reconstruction.solver import Solver
@@ -71,6 +71,25 @@ def test_grounds_are_left_and_reached_again(one, other, seed):
     assert np.allclose(seen_from(one, there, other), pose)
     roots = [decode(seen_from(WORLD, p, g), seen_from(WORLD, p, g)[[LEFTWARD, FORWARD, YAW_RATE]]) for p, g in ((pose, one), (there, other))]
     assert np.allclose(roots[0][0], roots[1][0]) and np.allclose(roots[0][1], roots[1][1])
+
+
+@given(GROUNDS, GROUNDS, st.integers(0, 99))
+@settings(max_examples=30, deadline=None)
+def test_what_is_compiled_for_one_pose_is_the_plain_form(one, other, seed):
+    pose = np.random.default_rng(seed).normal(size=WIDTH)
+    off = module._seen_from(one, pose, other) - seen_from(one, pose, other)
+    off[YAW_RATE] = np.sin(off[YAW_RATE])  # ±π is the same heading
+    np.testing.assert_allclose(off, 0.0, atol=1e-9)
+    root, rotations = decode(pose, one)
+    quick = posed(pose, one)
+    np.testing.assert_allclose(quick.root, root, atol=1e-9)
+    np.testing.assert_allclose(quick.rotations, rotations, atol=1e-9)
+
+
+def test_one_input_is_seen_as_many_are(world):
+    networks = learn(world[2], batches=5, hidden=(16, 32))
+    inputs, _ = draw(world[2], np.arange(7))
+    np.testing.assert_allclose([networks.predict(one) for one in inputs], networks.predict(inputs), atol=1e-4)
 
 
 @given(GROUNDS, st.integers(0, 99))

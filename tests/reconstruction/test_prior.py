@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from controllers.reconstruction.chart import SKELETON, WIDTH
 from controllers.reconstruction.controls import parse
 from controllers.reconstruction.beliefs import Gaussian, fuse
-from controllers.reconstruction.prior import FORMS, PAPER, Regression, fit, regress, weights
+from controllers.reconstruction.prior import FORMS, PAPER, Regression, believe, fit, regress, weights
 from controllers.reconstruction.solver import Solver
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -59,6 +59,19 @@ def test_dual_equals_primal(seed, count, width):
     query, X, Y, _ = neighbourhood(seed, count, width)
     dual, primal = (fit(query, X, Y, how=Regression(form=form)) for form in ("dual", "primal"))
     assert np.allclose(dual.mean, primal.mean, atol=1e-9) and np.allclose(dual.residuals, primal.residuals, atol=1e-7)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 30), st.integers(30, 60), st.sampled_from(["knn", "paper"]),
+       st.floats(1e-3, 1.0))
+@settings(max_examples=30, deadline=None)
+def test_what_is_compiled_is_the_plain_form(seed, count, width, bandwidth, ridge):
+    rng = np.random.default_rng(seed)
+    X, Y, query = rng.normal(size=(count, width)), rng.normal(size=(count, WIDTH)), rng.normal(size=width)
+    distances = np.linalg.norm(X - query, axis=1) / 4.0
+    how = Regression(bandwidth, ridge, loosening=10.0)
+    quick, plain = regress(query, X, Y, distances, how), believe(fit(query, X, Y, distances, how), how)
+    np.testing.assert_allclose(quick.mean, plain.mean, atol=1e-9)
+    np.testing.assert_allclose(quick.variance, plain.variance, rtol=1e-9)
 
 
 def test_the_papers_projection_is_weighted_least_squares():
