@@ -152,13 +152,11 @@ def result_of(t: Trial, made: Plan) -> dict[str, float]:
     # where it landed
     sole = contact_height(jump.skeleton)
     flat = Motion.of(jump, made, [end])
-    corners = sole_corners(jump.skeleton, flat.positions, flat.orientations)[0].reshape(2, 6, 3)
     heading = float(t.state.ground[2])
-    if np.isfinite(made.through):  # heels may be up already: the balls tell where the feet were set
-        balls = flat.positions[0, [jump.skeleton.index("LeftToe"), jump.skeleton.index("RightToe")]]
-        out["miss cm"] = 100.0 * np.linalg.norm(balls - made.feet[:, :3], axis=1).max()
-    else:  # heels and tips
-        out["miss cm"] = 100.0 * np.linalg.norm(corners[:, [0, 1, 4, 5]].mean((0, 1)) - t.leap.place)
+    # as soon as the soles are flat, or as it stands
+    flat_at = Motion.of(jump, made, [down + 0.1, end])
+    middles = sole_corners(jump.skeleton, flat_at.positions, flat_at.orientations).reshape(2, 2, 6, 3)[:, :, [0, 1, 4, 5]].mean((1, 2))
+    out["miss cm"] = 100.0 * np.linalg.norm(middles[:1 if np.isfinite(made.through) else 2] - t.leap.place, axis=1).max()
     turns, tilts = [], []
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         foot = flat.orientations[0, jump.skeleton.index(side + "Foot")]
@@ -188,11 +186,13 @@ def result_of(t: Trial, made: Plan) -> dict[str, float]:
     # balance while it stands, before take-off
     grounded = Motion.of(jump, made, np.arange(0.0, off - 1e-9, 1 / FINE))
     low = sole_corners(jump.skeleton, grounded.positions, grounded.orientations)
-    least = np.inf
+    inside = []
     for place, centre in zip(low, grounded.centre):
         on = place[:, 1] < float(t.state.floor) + 0.02 * size
-        least = min(least, float(margin(hull(place[on][:, [0, 2]]), centre[[0, 2]])))
-    out["margin cm"] = 0.0 if t.running else 100.0 * least
+        inside.append(100.0 * float(margin(hull(place[on][:, [0, 2]]), centre[[0, 2]])))
+    out["margin cm"] = 0.0 if t.running else min(inside)
+    out["wind-up margin cm"] = 0.0 if t.running else min(inside[:int(0.7 * made.push_off * FINE)])
+    out |= ground(t, made)
     # feet
     out |= feet(t, made, seen, sole)
     # joints
@@ -212,20 +212,62 @@ def result_of(t: Trial, made: Plan) -> dict[str, float]:
 def flight(jump: Jump, air: Motion) -> dict[str, float]:
     """Energy of the centre of mass and angular momentum about it, over a flight of even steps."""
     h = air.times[1] - air.times[0]
-    anatomy, g = jump.physique.anatomy, -jump.gravity[1]
+    g = -jump.gravity[1]
     # central differences: exact for a parabola
     velocity = (air.centre[2:] - air.centre[:-2]) / (2.0 * h)
     energy = 0.5 * (velocity**2).sum(-1) + g * (air.centre[1:-1, 1] - air.centre[0, 1])
-    places = segment_centres(anatomy, air.positions, air.orientations) - air.centre[:, None]
-    turned = air.orientations[:, anatomy.joints]
-    mid, rate = 0.5 * (places[1:] + places[:-1]), np.diff(places, axis=0) / h
-    spin = log(turned[1:] @ np.swapaxes(turned[:-1], -1, -2)) / h
+    momentum = angular(jump, air)
+    drift = np.linalg.norm(momentum - momentum[0], axis=-1).max()
+    return {"energy drift": np.abs(energy - energy[0]).max() / abs(energy[0]),
+            "momentum drift": drift / max(np.linalg.norm(momentum[0]), 1e-9)}
+
+
+def angular(jump: Jump, seen: Motion) -> np.ndarray:
+    """The angular momentum (N − 1, 3) [kg m²/s] about the centre of mass between N moments."""
+    anatomy, step = jump.physique.anatomy, np.diff(seen.times)[:, None, None]
+    places = segment_centres(anatomy, seen.positions, seen.orientations) - seen.centre[:, None]
+    turned = seen.orientations[:, anatomy.joints]
+    mid, rate = 0.5 * (places[1:] + places[:-1]), np.diff(places, axis=0) / step
+    spin = log(turned[1:] @ np.swapaxes(turned[:-1], -1, -2)) / step
     middle = 0.5 * (turned[1:] + turned[:-1])
     own = np.einsum("tsij,sjk,tslk,tsl->tsi", middle, anatomy.inertias, middle, spin)
-    angular = (anatomy.masses[:, None] * np.cross(mid, rate) + own).sum(1)
-    drift = np.linalg.norm(angular - angular[0], axis=-1).max()
-    return {"energy drift": np.abs(energy - energy[0]).max() / abs(energy[0]),
-            "momentum drift": drift / max(np.linalg.norm(angular[0]), 1e-9), "momentum": np.linalg.norm(angular[0])}
+    return (anatomy.masses[:, None] * np.cross(mid, rate) + own).sum(1)
+
+
+def ground(t: Trial, made: Plan) -> dict[str, float]:
+    """Which force F = m (c̈ − g) the ground gives by the poses, and from where, before take-off and after touch-down.
+
+    The centre of pressure is told twice: of the centre of mass alone, and with the moment that turning limbs take. Where
+    hardly anything stands (a third of the weight) it is not.
+    """
+    jump, out = t.jump, {"pull %": 0.0, "friction": 0.0}
+    mass, g = jump.physique.mass, -float(jump.gravity[1])
+    for part, first, last, floor in (("push", 0.0, made.take_off, float(t.state.floor)),
+                                     ("landing", made.touch_down, min(made.through, made.duration), float(t.leap.place[1]))):
+        seen = Motion.of(jump, made, made.times[(made.times >= first - 1e-9) & (made.times <= last + 1e-9)])
+        before, after = (step[:, None] for step in (np.diff(seen.times)[:-1], np.diff(seen.times)[1:]))
+        c = seen.centre
+        bent = 2.0 * (after * c[:-2] - (before + after) * c[1:-1] + before * c[2:]) / (before * after * (before + after))
+        force = mass * (bent - jump.gravity)
+        out["pull %"] = max(out["pull %"], -100.0 * force[:, 1].min() / (mass * g))
+        held = force[:, 1] > 0.33 * mass * g
+        c, force = c[1:-1][held], force[held]
+        out["friction"] = max(out["friction"], float((np.linalg.norm(force[:, [0, 2]], axis=1) / force[:, 1]).max(initial=0.0)))
+        moment = (np.diff(angular(jump, seen), axis=0) / (0.5 * (before + after)))[held]
+        pressed = (c - force / force[:, 1:2] * (c[:, 1:2] - floor))[:, [0, 2]]
+        turned = pressed + np.stack([moment[:, 2], -moment[:, 0]], 1) / force[:, 1:2]
+        corners = sole_corners(jump.skeleton, seen.positions, seen.orientations)[1:-1][held]
+        far = []
+        for place, alone, whole in zip(corners, pressed, turned):
+            on = place[place[:, 1] < floor + 0.03 * jump.physique.size]
+            if len(on) > 2:
+                shape = hull(on[:, [0, 2]])
+                far.append([-100.0 * float(margin(shape, alone)), -100.0 * float(margin(shape, whole))])
+        if far:
+            far = np.array(far)
+            out[f"{part} off soles cm"] = far[:, 0].max()
+            out[f"{part} with limbs cm"] = np.percentile(far[:, 1], 75)
+    return {f"{part} {kind} cm": 0.0 for part in ("push", "landing") for kind in ("off soles", "with limbs")} | out
 
 
 def feet(t: Trial, made: Plan, seen: Motion, sole: float) -> dict[str, float]:

@@ -87,15 +87,21 @@ def report_targets(trials: int, rng: np.random.Generator, locomotion: Locomotion
     print(f"  not finite: {len(failed)}")
     wanted = {"miss cm": 2.0, "turn deg": 3.0, "tilt deg": 3.0, "speed at the end": 0.05, "take-off before %": 1.0, "take-off flown %": 1.0,
               "off the parabola mm": None, "energy drift": 1e-6, "momentum drift": 1e-6, "drift said cm": 0.2,
-              "drift seen cm": 0.2, "depth before cm": 0.3, "depth after cm": 0.3, "beyond limits deg": 0.0,
+              "drift seen cm": 0.2, "pull %": 0.0, "friction": 1.0, "push off soles cm": 5.0, "push with limbs cm": None,
+              "landing off soles cm": 5.0, "landing with limbs cm": None, "depth before cm": 0.3, "depth after cm": 0.3, "beyond limits deg": 0.0,
               "frames beyond %": None, "UpLeg rad/s": 17.0, "Leg rad/s": 17.0, "Foot rad/s": 17.0}
     print("  figure                      median       99 %      worst     within wanted   worst in")
     for name, limit in wanted.items():
         rows(name, results, limit)
+    for way in ("standing", "running"):
+        some = [r for r in results if r["running"] == (way == "running")]
+        print(f"  {way}: the push comes from within 5 cm of the soles in {100.0 * np.mean([r['push off soles cm'] <= 5.0 for r in some] or [0]):.1f} %, "
+              f"a quarter of it from {np.median([r['push with limbs cm'] for r in some] or [0]):.0f} cm and more beside them once limbs that turn count (median)")
     standing = [r for r in results if not r["running"]]
-    values = np.array([r["margin cm"] for r in standing])
-    print(f"  standing: balance margin until take-off: least {values.min():.2f} cm ({standing[int(values.argmin())]['kind']}), "
-          f"1 % {np.percentile(values, 1):.2f} cm, above 0 in {100.0 * (values > 0.0).mean():.1f} %")
+    for name, told in (("wind-up margin cm", "until it begins to fall ahead"), ("margin cm", "until take-off")):
+        values = np.array([r[name] for r in standing])
+        print(f"  standing: centre of mass inside the soles {told}: least {values.min():.2f} cm ({standing[int(values.argmin())]['kind']}), "
+              f"median {np.median(values):.2f} cm, above 0 in {100.0 * (values > 0.0).mean():.1f} %")
     print("  joints beyond their limits: " + (", ".join(f"{name} {count}" for name, count in Counter(
         r["joint beyond"] for r in results if r["joint beyond"]).most_common()) or "none"))
     print(f"Time: planning p50 {1e3 * np.median(spent):.1f} ms, p99 {1e3 * np.percentile(spent, 99):.1f} ms; "

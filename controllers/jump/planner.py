@@ -18,6 +18,7 @@ from .flight import flight_kernel
 from .path import FOOT_FADE, HEEL_UP, Path, Start, landing_feet, measures
 from .plan import Plan
 from .poise import DEEP
+from .take_off import MEETS
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
@@ -116,15 +117,20 @@ class _Draft(Airborne):
     def _wind_up(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Place, velocity and acceleration (N, 3) of the centre of mass until the lowest point.
 
-        A runner's is a quartic: how the ground meets the foot is left open. A standing body goes down by a quintic, later
-        where `Path.dip` says so, and along the floor as an inverted pendulum whose foot is the centre of pressure.
+        A runner goes down by a quartic: how hard the ground meets the foot is left open. A standing body does by a quintic,
+        later where `Path.dip` says so, and falls along the floor as an inverted pendulum whose foot is the centre of pressure.
         """
         way, start = self.way, self.start
         pushed = way.push.force(0.0) + self.gravity
         if way.running:
-            return joined(start.centre, start.velocity, None, way.low, way.passing, pushed, times)
+            down, along = (joined(start.centre, start.velocity, begins, way.low, way.passing, pushed, times)
+                           for begins in (None, np.zeros(3)))
+            for part, flat in zip(down, along):
+                part[:, [0, 2]] = flat[:, [0, 2]]
+            return down
         half = np.linspace(0.0, times[-1], 2 * len(times) - 1)
         late = np.maximum(half - max(self.off - way.dip, 0.0), 0.0)
+        pushed[1] = min(pushed[1], -MEETS * self.gravity[1])
         sinking = start.velocity if way.dip >= self.off else 0.0 * start.velocity
         c, v, a = joined(start.centre, sinking, np.zeros(3), way.low, way.passing, pushed, late)
         floor = self.planted[0, 1] - self.body.sole

@@ -20,7 +20,7 @@ RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
 SLIP = 1.0
 """Soles slip on the floor under a force that leans farther: their friction."""
-ASIDE = 0.45
+ASIDE = 0.5
 """The force of a runner's push passes by the middle of the foot at most so far [m], at standard height: the foot is half
 of that, limbs that turn account for the rest."""
 STOPS = 6.0, 0.5

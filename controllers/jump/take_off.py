@@ -34,6 +34,12 @@ SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
 STILL = 0.05
 """A body that rises or sinks slower stands [m/s]."""
+DROPS, RISES = 7.2, 18.0
+"""A quintic that sinks by d asks for less than gravity if it takes √(DROPS d / g) at least, and does not rise at first if it
+takes √(RISES d / a) at most, where it ends with an acceleration a upward."""
+MEETS = 2.5
+"""With such an acceleration, over gravity, a standing body comes to its lowest point at most, where the push may begin with
+more: a quintic that ends with nearly three times it asks the floor to pull before."""
 STRIDE = 1.022
 """How much higher a body leaves off one foot, whose heel is higher, than off two."""
 SLACK = 0.03
@@ -97,7 +103,9 @@ class Standing:
         facing = yaw(start.heading)[:, 2]
         toes = self.balls + TOES * size * facing
         early, late = level * duration / low_height, level * duration / (leave[1] - self.floor)
-        quick = 0.34 + 0.9 * math.sqrt(max(start.centre[1] - self.floor - low_height, 0.0) / max(g, 3.0))
+        sinks = max(float(start.centre[1]) - self.floor - low_height, 0.0)
+        least = math.sqrt(DROPS * sinks / g)  # nobody is pulled down
+        quick = max(0.34 + 0.9 * math.sqrt(sinks / max(g, 3.0)), least)
 
         def fall(wind_up: float) -> _Fall:
             return self._fall(wind_up, duration, early, late, toes, land, flight)
@@ -116,10 +124,10 @@ class Standing:
         height = self.heights.leave(forward, aside)
         leave = self.balls * FLAT + lead + [0.0, self.floor + height, 0.0]
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
-        # longer, and it would rise first
-        sinks = start.centre[1] - low[1]
-        dip = math.sqrt(18.0 * max(sinks, 0.0) / max(level - g, 1e-6)) if abs(start.velocity[1]) < STILL else math.inf
-        return TakeOff(low, leave, passing, wind_up, max(dip, 0.5 * wind_up), leaning(forward, height), strong)
+        dip = math.inf
+        if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
+            dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
+        return TakeOff(low, leave, passing, wind_up, dip, leaning(forward, height), strong)
 
     def _fall(self, wind_up: float, duration: float, early: float, late: float, toes: np.ndarray, land: np.ndarray,
               flight: float) -> _Fall:
