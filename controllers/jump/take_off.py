@@ -32,6 +32,9 @@ YIELDS = 0.04
 """How long a runner's foot gives before it pushes, at least [s]."""
 SHORTEST_PUSH = 0.08
 """No foot pushes a runner off in less [s]."""
+HURRY, SLOW = 0.8, 0.25
+"""Who walks falls ahead already and winds up in so much less time, for each m/s; who is slower than the second [m/s] may take
+longer."""
 STILL = 0.05
 """A body that rises or sinks slower stands [m/s]."""
 DROPS, RISES = 7.2, 18.0
@@ -105,7 +108,8 @@ class Standing:
         early, late = level * duration / low_height, level * duration / (leave[1] - self.floor)
         sinks = max(float(start.centre[1]) - self.floor - low_height, 0.0)
         least = math.sqrt(DROPS * sinks / g)  # nobody is pulled down
-        quick = max(0.34 + 0.9 * math.sqrt(sinks / max(g, 3.0)), least)
+        pace = float(np.linalg.norm(start.velocity * FLAT))
+        quick = max((0.34 + 0.9 * math.sqrt(sinks / max(g, 3.0))) / (1.0 + HURRY * pace), least)
 
         def fall(wind_up: float) -> _Fall:
             return self._fall(wind_up, duration, early, late, toes, land, flight)
@@ -114,7 +118,7 @@ class Standing:
             """How much farther [m] than the soles go the body would have to press."""
             return float(np.linalg.norm((fall(wind_up).pressed - self.middle) * FLAT)) - self.reach
         wind_up = quick
-        if short(quick) > 0.0:
+        if pace < SLOW and short(quick) > 0.0:
             longest = MOST * max(math.sqrt(9.81 / g), 1.0) * quick
             wind_up = longest if short(longest) > 0.0 else float(brentq(short, quick, longest, xtol=0.01))
         low, ahead, passing, _ = fall(wind_up)
