@@ -172,8 +172,10 @@ def _height(physique: Physique, angles, pitch: float, share: float, feet: np.nda
     for _ in range(40):
         stand_kernel(body, centre, free.copy(), 1.0, root, local, positions, turned)
         line = positions[body.hip] - ankles
-        wanted = np.sqrt(np.maximum((share * leg) ** 2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0))
-        centre[1] += (wanted - line[:, 1]).min()
+        short = (np.sqrt(np.maximum((share * leg) ** 2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min()
+        centre[1] += short
+        if abs(short) < 1e-7:
+            break
     return float(centre[1])
 
 

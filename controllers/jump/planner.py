@@ -10,15 +10,14 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from ..body.rotations import yaw
-from ..compiled import kernel
 from . import style
 from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel, hermite
+from .descent import descent
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .path import FOOT_FADE, HEEL_UP, Path, Start, landing_feet, measures
 from .plan import Plan
 from .poise import DEEP
-from .take_off import MEETS
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
@@ -87,7 +86,7 @@ class _Draft(Airborne):
         way, start = self.way, self.start
         before = np.linspace(0.0, self.off, max(int(np.ceil(self.off * GROUND_RATE)), 3) + 1)
         pushing = np.linspace(0.0, way.push.duration, max(int(np.ceil(PUSH_RATE * way.push.duration)), 8) + 1)[1:]
-        c, v, a = self._wind_up(before)
+        c, v, a = descent(way, start, self.planted[0, 1] - self.body.sole, before)
         gone, speed = way.push.moved(pushing, way.passing)
         self.times = np.concatenate([before, self.off + pushing])
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
@@ -113,32 +112,6 @@ class _Draft(Airborne):
             swing = 1 - start.single
             self.feet[:, swing, 5] = FREE
             self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
-
-    def _wind_up(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Place, velocity and acceleration (N, 3) of the centre of mass until the lowest point.
-
-        A runner goes down by a quartic: how hard the ground meets the foot is left open. A standing body does by a quintic,
-        later where `Path.dip` says so, and falls along the floor as an inverted pendulum whose foot is the centre of pressure.
-        """
-        way, start = self.way, self.start
-        pushed = way.push.force(0.0) + self.gravity
-        if way.running:
-            down, along = (joined(start.centre, start.velocity, begins, way.low, way.passing, pushed, times)
-                           for begins in (None, np.zeros(3)))
-            for part, flat in zip(down, along):
-                part[:, [0, 2]] = flat[:, [0, 2]]
-            return down
-        half = np.linspace(0.0, times[-1], 2 * len(times) - 1)
-        late = np.maximum(half - max(self.off - way.dip, 0.0), 0.0)
-        pushed[1] = min(pushed[1], -MEETS * self.gravity[1])
-        sinking = start.velocity if way.dip >= self.off else 0.0 * start.velocity
-        c, v, a = joined(start.centre, sinking, np.zeros(3), way.low, way.passing, pushed, late)
-        floor = self.planted[0, 1] - self.body.sole
-        fallen = fallen_kernel(half, (a[:, 1] + 1e-9 - self.gravity[1]) / (c[:, 1] - floor), start.centre[[0, 2]], start.velocity[[0, 2]],
-                               way.low[[0, 2]], way.passing[[0, 2]], way.stance[[0, 2]])
-        c, v, a = c[::2], v[::2], a[::2]
-        c[:, [0, 2]], v[:, [0, 2]], a[:, [0, 2]] = fallen
-        return c, v, a
 
     def _heels_rise(self, share: np.ndarray) -> float:
         """When in the push (0 … 1) the heels rise: not before a standing jumper is over the balls of the feet."""
@@ -233,58 +206,3 @@ class _Draft(Airborne):
         slopes = PchipInterpolator(keys, values).derivative()(keys)
         slopes[0], slopes[3] = (last - before) / step, bending
         return turns(hermite(keys, values, slopes, times))
-
-
-def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
-    """Place, velocity, acceleration (N, 3) along the quintic with these ends at times[0] = 0 and times[-1], or, without a
-    first acceleration, the quartic."""
-    t = times[-1]
-    powers = np.arange(3, 6) if acceleration is not None else np.arange(2, 5)
-    begins = np.zeros(3) if acceleration is None else acceleration
-    ends = np.stack([t**powers, powers * t ** (powers - 1.0), powers * (powers - 1.0) * t ** (powers - 2.0)])
-    c = np.linalg.solve(ends, np.stack([
-        end - start - velocity * t - 0.5 * begins * t**2, end_velocity - velocity - begins * t, end_acceleration - begins]))
-    s = times[:, None]
-    return (start + velocity * s + 0.5 * begins * s**2 + s**powers @ c,
-            velocity + begins * s + (powers * s ** (powers - 1.0)) @ c,
-            begins + (powers * (powers - 1.0) * s ** (powers - 2.0)) @ c)
-
-
-@kernel
-def fallen_kernel(times, rates, start, velocity, end, end_velocity, pressed):
-    """Along the floor (N, 2) place, velocity and acceleration of a body that falls as an inverted pendulum.
-
-    ẍ = rates (x − p): times, rates: (2 N − 1,) [s], [1/s²], evenly spaced. The centre of pressure p goes from under `start`
-    to `pressed` (2,); two bumps on its way, one early and one late, are chosen so that x ends at `end` with `end_velocity` (2,).
-    """
-    count, step = (len(times) + 1) // 2, times[2] - times[0]
-    place, speed = np.empty((count, 4)), np.empty((count, 4))  # x, z without bumps; what each bump adds
-    foot = np.zeros((len(times), 4))
-    for n in range(len(times)):
-        s = times[n] / times[-1]
-        for k in range(2):
-            foot[n, k] = start[k] + (pressed[k] - start[k]) * s
-        foot[n, 2], foot[n, 3] = (1.0 - s) * (1.0 - (1.0 - s) ** 6), s * (1.0 - s**6)
-    place[0, :2], speed[0, :2] = start, velocity
-    place[0, 2:], speed[0, 2:] = 0.0, 0.0
-    for n in range(count - 1):  # Runge's and Kutta's method
-        i = 2 * n
-        for k in range(4):
-            x, v = place[n, k], speed[n, k]
-            a1 = rates[i] * (x - foot[i, k])
-            v2, a2 = v + 0.5 * step * a1, rates[i + 1] * (x + 0.5 * step * v - foot[i + 1, k])
-            v3, a3 = v + 0.5 * step * a2, rates[i + 1] * (x + 0.5 * step * v2 - foot[i + 1, k])
-            v4, a4 = v + step * a3, rates[i + 2] * (x + step * v3 - foot[i + 2, k])
-            place[n + 1, k] = x + step * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
-            speed[n + 1, k] = v + step * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
-    found = np.empty((3, count, 2))
-    determinant = place[-1, 2] * speed[-1, 3] - place[-1, 3] * speed[-1, 2]
-    for k in range(2):
-        far, fast = end[k] - place[-1, k], end_velocity[k] - speed[-1, k]
-        early = (far * speed[-1, 3] - fast * place[-1, 3]) / determinant
-        late = (fast * place[-1, 2] - far * speed[-1, 2]) / determinant
-        for n in range(count):
-            found[0, n, k] = place[n, k] + early * place[n, 2] + late * place[n, 3]
-            found[1, n, k] = speed[n, k] + early * speed[n, 2] + late * speed[n, 3]
-            found[2, n, k] = rates[2 * n] * (found[0, n, k] - foot[2 * n, k] - early * foot[2 * n, 2] - late * foot[2 * n, 3])
-    return found

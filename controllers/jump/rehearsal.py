@@ -7,6 +7,7 @@ import numpy as np
 from ..body import Pose
 from ..contract import CharacterState, Intent, Leap
 from .controller import Jump
+from .path import measures
 
 
 def rehearse(jump: Jump) -> None:
@@ -16,6 +17,7 @@ def rehearse(jump: Jump) -> None:
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
     intent = Intent(leap=Leap(np.array([0.0, 0.0, 0.5])))
     jump.step(jump.enter(state, intent), intent, 1.0 / 60.0)
+    measures(jump.physique, low_arms=True)  # found once a body
 
 
 if __name__ == "__main__":
