@@ -10,7 +10,7 @@ from ..body.ik import pole_of, two_bone_turns
 
 GIVE = 0.01
 """So deep [m] a foot may stay in the floor: the lift begins with no slope, so that nothing pops."""
-FORWARD = 20.0
+FORWARD = 100.0
 """How many times as far as the foot goes up its knee is taken to lie forward of where it is."""
 
 
