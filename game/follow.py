@@ -7,7 +7,8 @@ does is the performer's motion, so that every joint of it can be compared.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from controllers.body import Pose
 from controllers.body.human import STATURE
 from controllers.contract import CharacterState, Intent
+from controllers.navigation import floor_at
 from controllers.reconstruction.chart import JOINTS, SKELETON
 from controllers.reconstruction.controller import Reconstruction
 from controllers.reconstruction.controls import Controls
@@ -107,6 +109,19 @@ def errors(follows: Follows, found: tuple[np.ndarray, np.ndarray], truth: np.nda
     apart = np.linalg.norm(found[0][JOINTS] - shifted[JOINTS], axis=-1)
     worst = int(np.argmax(apart))
     return np.array([float(position_error(found[0][None], shifted[None])[0]), apart[worst], float(JOINTS[worst]), residual])
+
+
+def carried(follows: Follows, state: CharacterState, truth: np.ndarray, around: Sequence[Any]) -> CharacterState:
+    """A follower's state on the floor that its performer stands over, which may have changed.
+
+    That is the lower one of those below the ankles: a foot that is not over a box yet is not in it. While the follower
+    walks by itself it stays on its own floor. truth: (J, 3) [m] of the performer. around: props.
+    """
+    if getattr(state.memory, "active", "") != "reconstruction":
+        return state
+    ankles = truth[[SKELETON.index("LeftFoot"), SKELETON.index("RightFoot")]]
+    floor = min(floor_at(x, z, around, y) for x, y, z in ankles)
+    return replace(state, floor=floor + float(follows.beside[1]))
 
 
 def lately(told: np.ndarray) -> Errors | None:

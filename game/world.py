@@ -19,7 +19,7 @@ from controllers.contract import CharacterState, Intent
 from controllers.navigation import drift
 from controllers.reconstruction.controller import towards
 
-from .follow import KEPT, Follows, errors
+from .follow import KEPT, Follows, carried, errors
 from .scene import TINT, Figure, Prop
 from .sway import Sway, centre_of
 
@@ -84,13 +84,14 @@ class Character:
 
     def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
         """One step on of a follower, whose performer has made that step."""
-        seen, truth = intent.points, None
+        old, seen, truth = self, intent.points, None
         if performer is not None:
             there = performer.joints
             seen, truth = self.follows.seen(*there, number / RATE), there[0]
+            old = replace(self, state=carried(self.follows, self.state, truth, intent.around))
         if seen is None:
             return self.step(intent, number)
-        made = self.step(replace(intent, velocity=towards(self.state, seen), points=seen), number)
+        made = old.step(replace(intent, velocity=towards(self.state, seen), points=seen), number)
         told = errors(self.follows, made.joints, truth, seen)
         return replace(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
 

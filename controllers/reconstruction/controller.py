@@ -62,7 +62,9 @@ class Following:
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). pose, before: the newest
     frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
-    and joints until it has settled. lost: [s] since a point was followed. fault: what went wrong.
+    and joints until it has settled. level: how high [m] height 0 lies in the world, the floor where it began; points
+    are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
+    point was followed. fault: what went wrong.
     """
 
     memory: Any
@@ -73,6 +75,7 @@ class Following:
     ahead: float
     offset: np.ndarray
     rate: np.ndarray
+    level: float = 0.0
     lost: float = 0.0
     fault: str = ""
 
@@ -111,17 +114,18 @@ class Reconstruction:
         """The state with the body about to follow. Unable, with the reason, if the points are none of this body's."""
         if isinstance(state.memory, Following):
             return state
-        seen = self._seen(state, intent)
-        pose = self._shrunk(state.pose, state.floor)
+        level = float(state.floor)
+        seen = self._seen(intent, level)
+        pose = self._shrunk(state.pose, level)
         away = self._possible(seen, self._points(pose))
-        past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, state.floor)
+        past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, level)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
         alike = away <= ANEW or self.starts is None
         frames, tracks = guessed_past(pose, past, state.elapsed, self.dt) if alike else self.starts.find(seen)
         begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen)
         # what the body would do next by itself is where the fading begins
         offset = difference(moved(pose, rate * self.dt), begun.pose)
-        return replace(state, memory=replace(begun, ahead=self.dt, offset=offset))
+        return replace(state, memory=replace(begun, ahead=self.dt, offset=offset, level=level))
 
     def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0) -> CharacterState:
         """A body out of nothing, in a pose that has these points (n, 3) [m], which move at velocities (n, 3) [m/s].
@@ -129,14 +133,14 @@ class Reconstruction:
         Both NaN where not known. Unable if no point is seen, or none of this body's; it needs `starts`.
         """
         nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
-        seen = self._seen(nobody, Intent(points=points))
+        seen = self._seen(Intent(points=points), floor)
         self._possible(seen, seen)
         frames, tracks = self.starts.find(seen, None if velocities is None else velocities / self.factor)
         following = self._begun(frames, tracks, seen)
         pose = self._grown(following.pose, floor)
         ground = np.array([pose.root[0], pose.root[2], tracks[-1, 2]])
-        state, _ = self.step(replace(nobody, ground=ground, pose=pose, memory=replace(following, ahead=self.dt)),
-                             Intent(points=points), self.dt)
+        following = replace(following, ahead=self.dt, level=float(floor))
+        state, _ = self.step(replace(nobody, ground=ground, pose=pose, memory=following), Intent(points=points), self.dt)
         return state
 
     def _begun(self, frames: np.ndarray, tracks: np.ndarray, seen: np.ndarray, late: float = 0.0) -> Following:
@@ -150,7 +154,8 @@ class Reconstruction:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
 
         The method makes a frame each of its own steps; in between, poses are interpolated. Another number of points
-        than it follows ends it: the body coasts for this step, and `status` says why. No foot is deep in the floor.
+        than it follows ends it: the body coasts for this step, and `status` says why. No foot is deep in the floor,
+        and contacts are with it; `state.floor` may be set to another from step to step.
         """
         if not 0.0 < dt <= 0.1:
             raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
@@ -158,7 +163,7 @@ class Reconstruction:
             raise ValueError("this state's memory is not of a reconstruction: enter it first")
         following = state.memory
         try:
-            seen = self._seen(state, intent)
+            seen = self._seen(intent, following.level)
         except Unable as reason:  # the body coasts, and the next step is somebody else's
             seen, following = np.full((len(self.controls), 3), np.nan), replace(following, fault=str(reason))
         due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
@@ -178,7 +183,8 @@ class Reconstruction:
         if following.ahead > 0.0:
             shown = moved(shown, difference(following.before, shown) * (following.ahead / self.dt))
         shown = moved(shown, offset)
-        pose = self._grown(above(SKELETON, shown, *joints_of(shown), 0.0), state.floor)
+        floor = (float(state.floor) - following.level) / self.factor
+        pose = self._grown(above(SKELETON, shown, *joints_of(shown), floor), following.level)
         return self._after(state, pose, following, dt), pose
 
     def status(self, state: CharacterState) -> Status:
@@ -225,15 +231,15 @@ class Reconstruction:
         return replace(state, ground=np.array([middle[0], middle[2], heading]), pose=pose, contacts=stands,
                        velocity=damp(np.asarray(state.velocity, float), now, _SMOOTH, dt), memory=following)
 
-    def _seen(self, state: CharacterState, intent: Intent) -> np.ndarray:
-        """The points that are wanted (n, 3) as of a standard body on the floor. Unable for another number of them."""
+    def _seen(self, intent: Intent, level: float) -> np.ndarray:
+        """The points that are wanted (n, 3) as of a standard body on a floor there. Unable for another number of them."""
         count = len(self.controls)
         if intent.points is None:
             return np.full((count, 3), np.nan)
         points = np.asarray(intent.points, float)
         if points.shape != (count, 3):
             raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
-        return (points - [0.0, float(state.floor), 0.0]) / self.factor
+        return (points - [0.0, level, 0.0]) / self.factor
 
     def _possible(self, seen: np.ndarray, body: np.ndarray) -> float:
         """How far they are from the body's on the average [m]. Unable unless these points can be of this body."""
@@ -252,12 +258,11 @@ class Reconstruction:
         """Where (n, 3) [m] a standard body has the points."""
         return self.controls.on(*joints_of(pose))
 
-    def _shrunk(self, pose: Pose, floor: float) -> Pose:
-        return Pose((np.asarray(pose.root, float) - [0.0, float(floor), 0.0]) / self.factor,
-                    np.asarray(pose.rotations, float))
+    def _shrunk(self, pose: Pose, level: float) -> Pose:
+        return Pose((np.asarray(pose.root, float) - [0.0, level, 0.0]) / self.factor, np.asarray(pose.rotations, float))
 
-    def _grown(self, pose: Pose, floor: float) -> Pose:
-        return Pose(pose.root * self.factor + [0.0, float(floor), 0.0], pose.rotations)
+    def _grown(self, pose: Pose, level: float) -> Pose:
+        return Pose(pose.root * self.factor + [0.0, level, 0.0], pose.rotations)
 
 
 def towards(state: CharacterState, points: np.ndarray) -> np.ndarray:

@@ -10,6 +10,8 @@ from ..body.ik import pole_of, two_bone_turns
 
 GIVE = 0.01
 """So deep [m] a foot may stay in the floor: the lift begins with no slope, so that nothing pops."""
+FORWARD = 100.0
+"""How many times as far as the foot goes up its knee is taken to lie forward of where it is."""
 
 
 def lift(depth: np.ndarray) -> np.ndarray:
@@ -33,8 +35,9 @@ def above(skeleton: Skeleton, pose: Pose, positions: np.ndarray, orientations: n
         if by > 0.0:
             hip, knee, ankle = (skeleton.index(side + name) for name in ("UpLeg", "Leg", "Foot"))
             leg = positions[hip], positions[knee], positions[ankle]
-            # where the knee is now, so that nothing turns at the least lift; a straight leg's goes forward
-            pole = pole_of(*leg) + 1e-6 * orientations[knee][:, 2]
+            # where the knee is now, so that nothing turns at the least lift; then forward, for a leg that is straight
+            # has its knee by chance a hair before or behind the line, and behind it would bend backwards
+            pole = pole_of(*leg) + FORWARD * by * orientations[knee][:, 2]
             upper, lower = two_bone_turns(*leg, positions[ankle] + [0.0, by, 0.0], pole)
             thigh, shank = upper @ orientations[hip], lower @ orientations[knee]
             rotations[hip] = orientations[skeleton.parents[hip]].T @ thigh

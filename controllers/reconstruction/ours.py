@@ -6,7 +6,8 @@ So the newest error, known from the body's own output, is expected again (an aut
 solver corrects that by what the points say, and the correction in turn is kept.
 
 The local regression of the paper has a small say beside them: it knows how limbs turn that no point tells of, but
-running on its own output it strays.
+running on its own output it strays. While a point is lost its say is larger: networks were never shown such points, and
+believe whatever is put in their place; neighbours say what a limb does that nothing is seen of.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from .filters import Motion, noise
 from .frame_kernel import seen_kernel
 from .learning import LAGS, WORLD, Networks, learn, placed, seen_from, view
 from .baselines.windows import Samples
-from .method import SPAN, Fused, Local, LocalRegression, Memory, Method, posed
+from .method import SPAN, Fused, Local, LocalRegression, Memory, Method, Prior, posed
 from .moments import Moments
 from .neighbours_cells import Cells
 from .prior import FLOOR, Regression
@@ -54,6 +55,13 @@ LISTENED = Regression("paper", ridge=0.1, loosening=1e4)
 """How the local regression is learnt, and how little it is believed: ten times more, and the body strays with it."""
 NEAR = 1.5
 """Neighbours that are farther away than this, in the features' units, are hardly believed: they move in another way."""
+HEARD = replace(LISTENED, loosening=1e3)
+"""How it is believed while a point is lost."""
+NEARER = 4.0
+"""As `NEAR` while a point is lost: neighbours far away are a better guess than none."""
+TOLD = 0.5
+"""A lost point is shown to the networks so far from where the body has it to where the others tell that it is. With less
+a body on its own output would run away, with more it would not follow what neighbours say."""
 ACCELERATION = 10.0
 """How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
 ROUGH = 0.003
@@ -98,7 +106,8 @@ class Expectation:
         """See `method.Prior`."""
         points = np.concatenate([seen[None], memory.points])[LAGS]
         known = np.concatenate([np.isfinite(goals).all(-1)[None], memory.known])[LAGS]
-        inputs, ground = view(self.moments.complete(points, known, memory.track[2]), memory.track[2])
+        points += TOLD * (self.moments.complete(points, known, memory.track[2]) - points)
+        inputs, ground = view(points, memory.track[2])
         pose, off, lasting = self.networks.predict(inputs).astype(float), np.zeros(WIDTH), np.zeros(WIDTH)
         if memory.hint is not None:
             last: Expected = memory.hint
@@ -120,6 +129,18 @@ class Expectation:
         errors = self.networks.errors.copy()
         errors[:, YAW_RATE:] /= self.dt
         return LOOSENING * FLOOR ** 2, np.sqrt(LOOSENING) * errors
+
+
+@dataclass(frozen=True, eq=False)
+class Torn:
+    """A prior of two: `whole` believes where all points are seen, `torn` where one is lost. Both have the same hint."""
+
+    whole: Prior
+    torn: Prior
+
+    def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
+        """See `method.Prior`."""
+        return (self.whole if np.isfinite(goals).all() else self.torn).believe(memory, seen, goals)
 
 
 def _seen_from(ground, pose, other):
@@ -202,8 +223,9 @@ def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETO
     networks = kept("networks", database, points, make, Networks.save, Networks.load, _SOURCES)
     moments = kept("moments", database, points, lambda: Moments.of(Samples.of(database, plain)), Moments.save,
                    Moments.load, (*_SOURCES, "moments.py"))
-    prior = Fused((Expectation(networks, moments, 1 / database.fps),
-                   Local(LocalRegression(LISTENED, NEAR), cells(database, controls), NEIGHBOURS)))
+    search = cells(database, controls)
+    whole, torn = (Local(LocalRegression(how, reach), search, NEIGHBOURS) for how, reach in ((LISTENED, NEAR), (HEARD, NEARER)))
+    prior = Fused((Expectation(networks, moments, 1 / database.fps), Torn(whole, torn)))
     return Ours(Method(prior, replace(plain, skeleton=skeleton)), steady)
 
 

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from controllers.body import Pose, forward_kinematics, human
 from controllers.body.contact import contact_height, contact_points
+from controllers.body.ik import pole_of
 from controllers.body.rotations import exp
 from controllers.reconstruction.feet import GIVE, above, lift
 
@@ -37,6 +38,26 @@ def test_feet_come_up_and_the_rest_stays(seed, sunk, floor, height):
     feet = legs[1::3]
     np.testing.assert_allclose(after[1][feet], before[1][feet], atol=1e-9)
     np.testing.assert_allclose(after[0][feet][:, [0, 2]], before[0][feet][:, [0, 2]], atol=1e-6)
+
+
+@pytest.mark.parametrize("sunk", [0.003, 0.01, 0.05])
+def test_a_straight_knee_bends_forward_and_never_flips(sunk):
+    """From bent to overstretched by three degrees, a thousandth of a radian each: no jump, and forward once it is lifted at all."""
+    skeleton, knees = human(), []
+    shin = skeleton.index("LeftLeg")
+    for bend in np.arange(0.3, -0.05, -0.001):
+        turns = np.zeros((len(skeleton.names), 3))
+        turns[shin, 0] = bend
+        turns[skeleton.index("LeftFoot"), 0] = -bend
+        pose = Pose(np.array([0.0, skeleton.offsets[0, 1] - sunk, 0.0]), exp(turns))
+        joints = forward_kinematics(skeleton, pose.root, pose.rotations)
+        lifted = above(skeleton, pose, *joints, 0.0)
+        positions, _ = forward_kinematics(skeleton, lifted.root, lifted.rotations)
+        knees.append(positions[shin])
+        if bend < 0.0 and sunk >= GIVE:
+            hip, ankle = positions[[skeleton.index("LeftUpLeg"), skeleton.index("LeftFoot")]]
+            assert pole_of(hip, positions[shin], ankle)[2] > 0.0
+    assert np.linalg.norm(np.diff(knees, axis=0), axis=-1).max() < 0.01
 
 
 def test_who_stands_on_the_floor_is_left_alone():

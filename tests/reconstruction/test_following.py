@@ -1,6 +1,7 @@
 """A body that follows points: taken over and handed back without a pop, whatever is lost, as a pure function."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,7 +22,8 @@ from controllers.reconstruction.feet import GIVE
 from controllers.reconstruction.metrics import position_error
 from controllers.reconstruction.starts import Starts
 from controllers.scaled import Scaled
-from controllers.supervisor import Supervisor
+from controllers.supervisor import Duty, Supervisor
+from game.follow import Follows, carried
 
 DT = 1 / 60
 
@@ -270,6 +272,59 @@ def test_a_body_of_another_size_on_another_floor_does_the_same(known, follower, 
         assert np.allclose(one.pose.rotations, two.pose.rotations, atol=1e-3)
         assert np.allclose(one.pose.root * factor + [0.0, 0.3, 0.0], two.pose.root, atol=1e-3)
     assert np.mean([np.array_equal(a.contacts, b.contacts) for a, b in zip(plain, sized)]) > 0.9
+
+
+class Climbing:
+    """A method that knows how far up (T, 3) [m] the points have come since it began, and how a body moves on the flat."""
+
+    def __init__(self, method, climb):
+        self.method, self.climb = method, climb
+
+    def begin(self, frames, tracks):
+        return self.method.begin(frames, tracks), 1
+
+    def step(self, memory, points):
+        inner, pose = self.method.step(memory[0], points - self.climb[memory[1]])
+        return (inner, memory[1] + 1), Pose(pose.root + self.climb[memory[1]], pose.rotations)
+
+
+def test_contacts_follow_a_platform_and_points_do_not(follower, clip, points):
+    """The points climb 0.3 m, and then the floor is said to be there: contacts and errors are those of the flat."""
+    climb = 0.3 * np.clip((np.arange(len(points)) - 60) / 60, 0.0, 1.0)[:, None] * [0.0, 1.0, 0.0]
+    up = points + climb[:, None]
+    climber = Reconstruction(Climbing(follower.method, climb), follower.controls, starts=follower.starts)
+
+    def on(floors):
+        state, states = climber.begin(points[0]), []
+        for now, floor in zip(up[1:], floors):
+            state, _ = climber.step(replace(state, floor=floor), Intent(points=now), DT)
+            states.append(state)
+        return states
+    top = np.where(np.arange(1, len(points)) < 120, 0.0, 0.3)
+    told, flat, never = on(top), played(follower, follower.begin(points[0]), points[1:]), on(0.0 * top)
+    after, truth = slice(130, None), clip.kinematics()[0][1:]
+    assert np.mean([np.array_equal(a.contacts, b.contacts) for a, b in zip(told[after], flat[after])]) > 0.97
+    assert not any(state.contacts.any() for state in never[after])
+    off, level = (position_error(bodies(SKELETON, states), where) for states, where in
+                  ((told, truth + climb[1:, None]), (flat, truth)))
+    assert np.abs(off - level).max() < 0.002
+    again = climber.enter(replace(told[-1], memory=None), Intent(points=up[-1]))
+    assert again.memory.level == 0.3, "begun there, points are told from there"
+
+
+def test_the_floor_below_the_performer_carries_the_follower():
+    """Both ankles have to be over a box; beside and above the performer it is as much higher; a walker keeps its own."""
+    follows = Follows("ours", parse("4", SKELETON), "performer", np.array([2.0, 0.1, 0.0]))
+    box = SimpleNamespace(centre=np.array([0.0, 0.25, 2.0]), size=np.array([1.0, 0.5, 1.0]), heading=0.0)
+    state = replace(Locomotion.load().start(), floor=0.7)
+
+    def floor(z, ankle, stride=0.0, duty="reconstruction"):
+        truth = np.zeros((len(SKELETON), 3))
+        truth[SKELETON.index("LeftFoot")], truth[SKELETON.index("RightFoot")] = (0.1, ankle, z), (-0.1, ankle, z + stride)
+        return carried(follows, replace(state, memory=Duty(duty, None, "")), truth, [box]).floor
+    assert floor(0.0, 0.08) == pytest.approx(0.1) and floor(2.0, 0.58) == pytest.approx(0.6)
+    assert floor(2.0, 0.45) == floor(2.3, 0.58, stride=0.4) == floor(1.3, 0.9, stride=0.4) == pytest.approx(0.1)
+    assert floor(2.0, 0.58, duty="locomotion") == 0.7
 
 
 def test_a_method_that_comes_to_no_pose_is_a_failure_and_not_a_broken_body(follower, points):

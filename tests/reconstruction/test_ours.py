@@ -15,9 +15,12 @@ from controllers.reconstruction.chart import FORWARD, HEIGHT, JOINTS, LEFTWARD, 
 from controllers.reconstruction.controls import parse
 from controllers.reconstruction.database import Database, DatabaseError, Writer
 from controllers.reconstruction.learning import LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view
-from controllers.reconstruction.method import Fused, SPAN, Method, posed
+from controllers.reconstruction.method import Fused, Local, LocalRegression, SPAN, Method, posed
 from controllers.reconstruction.moments import Moments
-from controllers.reconstruction.ours import KEPT, LASTING, FADING, Expectation, Ours, cells, ours
+from controllers.reconstruction.neighbours_cells import Cells
+from controllers.reconstruction.ours import (
+    FADING, HEARD, KEPT, LASTING, LISTENED, NEAR, NEARER, Expectation, Ours, Torn, cells, ours)
+from controllers.reconstruction.segments import Segments
 from controllers.reconstruction.solver import Solver
 
 DT = 1 / 60
@@ -221,6 +224,50 @@ def test_a_body_goes_on_without_points_and_does_not_run_away(method, performance
     points[SPAN + 5:SPAN + 35, lost] = np.nan
     away = metrics.position_error(run(method, performance, points), performance[2][SPAN:len(points)])
     assert away.max() < 0.5 and away[-1] < 0.05
+
+
+@pytest.fixture(scope="module")
+def listening(world, method):
+    """Makes ours with neighbours: another expectation of it, and two of the regressions, while all is seen and while not."""
+    database, solver, _ = world
+    search = Cells(Segments.of(database, 3, 4, solver.controls.joints))
+    usual, heard = (Local(LocalRegression(how, reach), search, 60) for how, reach in ((LISTENED, NEAR), (HEARD, NEARER)))
+
+    def make(whole=usual, torn=heard, moments=None):
+        expectation = method.method.prior.priors[0]
+        expectation = replace(expectation, moments=moments or expectation.moments)
+        return replace(method, method=replace(method.method, prior=Fused((expectation, Torn(whole, torn)))))
+    return make, usual
+
+
+def test_what_is_done_about_lost_points_changes_nothing_while_all_are_seen(listening, method, performance):
+    """To the bit: then nobody asks for the moments, nor for what neighbours say of lost limbs."""
+    class Never:
+        def believe(self, memory, seen, goals):
+            raise AssertionError("asked")
+    make, usual = listening
+    nothing = Moments(np.full(72, np.nan), np.full((72, 72), np.nan))
+    plain = replace(method, method=replace(method.method, prior=Fused((method.method.prior.priors[0], usual))))
+    found, points = run(plain, performance, performance[3]), performance[3].copy()
+    assert np.array_equal(run(make(torn=Never(), moments=nothing), performance, points), found)
+    points[60, 1] = np.nan
+    with pytest.raises(AssertionError, match="asked"):
+        run(make(torn=Never()), performance, points)
+
+
+def test_neighbours_tell_where_a_lost_limb_is(listening, performance):
+    """Each point in turn is lost for half a second: a quarter less far off, or better, than were they hardly heard."""
+    make, usual = listening
+
+    def off(method):
+        away = []
+        for lost in range(4):
+            points = performance[3].copy()
+            points[SPAN + 20:SPAN + 50, lost] = np.nan
+            away.append(metrics.position_error(run(method, performance, points), performance[2][SPAN:])[20:50].mean())
+        return np.mean(away)
+    heard, hardly = off(make()), off(make(torn=usual))
+    assert heard < 0.75 * hardly, (heard, hardly)
 
 
 def test_few_known_frames_are_enough(method, performance):
