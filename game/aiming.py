@@ -12,7 +12,8 @@ from controllers.contract import CharacterState, Intent, Leap
 from controllers.jump import Jump, Physique
 from controllers.jump.ballistics import along
 from controllers.jump.controller import FRESH, RUNNING
-from controllers.jump.path import Path, Start
+from controllers.jump.path import Path
+from controllers.jump.stance import Start
 from controllers.jump.plan import Plan
 from controllers.jump.reach import Refused
 from controllers.navigation import floor_at

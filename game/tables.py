@@ -13,7 +13,7 @@ from controllers.body.human import STATURE
 from controllers.contract import Intent
 from controllers.jump import Jump as JumpController
 from controllers.jump import Physique
-from controllers.jump.path import airtime_up
+from controllers.jump.stance import airtime_up
 from controllers.navigation import floor_at
 from controllers.reconstruction.chart import SKELETON
 from controllers.reconstruction.controls import parse
@@ -85,7 +85,7 @@ class MoveTable(Table):
         elif self.jump_to is not None:
             x, z = self.jump_to[0], self.jump_to[-1]
             y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
-            leap = Jump((x, y, z), self.airtime, self.within)
+            leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]))
             points = (*points, (x, z)) if points else ()
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),

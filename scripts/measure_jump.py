@@ -33,7 +33,7 @@ from controllers.body.support import sole_corners  # noqa: E402
 from controllers.contract import Intent, Leap  # noqa: E402
 from controllers.jump.controller import Jump  # noqa: E402
 from controllers.jump.dynamics import Physique  # noqa: E402
-from controllers.jump.path import airtime_up  # noqa: E402
+from controllers.jump.stance import airtime_up  # noqa: E402
 from controllers.jump.reach import Refused  # noqa: E402
 from controllers.locomotion import Locomotion  # noqa: E402
 from controllers.locomotion.cycles import joint_acceleration  # noqa: E402

@@ -21,7 +21,7 @@ from controllers.jump.ballistics import along, least_effort, take_off_velocity
 from controllers.jump.dynamics import Physique
 from controllers.jump.extension import extend, shoot
 from controllers.jump.muscles import STIFFNESS, WIDTH, Muscle, spring_bend, spring_force
-from controllers.jump.path import measures
+from controllers.jump.stance import measures
 from controllers.jump.sampling import sample
 from controllers.jump.thrust import push
 from controllers.jump.windup import GAINS, Crouch, crouch, crouch_depth, strength, strongest

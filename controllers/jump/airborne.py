@@ -11,9 +11,10 @@ from ..compiled import kernel
 from . import style
 from .dynamics import Physique, turns, vectors
 from .landing import TIME, absorb
-from .path import TOES_DOWN, Path, Start, measures, soles
+from .path import Path
 from .poise import FLEX
 from .posture import stand_kernel
+from .stance import TOES_DOWN, Start, measures, soles
 
 GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""

@@ -16,10 +16,11 @@ from ..navigation import floor_at, gap
 from .ballistics import along
 from .dynamics import GRAVITY, Physique
 from .fall import fall, struck
-from .path import Path, Start, landing_feet, path, soles
+from .path import Path, path
 from .plan import Plan
 from .planner import plan
 from .reach import HANDS, Refused, fault
+from .stance import FLAT, Start, landing_feet, soles
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -158,7 +159,7 @@ class Jump:
     def middle(self, start: Start, floor: float) -> np.ndarray:
         """The middle (3,) of both soles as they come to stand on a floor [m]: where a jump straight up lands."""
         body = self.physique.tables
-        return soles(start.planted(floor, body), body).mean(0) * [1.0, 0.0, 1.0] + [0.0, floor, 0.0]
+        return soles(start.planted(floor, body), body).mean(0) * FLAT + [0.0, floor, 0.0]
 
     def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, low_arms: bool = False) -> Path:
         """The path estimate alone: the arc to draw while aiming."""
@@ -250,7 +251,7 @@ class Jump:
             return bool(low.any())
         if start.single is None:
             return False
-        towards = start.velocity * [1.0, 0.0, 1.0] / np.hypot(start.velocity[0], start.velocity[2])
+        towards = start.velocity * FLAT / np.hypot(start.velocity[0], start.velocity[2])
         return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
 
     def _single(self, state: CharacterState, feet: np.ndarray) -> int | None:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import kernel
-from .path import Path, Start
+from .path import Path
+from .stance import Start
 from .take_off import MEETS
 
 

@@ -18,8 +18,9 @@ from . import style
 from .airborne import LOWEST, SAME, Airborne, hermite
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
-from .path import Path, Start, landing_feet, measures, softened
+from .path import Path, softened
 from .plan import Plan
+from .stance import FLAT, TRAIL, Start, landing_feet, measures
 
 BOUNCE, FRICTION = 0.05, 0.4
 """How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
@@ -33,8 +34,6 @@ REACHES = 0.30
 """So long after the hit the legs are where they land [s]."""
 ASIDE = ((0.25, 0.17), (1.15, 0.36))
 """What stands or hangs at a height over the feet [m] is so far from them [m] when they come down."""
-TRAIL = (0.16, 0.30)
-"""How far ahead of a body its feet come down, for each m/s [s], and at most [m]."""
 ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 
@@ -95,7 +94,7 @@ def fall(physique: Physique, start: Start, hit: Hit, around: Sequence[Any], grav
 def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: Sequence[Any],
           gravity: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """When [s] and where (3,) a falling centre of mass is as the feet touch the floor, and their place (3,) there."""
-    flat, g, touch = velocity * [1.0, 0.0, 1.0], -float(gravity[1]), measures(physique).touch(0.0)
+    flat, g, touch = velocity * FLAT, -float(gravity[1]), measures(physique).touch(0.0)
     pace, size = float(np.linalg.norm(flat)), physique.size
     ahead = flat / max(pace, 1e-9) * min(TRAIL[0] * pace, TRAIL[1] * size)
 
@@ -107,7 +106,7 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: 
         for thing in around:
             for height, aside in ASIDE:
                 near = gap(foot := np.array([[place[0], floor + height * size, place[2]]]), thing)[0]
-                place = place + max(aside * size - near, 0.0) * _out(foot[0], thing) * [1.0, 0.0, 1.0]
+                place = place + max(aside * size - near, 0.0) * _out(foot[0], thing) * FLAT
         floor = floor_at(place[0], place[2], around, centre[1] - LOW * touch)
         soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), size)
         time = max(until(floor + touch - soft), min(LEAST, until(floor + LOW * touch)), 0.03)

@@ -15,9 +15,10 @@ from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, gr
 from .descent import descent
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
-from .path import FOOT_FADE, HEEL_UP, Path, Start, landing_feet, measures
+from .path import Path
 from .plan import Plan
 from .poise import DEEP
+from .stance import FOOT_FADE, HEEL_UP, Start, landing_feet, measures
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""

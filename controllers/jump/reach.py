@@ -12,8 +12,8 @@ from ..navigation import gap
 from . import style
 from .ballistics import along
 from .dynamics import Physique, turns
-from .path import Path, measures
-from .take_off import FLAT
+from .path import Path
+from .stance import FLAT, measures
 from .windup import strongest
 
 RUNNER = 4.2

@@ -7,7 +7,7 @@ import numpy as np
 from ..body import Pose
 from ..contract import CharacterState, Intent, Leap
 from .controller import Jump
-from .path import measures
+from .stance import measures
 
 
 def rehearse(jump: Jump) -> None:

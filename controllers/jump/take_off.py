@@ -10,24 +10,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from ..body.rotations import yaw
 from .dynamics import Physique
+from .stance import FLAT, Measures, Start, leaning, over
 from .thrust import MOMENTS, risen, upward
 from .windup import crouch_depth, strength
 
-if TYPE_CHECKING:
-    from .path import Measures, Start
-
-FLAT = np.array([1.0, 0.0, 1.0])
 TOES = 0.03
 """At take-off the ground pushes so far ahead of the balls of the feet [m], at standard height."""
-MOST_LEAD = 0.60
-"""How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
 YIELDS = 0.04
 """How long a runner's foot gives before it pushes, at least [s]."""
 SHORTEST_PUSH = 0.08
@@ -49,8 +44,6 @@ SLACK = 0.03
 """So much higher a runner may leave, on a straighter leg [m], at standard height."""
 STRIKE = -0.5
 """How a runner's centre of mass is accelerated as the foot has struck, over gravity: half its weight is carried."""
-LEANS, BACK, FORTH = 0.7, -0.15, 0.45
-"""How much of the angle from the feet to the centre of mass the trunk leans with at take-off; how far back and forth at most [rad]."""
 LEAST_CROUCH = 0.07
 """A body crouches at least so deep [m], at standard height."""
 MOST = 2.0
@@ -227,13 +220,3 @@ class Running:
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""
         return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0))
-
-
-def leaning(lead: float, height: float) -> float:
-    """How far [rad] a body leans forward that leaves the floor so far ahead of its feet [m], at a height [m]."""
-    return min(max(LEANS * math.atan2(lead, height), BACK), FORTH)
-
-
-def over(height: float, aside: float) -> float:
-    """How high a centre of mass stands that leans `aside` from where it would stand `height` [m] high."""
-    return float(np.sqrt(max(height**2 - aside**2, 0.25 * height**2)))

@@ -29,12 +29,14 @@ AHEAD = 0.85, 0.5
 class Jump:
     """A jump to `place`, x, y, z [m]; None: straight up. airtime: [s], None for the least effort.
 
-    within: a runner jumps no farther from it than this [m]; None: as its speed suggests.
+    within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
+    take than on Earth, √(9.81 / g).
     """
 
     place: tuple[float, float, float] | None = None
     airtime: float | None = None
     within: float | None = None
+    slow: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,7 @@ class Script:
         far = float(np.hypot(*way))
         if move.runs:
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
-            ready = far <= (AHEAD[0] + AHEAD[1] * speed if jump.within is None else jump.within)
+            ready = far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
         elif far > NEAR:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)

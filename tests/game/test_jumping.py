@@ -248,7 +248,7 @@ def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(played
     assert [scene.part for scene in scenes] == [pytest.approx((n / 6, 0.0, 1 / 6, 1.0)) for n in range(6)]
     heights = [scene.figures[0].positions[:, 1].max() for scene in scenes]
     assert max(heights) > heights[0] + 0.1
-    assert heights[-1] == pytest.approx(heights[0] + 0.3, abs=0.08)  # up again, on the platform
+    assert heights[-1] == pytest.approx(heights[0] + 0.3, abs=0.1)  # up again, on the platform
     for scene in scenes:
         sight = scene.camera.target - scene.camera.eye
         assert abs(sight[2]) < 0.01 * abs(sight[0]) and np.linalg.norm(sight) > 3

@@ -11,8 +11,8 @@ from controllers.body import end_positions, forward_kinematics
 from controllers.contract import Intent, Leap
 from controllers.jump.controller import Jump, Jumping
 from controllers.jump.dynamics import Physique
-from controllers.jump.path import soles
 from controllers.jump.reach import Refused
+from controllers.jump.stance import soles
 from controllers.navigation import gap
 from controllers.supervisor import Supervisor
 from game.scene import Box, Goal, Pillar

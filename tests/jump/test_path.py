@@ -9,7 +9,7 @@ from controllers.body.support import hull, margin
 from controllers.jump.ballistics import along
 from controllers.jump.controller import Jump
 from controllers.jump.dynamics import Physique
-from controllers.jump.path import landing_feet, measures, soles
+from controllers.jump.stance import landing_feet, measures, soles
 
 law = settings(max_examples=60, deadline=None)
 

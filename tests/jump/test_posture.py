@@ -8,7 +8,7 @@ from controllers.body import forward_kinematics
 from controllers.body.anatomy import centre_of_mass
 from controllers.jump import style
 from controllers.jump.dynamics import Physique
-from controllers.jump.path import landing_feet, measures
+from controllers.jump.stance import landing_feet, measures
 from controllers.jump.poise import FLEX
 from controllers.jump.posture import STRAIGHT, stand_kernel
 
