@@ -28,13 +28,14 @@ from compare_jump import AFTER, curves, begins, recorded  # noqa: E402
 from jump_trials import FINE, FPS, Motion, possible, result_of, starts, trial  # noqa: E402
 
 from controllers.body import forward_kinematics  # noqa: E402
+from controllers.body.anatomy import segment_centres  # noqa: E402
 from controllers.body.rotations import log  # noqa: E402
 from controllers.body.support import sole_corners  # noqa: E402
 from controllers.contract import Intent, Leap  # noqa: E402
 from controllers.jump.controller import Jump  # noqa: E402
 from controllers.jump.dynamics import Physique  # noqa: E402
-from controllers.jump.stance import airtime_up  # noqa: E402
 from controllers.jump.reach import Refused  # noqa: E402
+from controllers.jump.stance import airtime_up, measures  # noqa: E402
 from controllers.locomotion import Locomotion  # noqa: E402
 from controllers.locomotion.cycles import joint_acceleration  # noqa: E402
 from controllers.supervisor import Supervisor  # noqa: E402
@@ -173,6 +174,28 @@ def report_counter_movement(locomotion: Locomotion) -> None:
               f"take-off {made.take_off:.2f} s; lowest: knee {knee:.0f}°, hip {hip:.0f}°, ankle {ankle:.0f}°")
 
 
+def report_arms(locomotion: Locomotion) -> None:
+    """What swinging arms do to the centre of mass of an adult: its place about the shoulders, times the arms' share of the
+    mass, over the push of a jump of 0.35 m and at take-off; and what the same arc takes with the arms down."""
+    jump = Jump()
+    anatomy, skeleton = jump.physique.anatomy, jump.skeleton
+    state = replace(locomotion.step(locomotion.start(), Intent(), 1 / FPS)[0], elapsed=0.0)
+    made = jump.plan(state, Intent(leap=Leap(None, airtime_up(jump.physique, 0.35, jump.gravity))))
+    seen = Motion.of(jump, made, made.times[made.times <= made.take_off + 1e-9])
+    places = segment_centres(anatomy, seen.positions, seen.orientations)
+    height = np.zeros(len(places))
+    for side in ("Left", "Right"):
+        arm = [n for n, joint in enumerate(anatomy.joints) if skeleton.names[joint] in (side + "Arm", side + "ForeArm", side + "Hand")]
+        shoulder = seen.positions[:, skeleton.index(side + "Arm"), 1]
+        height += ((places[:, arm, 1] - shoulder[:, None]) * anatomy.masses[arm]).sum(1) / anatomy.masses.sum()
+    speed = np.gradient(height, seen.times)
+    push = seen.times >= made.push_off
+    free, low = (measures(jump.physique, low_arms=down).leave(0.0) for down in (False, True))
+    print(f"Arms, in a jump of 0.35 m: they raise the centre of mass by {100.0 * (height[-1] - height[push][0]):.1f} cm over the push, by "
+          f"{speed[push].max():.2f} m/s at the fastest and {speed[-1]:.2f} m/s at take-off, of {made.path.velocity[1]:.2f}; with them down "
+          f"it leaves the floor {100.0 * (free - low):.1f} cm lower")
+
+
 def uniform(values: np.ndarray, width: int = 5) -> np.ndarray:
     """Over 20 ms, as a force plate is read: second differences of interpolated poses are spiky."""
     return np.convolve(values, np.full(width, 1.0 / width), "valid")
@@ -262,6 +285,7 @@ def main() -> None:
         parser.error("--targets must be 1 or more")
     rng, locomotion = np.random.default_rng(given.seed), Locomotion.load()
     report_counter_movement(locomotion)
+    report_arms(locomotion)
     report_refusals(locomotion)
     report_targets(100 if given.quick else given.targets, rng, locomotion)
     report_hand_over(locomotion, 6 if given.quick else 30, rng)
