@@ -3,6 +3,7 @@
 import sys
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 from pathlib import Path, PurePosixPath
 
 import numpy as np
@@ -270,7 +271,7 @@ def script(monkeypatch, tmp_path):
     monkeypatch.setattr(rivals, "TRIES", 2)
     for name in set(rivals.RIVALS) - {"LPCR"}:
         monkeypatch.delitem(rivals.RIVALS, name)
-    mended = rivals.Rival(rivals._mended, settings={"ridge": 0.1, "loosening": 100.0})
+    mended = rivals.Rival(partial(rivals.rival, "mousas"), settings={"ridge": 0.1, "loosening": 100.0})
     monkeypatch.setitem(rivals.RIVALS, "ours", mended)
     return script
 
