@@ -74,7 +74,8 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         capture = (land - goal) @ ahead + pace * np.sqrt((goal[1] - support[0, 1]) / gravity) * CATCH
         passes = bool(capture > ((support - goal) @ ahead).max())
     # soles don't slip: a spring of rate r brakes with 2 r v at first
-    rate, sink = (min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD), max(fall / (np.e * (0.08 + 0.07 * fall)), SLOWEST)
+    rate = min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
+    sink = max(fall / (np.e * (0.08 + 0.07 * fall)), SLOWEST)
     while sink < STIFFEST and _lowest(land[1] - goal[1], velocity[1], sink) < -DEEPEST * (goal[1] - support[0, 1]):
         sink *= 1.1
     while sink > 1.0 and _lightest(land[1] - goal[1], velocity[1], sink) < (LEAST_WEIGHT - 1.0) * gravity:

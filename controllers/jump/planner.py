@@ -55,7 +55,7 @@ class _Draft(Airborne):
         deep = (measures(physique).stand + planted[0, 1] - physique.tables.sole - way.low[1]) / (DEEP * physique.size)
         super().__init__(
             physique, start, way, landing, leave,
-            [0.0, self.off, leave, leave + min(style.AFTER, 0.2 * way.airtime), leave + 0.45 * way.airtime],
+            [0.0, self.off, *(leave + style.flying(way.airtime)[:3])],
             style.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms),
             min(max(style.SWING - way.push.duration, 0.0), 0.3 * self.off))
 

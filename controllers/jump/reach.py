@@ -116,7 +116,7 @@ def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray,
     """Where the head's middle (N, 3) and fingers, wrists and elbows (6, N, 3) are from the centre of mass, as it is carried."""
     skeleton = physique.skeleton
     keys = style.shapes(0.0, 1.0, way.lean, way.fold, way.running, way.low_arms)[2:6]
-    angles = style.keyed(np.array([0.0, min(style.AFTER, 0.2 * way.airtime), 0.45 * way.airtime, way.airtime]), keys)(time)
+    angles = style.keyed(style.flying(way.airtime), keys)(time)
     local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
     for one, posed in zip(angles, local):
         style.carry_kernel(one, style.joints_of(skeleton), posed)

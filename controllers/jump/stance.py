@@ -1,5 +1,4 @@
-"""How a jumper stands: from where a jump starts, how high its centre of mass is over its feet, and where the feet are.
-"""
+"""How a jumper stands: from where a jump starts, how high its centre of mass is over its feet, and where the feet are."""
 
 from __future__ import annotations
 
@@ -19,6 +18,7 @@ from .poise import HALF_STANCE, STAND_REACH
 from .posture import stand_kernel
 
 FLAT = np.array([1.0, 0.0, 1.0])
+"""What is left of a vector along the floor."""
 HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
 TAKE_OFF_REACH, TOUCH_REACH = 0.955, 0.93

@@ -79,6 +79,11 @@ def shapes(crouch: float, absorbing: float, lean: float = 0.0, fold: float = 0.0
     return np.array([STAND, STAND + crouch * (CROUCH - STAND), *flight, _absorbed(absorbing), STAND])
 
 
+def flying(airtime: float) -> np.ndarray:
+    """When (4,) [s] in a flight its keys are due: take-off, a little after it, the middle, touch-down."""
+    return np.array([0.0, min(AFTER, 0.2 * airtime), 0.45 * airtime, airtime])
+
+
 def falling(absorbing: float) -> np.ndarray:
     """The keys (4, 6) of a body that was struck: from the hit to touch-down, lowest point, standing."""
     return np.array([FALL, FALL, _absorbed(absorbing), STAND])
