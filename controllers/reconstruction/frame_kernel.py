@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled import kernel
 from .chart import FORWARD, HEIGHT, LEFTWARD, PITCH, ROLL, YAW_RATE
-from .solver_kernel import EXACT, multiply_kernel, turn_kernel
+from .solver_kernel import EXACT, cholesky_kernel, multiply_kernel, turn_kernel
 
 @kernel(fastmath=EXACT, error_model="numpy")
 def weights_kernel(distances, relative, out):
@@ -69,17 +69,8 @@ def regress_kernel(query, X, Y, distances, relative, ridge, floor, mean, varianc
             gram[i, j] += level / total * root[i] * root[j]
         gram[i, i] += ridge
     # L Lᵀ = G, then y becomes L⁻¹y, and L its own inverse
-    for i in range(count):
-        for j in range(i + 1):
-            rest = gram[i, j]
-            for k in range(j):
-                rest -= gram[i, k] * gram[j, k]
-            if i == j:
-                if not rest > 0.0:
-                    return False
-                gram[i, i] = math.sqrt(rest)
-            else:
-                gram[i, j] = rest / gram[j, j]
+    if not cholesky_kernel(gram, count):
+        return False
     inverse = np.zeros_like(gram)
     for i in range(count):
         for j in range(i):

@@ -117,8 +117,8 @@ def points_kernel(dt, parents, first, positions, orientations, axes, joints, bes
 
 
 @kernel(fastmath=EXACT, error_model="numpy")
-def positive_solve_kernel(matrix, right, size):
-    """Solve matrix x = right in place by Cholesky, both of `size` rows. False if the matrix is not positive."""
+def cholesky_kernel(matrix, size):
+    """Write L of matrix = L Lᵀ, of `size` rows, in place of its lower half. False if the matrix is not positive."""
     for i in range(size):
         for j in range(i + 1):
             total = matrix[i, j]
@@ -130,6 +130,14 @@ def positive_solve_kernel(matrix, right, size):
                 matrix[i, i] = math.sqrt(total)
             else:
                 matrix[i, j] = total / matrix[j, j]
+    return True
+
+
+@kernel(fastmath=EXACT, error_model="numpy")
+def positive_solve_kernel(matrix, right, size):
+    """Solve matrix x = right in place by Cholesky, both of `size` rows. False if the matrix is not positive."""
+    if not cholesky_kernel(matrix, size):
+        return False
     for i in range(size):
         for k in range(i):
             right[i] -= matrix[i, k] * right[k]
