@@ -52,7 +52,7 @@ OURS, BASE = "ours", "LPCR"
 RIVALS = {
     "GPLVM": _rival(
         "gplvm", "GPLVM", ("baselines/gplvm.py",),
-        {"active": (100, 150, 200), "dimensions": (2, 3, 5), "loosening": (1.0, 10.0, 100.0), "apart": (0.5, 1.0, 2.0)}),
+        {"active": (70, 100, 150), "dimensions": (3, 5), "loosening": (0.3, 1.0, 3.0), "apart": (0.25, 0.5, 1.0)}),
     "LPCA": _rival(
         "lpca", "LPCA", ("baselines/local.py",),
         {"share": (0.95, 0.99, 0.999), "most": (7, 12, 20), "loosening": (1.0, 3.0, 10.0, 30.0), "loose": (0.5, 1.0, 2.0)}),
@@ -71,7 +71,7 @@ RIVALS = {
         {"strength": (1e-6, 1e-5, 1e-4, 1e-3), "loosening": (1.0, 10.0, 100.0)}),
     "network + IK": _rival(
         "network", "", ("baselines/regressors.py", "baselines/windows.py"),
-        {"hidden": ((256, 256), (384, 384)), "rate": (1e-3, 2e-3), "loosening": (1.0, 10.0, 100.0)}),
+        {"hidden": ((384, 384), (768, 768)), "rate": (2e-3, 4e-3), "loosening": (1.0, 10.0, 100.0)}),
     OURS: Rival(lambda database, controls: ours(database, controls), "",
                 ("ours.py", "moments.py", "learning.py", "filters.py", "method.py", "beliefs.py", "prior.py", "solver*.py",
                  "frame_kernel.py", "baselines/regressors.py")),

@@ -27,6 +27,22 @@ def exp_kernel(x, y, z, out):
 
 
 @kernel
+def product_kernel(a, b, out):
+    """Write a b of two matrices (3, 3): BLAS takes ten times as long for so few numbers. `out` is neither of them."""
+    for i in range(3):
+        for k in range(3):
+            out[i, k] = a[i, 0] * b[0, k] + a[i, 1] * b[1, k] + a[i, 2] * b[2, k]
+
+
+@kernel
+def relative_kernel(parent, child, out):
+    """Write parentᵀ child (3, 3): how a child is turned in its parent's frame. `out` is neither of them."""
+    for i in range(3):
+        for k in range(3):
+            out[i, k] = parent[0, i] * child[0, k] + parent[1, i] * child[1, k] + parent[2, i] * child[2, k]
+
+
+@kernel
 def log_kernel(matrix, out):
     """Write the rotation vector (3,) [rad], at most π long, of a rotation matrix (3, 3).
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..body.rotations import yaw
 from ..body.springs import settle
-from ..body.turning import exp_kernel
+from ..body.turning import exp_kernel, product_kernel
 from ..compiled import kernel
 from . import style
 from .dynamics import Physique, turns, vectors
@@ -143,15 +143,6 @@ def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarr
     return settle(offset, rate, halflife, times.reshape((-1,) + (1,) * np.ndim(offset)))[0]
 
 
-def hermite(times: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """The cubic Hermite curve (N, ...) through values (K, ...) with slopes (K, ...) at times (K,)."""
-    n = np.clip(np.searchsorted(times, at, "right") - 1, 0, len(times) - 2)
-    width = (times[n + 1] - times[n]).reshape((-1,) + (1,) * (values.ndim - 1))
-    s = (at - times[n]).reshape(width.shape) / width
-    return (values[n] * (1.0 + 2.0 * s) * (1.0 - s) ** 2 + slopes[n] * width * s * (1.0 - s) ** 2
-            + values[n + 1] * s**2 * (3.0 - 2.0 * s) + slopes[n + 1] * width * s**2 * (s - 1.0))
-
-
 @kernel
 def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
     """Poses over planted feet: angles (N, 6), what is left of the start (N, J, 3), the pelvis' turns
@@ -175,7 +166,7 @@ def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, roo
 def carry_on_kernel(angles, joints, offsets, local):
     """Write the local rotations (J, 3, 3) of a body carried by `angles` (6,), what is left of the start (J, 3)
     added; neither the pelvis nor, where nothing is left, joints that are not carried are touched."""
-    turn = np.empty((3, 3))
+    turn, carried = np.empty((3, 3)), np.empty((3, 3))
     for j in range(1, len(local)):  # poses are made anew, whatever an earlier round left
         if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
             exp_kernel(0.0, 0.0, 0.0, local[j])
@@ -183,4 +174,5 @@ def carry_on_kernel(angles, joints, offsets, local):
     for j in range(1, len(local)):
         if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
             exp_kernel(offsets[j, 0], offsets[j, 1], offsets[j, 2], turn)
-            local[j] = turn @ local[j]
+            carried[:] = local[j]
+            product_kernel(turn, carried, local[j])

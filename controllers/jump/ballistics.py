@@ -34,12 +34,26 @@ def least_effort(start, end, velocity=(0.0, 0.0, 0.0), gravity=GRAVITY) -> float
     from rest t⁴ = 4 d² / g². 0 if there is nowhere to go.
     """
     d, g, v = np.asarray(end, float) - start, np.asarray(gravity, float), np.asarray(velocity, float)
-    roots = np.roots([0.25 * g @ g, 0.5 * g @ v, 0.0, d @ v, -(d @ d)])
+    along_g, along_v, square = float(g @ v), float(d @ v), float(d @ d)
+    if along_g == 0.0:  # one positive root
+        return _airtime(float(g @ g), along_v, square)
+    roots = np.roots([0.25 * g @ g, 0.5 * along_g, 0.0, along_v, -square])
     real = roots[(np.abs(roots.imag) < 1e-7 * (1.0 + np.abs(roots))) & (roots.real > 1e-9)].real
     if not len(real):
         return 0.0
     effort = [np.sum((take_off_velocity(start, end, t, g) - v) ** 2) for t in real]
     return float(real[int(np.argmin(effort))])
+
+
+def _airtime(g: float, v: float, d: float) -> float:
+    """The positive root of ¼ g t⁴ + v t − d, by Newton's method from beyond it: from there on the quartic is convex."""
+    t = max((4.0 * d / g) ** 0.25, (4.0 * abs(v) / g) ** (1.0 / 3.0)) * 2.0 ** (1.0 / 3.0)
+    for _ in range(60):
+        step = (0.25 * g * t**4 + v * t - d) / (g * t**3 + v) if t > 0.0 else 0.0
+        t -= step
+        if step < 1e-12 * t:
+            break
+    return t
 
 
 def apex_airtime(start, end, height, gravity=GRAVITY) -> float:

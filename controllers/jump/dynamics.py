@@ -13,7 +13,7 @@ from ..body import Skeleton, human
 from ..body.anatomy import Anatomy, anatomy
 from ..body.contact import contact_height, heel_offset
 from ..body.human import STATURE
-from ..body.turning import exp_kernel, log_kernel
+from ..body.turning import exp_kernel, log_kernel, product_kernel
 from ..compiled import kernel
 
 GRAVITY = np.array([0.0, -9.81, 0.0])
@@ -134,20 +134,23 @@ def momentum_kernel(body, before, turned_before, after, turned_after, dt, angula
     """
     angular[:] = 0.0
     inertia[:] = 0.0
+    parts = len(body.mass)
     first, second, mean, rate = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
-    centre_kernel(body, before, turned_before, first)
-    centre_kernel(body, after, turned_after, second)
-    turn = np.empty((3, 3))
-    middle = np.empty((3, 3))
-    for s in range(len(body.mass)):
-        j, m = body.joint[s], body.mass[s]
+    turn, middle, places = np.empty((3, 3)), np.empty((3, 3)), np.empty((2, parts, 3))
+    for s in range(parts):
+        j, share = body.joint[s], body.mass[s] / body.total
         for i in range(3):
             a, b = before[j, i], after[j, i]
             for k in range(3):
                 a += turned_before[j, i, k] * body.centre[s, k]
                 b += turned_after[j, i, k] * body.centre[s, k]
-            a -= first[i]
-            b -= second[i]
+            places[0, s, i], places[1, s, i] = a, b
+            first[i] += share * a
+            second[i] += share * b
+    for s in range(parts):
+        j, m = body.joint[s], body.mass[s]
+        for i in range(3):
+            a, b = places[0, s, i] - first[i], places[1, s, i] - second[i]
             mean[i], rate[i] = 0.5 * (a + b), (b - a) / dt
         angular[0] += m * (mean[1] * rate[2] - mean[2] * rate[1])
         angular[1] += m * (mean[2] * rate[0] - mean[0] * rate[2])
@@ -163,11 +166,12 @@ def momentum_kernel(body, before, turned_before, after, turned_after, dt, angula
                     turn[i, k] += turned_after[j, i, n] * turned_before[j, k, n]
         log_kernel(turn, rate)
         # the segment's own inertia, turned into the world: R I Rᵀ
-        own = middle @ body.inertia[s] @ middle.T
+        product_kernel(middle, body.inertia[s], turn)
         for i in range(3):
             for k in range(3):
-                inertia[i, k] += own[i, k]
-                angular[i] += own[i, k] * rate[k] / dt
+                own = turn[i, 0] * middle[k, 0] + turn[i, 1] * middle[k, 1] + turn[i, 2] * middle[k, 2]
+                inertia[i, k] += own
+                angular[i] += own * rate[k] / dt
 
 
 def turns(vectors: np.ndarray) -> np.ndarray:

@@ -15,7 +15,8 @@ import numpy as np
 from ..body import Pose, Skeleton, end_positions, forward_kinematics
 from ..navigation import floor_at, gap
 from . import style
-from .airborne import LOWEST, SAME, Airborne, hermite
+from .airborne import LOWEST, SAME, Airborne
+from .curves import hermite
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
 from .path import Path, softened

@@ -23,8 +23,9 @@ LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 FOLDED = 0.64
 """How low a body touches down at most, as a share of how high it stands."""
-ROUNDS, SETTLED = 12, 1.5e-3
-"""Where a body leaves and how fast follow from each other: they are found in so many rounds at most, to so much [m]."""
+ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
+"""Where a body leaves and how fast follow from each other: they are found in so many rounds at most, to so much [m], by such
+a share at least of what the last round found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,21 +85,27 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         pushing = Running(physique, start, heights, balls, floor, gravity)
     # who jumps up lands with folded legs, and need not bring the body as high
     squat = min(SQUAT * max(float(goal[1]) - floor, 0.0), DEEPEST_SQUAT * size)
-    leave = middle * FLAT + [0.0, floor + heights.leave(0.0), 0.0]
-    trail, soft = 0.0, 0.0
+    # where it leaves, how far behind its feet and how much lower it lands
+    guess = np.array([middle[0], floor + heights.leave(0.0), middle[2], 0.0, 0.0])
+    lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     for _ in range(ROUNDS):
+        leave, trail, soft = guess[:3], guess[3], guess[4]
         height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = airtime if airtime is not None else max(
             least_effort(leave, land, pushing.before, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
             apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
         velocity = take_off_velocity(leave, land, flight, gravity)
-        trail = 0.5 * (trail + min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)))
-        soft = softened(g * flight - float(velocity[1]), size)
         found = pushing.take_off(leave, land, velocity, flight)
-        if np.abs(found.leave - leave).max() < SETTLED:
+        before, lacks = lacks, np.array([
+            *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
+            softened(g * flight - float(velocity[1]), size)]) - guess
+        if np.abs(lacks).max() < SETTLED:
             break
-        leave = 0.5 * (leave + found.leave)  # half the way: the whole one swings about
+        if before is not None:  # Aitken's relaxation
+            change = lacks - before
+            relaxed = min(max(-relaxed * (before @ change) / max(change @ change, 1e-12), LEAST_STEP), 1.0)
+        guess = guess + relaxed * lacks
     low, leave, passing, wind_up, dip, lean, strong = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body import Pose
-from ..body.turning import exp_kernel, log_kernel
+from ..body.turning import exp_kernel, log_kernel, product_kernel, relative_kernel
 from ..compiled import kernel
 from .path import Path
 
@@ -60,6 +60,7 @@ def between_kernel(root_a, root_b, a, b, part, root, local):
     for i in range(3):
         root[i] = root_a[i] + part * (root_b[i] - root_a[i])
     for j in range(len(a)):
-        log_kernel(a[j].T @ b[j], way)
+        relative_kernel(a[j], b[j], turned)
+        log_kernel(turned, way)
         exp_kernel(part * way[0], part * way[1], part * way[2], turned)
-        local[j] = a[j] @ turned
+        product_kernel(a[j], turned, local[j])

@@ -7,11 +7,11 @@ follow from where the feet are, and in the air the turning of the whole body fol
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from ..body.rotations import yaw
 from . import style
-from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel, hermite
+from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel
+from .curves import hermite, monotone
 from .descent import descent
 from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
 from .flight import flight_kernel
@@ -32,6 +32,8 @@ FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
+BEYOND = 1.7
+"""How far the legs reach beyond how a body just came down, at first: it turns about half as far back."""
 COARSE = 3
 """Until then, only every third pose is made."""
 
@@ -154,7 +156,8 @@ class _Draft(Airborne):
         spin = np.array([-1.0 / self.way.airtime, 0.0, 0.0])
         change = before = np.zeros(3)
         for _ in range(ROUNDS):
-            flown = self._flight(spin, wanted, 1e-4, COARSE)
+            self._leave(spin)
+            flown = self._flight(wanted, 1e-4, COARSE)
             miss = self._miss(wanted, flown)
             if change.any():
                 gain += np.outer(before - miss - gain @ change, change) / (change @ change)
@@ -163,16 +166,19 @@ class _Draft(Airborne):
             change, before = np.clip(np.linalg.solve(gain, miss), -5.0, 5.0), miss
             spin = spin + change
         # the legs reach for where this very body comes down, which changes a little how it turns
+        landed, beyond, off = wanted, BEYOND, None
         for _ in range(ROUNDS):
-            landed = flown[-1, 0].copy()
-            flown = self._flight(spin, landed, 1e-9)
-            if np.abs(vectors(landed.T @ flown[-1, 0])).max() < SAME:
-                break
+            before, off = off, vectors(landed.T @ flown[-1, 0])
+            if before is not None:
+                if np.abs(off).max() < SAME:
+                    break
+                beyond = float(np.clip(beyond * (before @ (before - off)) / ((before - off) @ (before - off)), 0.8, 2.5))
+            landed = landed @ turns(beyond * off)
+            flown = self._flight(landed, 1e-9)
         return spin
 
-    def _flight(self, spin: np.ndarray, landed: np.ndarray, tolerance: float, every: int = 1) -> np.ndarray:
-        """The flight after a take-off with `spin`, its legs reaching as if it came down turned `landed` (3, 3): its poses
-        (N, J, 3, 3), of `every` so many only."""
+    def _leave(self, spin: np.ndarray) -> None:
+        """Take off with a spin (3,): the last poses on the floor, and the momentum that they have."""
         self._stand(spin, len(self.times) - 3)
         step = self.times[-1] - self.times[-2]
         placed = np.empty((2, self.count, 3)), np.empty((2, self.count, 3, 3))
@@ -180,6 +186,11 @@ class _Draft(Airborne):
             place_kernel(self.body, self.roots[k - 2], self.local[k - 2], placed[0][k], placed[1][k])
         momentum_kernel(self.body, placed[0][0], placed[1][0], placed[0][1], placed[1][1], step,
                         self.momentum, np.empty((3, 3)))
+
+    def _flight(self, landed: np.ndarray, tolerance: float, every: int = 1) -> np.ndarray:
+        """The flight, its legs reaching as if it came down turned `landed` (3, 3): its poses (N, J, 3, 3), of `every` so many
+        only."""
+        step = self.times[-1] - self.times[-2]
         air, arc, roots = (np.ascontiguousarray(part[::every]) for part in (self.air, self.arc, self.air_roots))
         air[:, self.legs] = self._legs_in_flight(step, *self._touching(landed), self.flying[::every])
         air[0] = self.local[-1]
@@ -204,6 +215,6 @@ class _Draft(Airborne):
         folded[[2, 6], 0] += share * (0.25 - folded[[2, 6], 0])
         keys = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
         values = np.stack([last, straight, folded, reach])
-        slopes = PchipInterpolator(keys, values).derivative()(keys)
+        slopes = monotone(keys, values)
         slopes[0], slopes[3] = (last - before) / step, bending
         return turns(hermite(keys, values, slopes, times))

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from ..body.ik import two_bone_kernel
+from ..body.turning import relative_kernel
 from ..compiled import kernel
 from .dynamics import centre_kernel, place_kernel
 
@@ -90,23 +91,16 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
             positions[ball, i] += turned[i, k] * body.toe[k]
     # the toes stay on the floor while the heel is up
     foot_kernel(foot[3], min(foot[4], 0.0) if foot[5] > 0.0 else foot[4] - min(max(foot[4], 0.0), 0.5), orientations[ball])
-    _relative(pelvis, orientations[hip], local[hip])
-    _relative(orientations[hip], orientations[knee], local[knee])
-    _relative(orientations[knee], turned, local[ankle])
-    _relative(turned, orientations[ball], local[ball])
+    relative_kernel(pelvis, orientations[hip], local[hip])
+    relative_kernel(orientations[hip], orientations[knee], local[knee])
+    relative_kernel(orientations[knee], turned, local[ankle])
+    relative_kernel(turned, orientations[ball], local[ball])
     return gap
 
 
 @kernel
 def _apart(a, b):
     return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
-
-
-@kernel
-def _relative(parent, child, out):
-    for i in range(3):
-        for k in range(3):
-            out[i, k] = parent[0, i] * child[0, k] + parent[1, i] * child[1, k] + parent[2, i] * child[2, k]
 
 
 @kernel
@@ -132,10 +126,11 @@ def stand_kernel(body, centre, feet, flex, root, local, positions, orientations)
     local: (J, 3, 3) all but the legs given; also those whose foot is free (feet[side, 5] < 0). Returns the worst of the two ankles' gaps and of what
     the centre of mass still lacks [m].
     """
-    found, gap = np.empty(3), 0.0
+    found, lacks, before, step, gap = np.empty(3), np.empty(3), np.empty(3), np.zeros(3), 0.0
     started = feet[:, 4].copy()
+    gain = GAIN * np.eye(3)
     missing = 1.0
-    for _ in range(60):
+    for attempt in range(60):
         feet[:, 4] = started
         place_kernel(body, root, local, positions, orientations)
         gap = 0.0
@@ -147,9 +142,30 @@ def stand_kernel(body, centre, feet, flex, root, local, positions, orientations)
         if missing < 1e-9:
             break
         for i in range(3):
-            root[i] += GAIN * (centre[i] - found[i])
+            before[i], lacks[i] = lacks[i], centre[i] - found[i]
+        if attempt > 0:
+            _learn(gain, step, before, lacks)
+        for i in range(3):
+            step[i] = gain[i, 0] * lacks[0] + gain[i, 1] * lacks[1] + gain[i, 2] * lacks[2]
+            root[i] += step[i]
     place_kernel(body, root, local, positions, orientations)
     return max(gap, missing)
+
+
+@kernel
+def _learn(gain, step, before, lacks):
+    """Broyden's method: mend `gain` (3, 3), by which a `step` (3,) was taken, by what was lacking before and after it (3,)."""
+    row, moved = np.zeros(3), np.zeros(3)  # stepᵀ gain, gain (before − lacks)
+    for i in range(3):
+        for k in range(3):
+            row[k] += step[i] * gain[i, k]
+            moved[i] += gain[i, k] * (before[k] - lacks[k])
+    whole = step[0] * moved[0] + step[1] * moved[1] + step[2] * moved[2]
+    if abs(whole) < 0.1 * (step[0] ** 2 + step[1] ** 2 + step[2] ** 2):
+        return  # a kink, where a heel begins to rise: nothing to learn from
+    for i in range(3):
+        for k in range(3):
+            gain[i, k] += (step[i] - moved[i]) * row[k] / whole
 
 
 @kernel

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..body import Skeleton
 from ..body.turning import exp_kernel
 from ..compiled import kernel
+from .curves import hermite, monotone
 
 ANGLES = ("lean", "bend", "look", "swing", "spread", "elbow")
 STAND = np.radians([2.0, 2.0, 0.0, 2.0, 9.0, 14.0])
@@ -105,7 +106,7 @@ def keyed(times: np.ndarray, keys: np.ndarray, first: float = 0.0) -> Callable[[
     return lambda time: np.concatenate([trunk(time), limbs(time)], axis=-1)
 
 
-def _through(times: np.ndarray, keys: np.ndarray) -> CubicHermiteSpline:
-    slopes = PchipInterpolator(times, keys).derivative()(times)
+def _through(times: np.ndarray, keys: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    slopes = monotone(times, keys)
     slopes[[0, -1]] = 0.0
-    return CubicHermiteSpline(times, keys, slopes)
+    return partial(hermite, times, keys, slopes)

@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from ..body.rotations import yaw
+from ..compiled import kernel
 from .dynamics import Physique
 from .stance import FLAT, Measures, Start, leaning, over
 from .thrust import MOMENTS, risen, upward
@@ -82,6 +84,11 @@ class Standing:
 
     before = np.zeros(3)
 
+    @cached_property
+    def facing(self) -> np.ndarray:
+        """Where (3,) it faces."""
+        return yaw(self.start.heading)[:, 2]
+
     def take_off(self, leave: np.ndarray, land: np.ndarray, velocity: np.ndarray, flight: float) -> TakeOff:
         """The take-off from about `leave` (3,) [m] with about a velocity (3,) [m/s], to be at `land` (3,) after `flight` [s].
 
@@ -96,7 +103,7 @@ class Standing:
         deep = max(deep, LEAST_CROUCH * size) if strong else float(strength(self.physique).depth[-1])
         duration, level = upward(max(deep + rise, 0.02 * size), 0.0, float(velocity[1]), g)
         low_height, start = self.heights.stand - deep, self.start
-        facing = yaw(start.heading)[:, 2]
+        facing = self.facing
         toes = self.balls + TOES * size * facing
         early, late = level * duration / low_height, level * duration / (leave[1] - self.floor)
         sinks = max(float(start.centre[1]) - self.floor - low_height, 0.0)
@@ -104,20 +111,15 @@ class Standing:
         pace = float(np.linalg.norm(start.velocity * FLAT))
         quick = max((0.34 + 0.9 * math.sqrt(sinks / max(g, 3.0))) / (1.0 + HURRY * pace), least)
 
-        def fall(wind_up: float) -> _Fall:
-            return self._fall(wind_up, duration, early, late, toes, land, flight)
-
-        def short(wind_up: float) -> float:
-            """How much farther [m] than the soles go the body would have to press."""
-            return float(np.linalg.norm((fall(wind_up).pressed - self.middle) * FLAT)) - self.reach
-        wind_up = quick
-        if pace < SLOW and short(quick) > 0.0:
-            longest = MOST * max(math.sqrt(9.81 / g), 1.0) * quick
-            wind_up = longest if short(longest) > 0.0 else float(brentq(short, quick, longest, xtol=0.01))
-        low, ahead, passing, _ = fall(wind_up)
+        rate = math.sqrt(g / self.heights.stand)
+        fixed = (duration, early, late, rate, start.centre, start.velocity, self.middle, toes, land, flight)
+        found = np.empty((4, 3))
+        longest = quick if pace >= SLOW else MOST * max(math.sqrt(9.81 / g), 1.0) * quick
+        wind_up = waiting_kernel(quick, longest, self.reach, fixed, found)
+        low, ahead, passing, _ = found
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
-        forward, aside = float(lead @ facing), float(np.linalg.norm(np.cross(lead, facing)))
+        forward, aside = float(lead @ facing), abs(float(lead[2] * facing[0] - lead[0] * facing[2]))
         height = self.heights.leave(forward, aside)
         leave = self.balls * FLAT + lead + [0.0, self.floor + height, 0.0]
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
@@ -125,38 +127,6 @@ class Standing:
         if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
             dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
         return TakeOff(low, leave, passing, wind_up, dip, leaning(forward, height), strong)
-
-    def _fall(self, wind_up: float, duration: float, early: float, late: float, toes: np.ndarray, land: np.ndarray,
-              flight: float) -> _Fall:
-        """The fall of `wind_up` seconds that ends in a push of `duration` [s] to be at `land` (3,) after `flight` [s].
-
-        early, late: [1/s] the speed that the push gives for each metre that the body is ahead of what it presses, as it
-        begins and as it ends.
-        """
-        start, rate = self.start, math.sqrt(-float(self.gravity[1]) / self.heights.stand)
-        m0, m1, m2 = MOMENTS
-        falls = rate / math.tanh(0.5 * rate * wind_up)  # a pendulum's speed for each metre that it has fallen
-        # unknown are the lowest point and the take-off: the speed gained, then the way gone
-        a, b = falls + early * (m0 - m1), late * m1 + 1.0 / flight
-        c = 1.0 + duration * (falls + early * (m0 - 2.0 * m1 + m2))
-        d = duration * late * (m1 - m2) - 1.0
-        begun = falls * start.centre + start.velocity
-        gains = land / flight + begun + early * (m0 - m1) * self.middle + late * m1 * toes
-        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * self.middle + late * (m1 - m2) * toes)
-        low, ahead = (d * gains - b * goes) / (a * d - b * c), (a * goes - c * gains) / (a * d - b * c)
-        swing = rate * wind_up
-        fallen = (low - start.centre - start.velocity * math.sinh(swing) / rate) / (math.cosh(swing) - 1.0)
-        return _Fall(low, ahead, (falls * (low - start.centre) - start.velocity) * FLAT, start.centre - fallen)
-
-
-class _Fall(NamedTuple):
-    """Where (3,) [m] a body that falls ahead is lowest and where it leaves, with which velocity (3,) [m/s] it is lowest, and
-    where it presses until then. Heights are not told."""
-
-    low: np.ndarray
-    ahead: np.ndarray
-    passing: np.ndarray
-    pressed: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,3 +190,58 @@ class Running:
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""
         return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0))
+
+
+@kernel
+def waiting_kernel(quick, longest, reach, fixed, found):
+    """How long [s] a body falls ahead before it pushes: `quick`, or longer, if it would have to press farther than `reach` [m]
+    from the middle of its soles. fixed, found: as `fall_kernel` takes and writes them."""
+    middle = fixed[6]
+    if _short(quick, middle, fixed, found) <= reach or longest <= quick:
+        return quick
+    if _short(longest, middle, fixed, found) > reach:
+        return longest
+    low, high = quick, longest
+    while high - low > 1e-4:
+        wind_up = 0.5 * (low + high)
+        if _short(wind_up, middle, fixed, found) > reach:
+            low = wind_up
+        else:
+            high = wind_up
+    fall_kernel(high, fixed, found)
+    return high
+
+
+@kernel
+def _short(wind_up, middle, fixed, found):
+    """How far [m] from the middle of the soles a body presses that falls so long [s]."""
+    fall_kernel(wind_up, fixed, found)
+    return math.hypot(found[3, 0] - middle[0], found[3, 2] - middle[2])
+
+
+@kernel
+def fall_kernel(wind_up, fixed, found):
+    """The fall of `wind_up` seconds that ends in a push, to be at `land` (3,) after `flight` [s].
+
+    fixed: the push's duration [s]; early, late: [1/s] the speed that it gives for each metre that the body is ahead of what it
+    presses, as it begins and as it ends; rate: [1/s] of a pendulum of that height; centre, velocity: (3,) of the start; middle:
+    (3,) of the soles; toes, land: (3,); flight. found: (4, 3) written: where the body is lowest and where it leaves,
+    the velocity with which it is lowest, and where it presses until then. Heights are not told.
+    """
+    duration, early, late, rate, centre, velocity, middle, toes, land, flight = fixed
+    m0, m1, m2 = MOMENTS
+    falls = rate / math.tanh(0.5 * rate * wind_up)  # a pendulum's speed for each metre that it has fallen
+    swing = rate * wind_up
+    # unknown are the lowest point and the take-off: the speed gained, then the way gone
+    a, b = falls + early * (m0 - m1), late * m1 + 1.0 / flight
+    c = 1.0 + duration * (falls + early * (m0 - 2.0 * m1 + m2))
+    d = duration * late * (m1 - m2) - 1.0
+    for i in range(3):
+        begun = falls * centre[i] + velocity[i]
+        gains = land[i] / flight + begun + early * (m0 - m1) * middle[i] + late * m1 * toes[i]
+        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * middle[i] + late * (m1 - m2) * toes[i])
+        low = (d * gains - b * goes) / (a * d - b * c)
+        fallen = (low - centre[i] - velocity[i] * math.sinh(swing) / rate) / (math.cosh(swing) - 1.0)
+        found[0, i], found[1, i] = low, (a * goes - c * gains) / (a * d - b * c)
+        found[2, i], found[3, i] = falls * (low - centre[i]) - velocity[i], centre[i] - fallen
+    found[2, 1] = 0.0

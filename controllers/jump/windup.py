@@ -185,18 +185,7 @@ def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY, rea
     """
     velocity, gravity = upward(velocity, 1.0), upward(gravity, -1.0)
     able = strength(physique, reading, arm, -float(gravity[1]))
-    way = np.maximum(able.depth + rise, 0.02 * physique.size)[:, None]
-    required = physique.mass * np.linalg.norm(velocity * velocity[1] / (2.0 * way) - gravity, axis=-1)
-    kinetic = 0.5 * physique.mass * squared_kernel(velocity)
-    spare = np.minimum(able.force / required, able.work / np.maximum(kinetic + able.spent, 1e-9)) - 1.0
-    enough = np.flatnonzero(spare >= 0.0)
-    if not len(enough):
-        return math.nan
-    n = int(enough[0])
-    if n == 0:
-        return float(able.depth[0])
-    part = spare[n - 1] / (spare[n - 1] - spare[n])
-    return float(able.depth[n - 1] + part * (able.depth[n] - able.depth[n - 1]))
+    return depth_kernel(able, velocity, float(rise), gravity, float(physique.mass), 0.02 * physique.size)
 
 
 def strongest(physique: Physique, rise: float, gravity=GRAVITY, reading: Reading = "wedge", arm: Arm = "constant") -> float:
@@ -215,6 +204,24 @@ def upward(value, sign: float) -> np.ndarray:
     """A vector (3,) as it is; a number as that much upward (`sign` 1) or downward (−1)."""
     value = np.asarray(value, float)
     return np.array([0.0, sign * float(value), 0.0]) if value.ndim == 0 else value
+
+
+@kernel
+def depth_kernel(able, velocity, rise, gravity, mass, least):
+    """The first depth [m] of a body's `Strength` whose force and work are enough, NaN for none; see `crouch_depth`. least: [m] of
+    the push."""
+    kinetic, last = 0.5 * mass * squared_kernel(velocity), 0.0
+    for n in range(len(able.depth)):
+        way, square = max(able.depth[n] + rise, least), 0.0
+        for i in range(3):
+            square += (velocity[i] * velocity[1] / (2.0 * way) - gravity[i]) ** 2
+        spare = min(able.force[n] / (mass * math.sqrt(square)), able.work[n] / max(kinetic + able.spent[n], 1e-9)) - 1.0
+        if spare >= 0.0:
+            if n == 0:
+                return able.depth[0]
+            return able.depth[n - 1] + last / (last - spare) * (able.depth[n] - able.depth[n - 1])
+        last = spare
+    return math.nan
 
 
 @kernel

@@ -27,14 +27,14 @@ from .store import kept
 K = 100
 """Neighbours of the local methods."""
 SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({
-    "gplvm": {"active": 150, "dimensions": 3, "loosening": 10.0, "apart": 1.0},
+    "gplvm": {"active": 100, "dimensions": 3, "loosening": 1.0, "apart": 1.0},
     "lpca": {"share": 0.999, "most": 12, "loosening": 3.0, "loose": 1.0},
     "lpcr": {"share": 0.99, "loosening": 300.0, "bandwidth": "knn"},
     "letter": {},
     "mousas": {"ridge": 0.1, "loosening": 100.0, "bandwidth": "paper"},
     "nearest": {"spread": 10.0},
     "ridge": {"strength": 1e-4, "loosening": 10.0},
-    "network": {"hidden": (384, 384), "rate": 1e-3, "batches": 6000, "loosening": 10.0},
+    "network": {"hidden": (768, 768), "rate": 2e-3, "batches": 6000, "loosening": 10.0},
 })
 """By name: SGPLVM (Grochow 2004); local PCA (Chai & Hodgins 2005); local PCR (Liu 2011); Mousas 2014 to the letter, and
 mended; the nearest recording; ridge regression; a small network."""
