@@ -25,8 +25,12 @@ def log(matrix: np.ndarray) -> np.ndarray:
 def yaw(angle: np.ndarray) -> np.ndarray:
     """Rotation matrices (..., 3, 3) about +Y by `angle` (...) [rad], counter-clockwise from above."""
     angle = np.asarray(angle, float)
-    c, s, o, i = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
-    return np.stack([c, o, s, o, i, o, -s, o, c], -1).reshape(angle.shape + (3, 3))
+    out = np.zeros(angle.shape + (3, 3))
+    out[..., 0, 0] = out[..., 2, 2] = np.cos(angle)
+    out[..., 0, 2] = np.sin(angle)
+    out[..., 2, 0] = -out[..., 0, 2]
+    out[..., 1, 1] = 1.0
+    return out
 
 
 def heading_of(direction: np.ndarray) -> np.ndarray:

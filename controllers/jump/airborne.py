@@ -9,7 +9,7 @@ from ..body.springs import settle
 from ..body.turning import exp_kernel, product_kernel
 from ..compiled import kernel
 from . import style
-from .dynamics import Physique, turns, vectors
+from .dynamics import Physique, parts_kernel, place_kernel, turns, vectors
 from .landing import TIME, absorb
 from .path import Path
 from .poise import FLEX
@@ -95,6 +95,15 @@ class Airborne:
         turned = vectors(air[1:, 0] @ np.swapaxes(air[:-1, 0], -1, -2)) @ across
         meant = vectors(wanted @ air[0, 0].T) @ across
         return miss + 2.0 * np.pi * np.round((meant - turned.sum() - miss @ across) / (2.0 * np.pi)) * across
+
+    def _parts(self, root: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where (S, 3) the segments of a body are from its centre of mass, and how they are turned (S, 3, 3)."""
+        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
+        place_kernel(self.body, root, local, positions, turned)
+        parts = len(self.body.mass)
+        out = np.empty((parts, 3)), np.empty((parts, 3, 3))
+        parts_kernel(self.body, positions, turned, np.empty(3), *out)
+        return out
 
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The local rotations (J, 3, 3) at touch-down, the body turned `turn` (3, 3), and how fast the legs

@@ -10,11 +10,11 @@ import numpy as np
 
 from ..body import Pose, Skeleton, forward_kinematics
 from ..body.anatomy import centre_of_mass
-from ..body.rotations import log, wrap
+from ..body.rotations import wrap
 from ..contract import CharacterState, Intent, Status
 from ..navigation import floor_at, gap
 from .ballistics import along
-from .dynamics import GRAVITY, Physique
+from .dynamics import GRAVITY, Physique, vectors
 from .fall import fall, struck
 from .path import Path, path
 from .plan import Plan
@@ -185,7 +185,7 @@ class Jump:
             moved[:, 3:] = wrap(moved[:, 3:])
             standing = np.asarray(state.contacts).reshape(2, 2).any(1)
             feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
-            rates = log(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
+            rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
         return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),
                      feet_rates, self._single(state, feet))
 

@@ -125,33 +125,35 @@ def centre_kernel(body, positions, orientations, out):
 
 
 @kernel
+def parts_kernel(body, positions, orientations, centre, places, turned):
+    """Write the whole body's centre of mass (3,) and, seen from there, each segment's (S, 3) [m]; and how the segments are
+    turned (S, 3, 3)."""
+    centre_kernel(body, positions, orientations, centre)
+    for s in range(len(body.mass)):
+        j = body.joint[s]
+        turned[s] = orientations[j]
+        for i in range(3):
+            at = positions[j, i] - centre[i]
+            for k in range(3):
+                at += orientations[j, i, k] * body.centre[s, k]
+            places[s, i] = at
+
+
+@kernel
 def momentum_kernel(body, before, turned_before, after, turned_after, dt, angular, inertia):
-    """Angular momentum (3,) [kg m²/s] about the centre of mass over the step between two placements,
-    and the whole body's inertia (3, 3) [kg m²] about it in the middle of the step.
+    """Angular momentum (3,) [kg m²/s] about the centre of mass over the step between two placements of the segments
+    (S, 3), (S, 3, 3) as in `parts_kernel`, and the whole body's inertia (3, 3) [kg m²] about it in the middle of the step.
 
     Each segment's mean velocity and mean angular velocity over the step count, so that a motion
     whose steps conserve this conserves it to rounding, however long the steps are.
     """
     angular[:] = 0.0
     inertia[:] = 0.0
-    parts = len(body.mass)
-    first, second, mean, rate = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
-    turn, middle, places = np.empty((3, 3)), np.empty((3, 3)), np.empty((2, parts, 3))
-    for s in range(parts):
-        j, share = body.joint[s], body.mass[s] / body.total
+    mean, rate, turn, middle = np.empty(3), np.empty(3), np.empty((3, 3)), np.empty((3, 3))
+    for s in range(len(body.mass)):
+        m = body.mass[s]
         for i in range(3):
-            a, b = before[j, i], after[j, i]
-            for k in range(3):
-                a += turned_before[j, i, k] * body.centre[s, k]
-                b += turned_after[j, i, k] * body.centre[s, k]
-            places[0, s, i], places[1, s, i] = a, b
-            first[i] += share * a
-            second[i] += share * b
-    for s in range(parts):
-        j, m = body.joint[s], body.mass[s]
-        for i in range(3):
-            a, b = places[0, s, i] - first[i], places[1, s, i] - second[i]
-            mean[i], rate[i] = 0.5 * (a + b), (b - a) / dt
+            mean[i], rate[i] = 0.5 * (before[s, i] + after[s, i]), (after[s, i] - before[s, i]) / dt
         angular[0] += m * (mean[1] * rate[2] - mean[2] * rate[1])
         angular[1] += m * (mean[2] * rate[0] - mean[0] * rate[2])
         angular[2] += m * (mean[0] * rate[1] - mean[1] * rate[0])
@@ -161,9 +163,9 @@ def momentum_kernel(body, before, turned_before, after, turned_after, dt, angula
             for k in range(3):
                 inertia[i, k] -= m * mean[i] * mean[k]
                 turn[i, k] = 0.0
-                middle[i, k] = 0.5 * (turned_before[j, i, k] + turned_after[j, i, k])
+                middle[i, k] = 0.5 * (turned_before[s, i, k] + turned_after[s, i, k])
                 for n in range(3):
-                    turn[i, k] += turned_after[j, i, n] * turned_before[j, k, n]
+                    turn[i, k] += turned_after[s, i, n] * turned_before[s, k, n]
         log_kernel(turn, rate)
         # the segment's own inertia, turned into the world: R I Rᵀ
         product_kernel(middle, body.inertia[s], turn)

@@ -17,7 +17,7 @@ from ..navigation import floor_at, gap
 from . import style
 from .airborne import LOWEST, SAME, Airborne
 from .curves import hermite
-from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
+from .dynamics import Physique, momentum_kernel, turns, vectors
 from .flight import flight_kernel
 from .path import Path, softened
 from .plan import Plan
@@ -158,10 +158,8 @@ class _Fall(Airborne):
 
     def _inertia(self) -> np.ndarray:
         """The body's inertia (3, 3) [kg m²] as it was struck."""
-        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
-        place_kernel(self.body, self.start.root, self.start.rotations, positions, turned)
-        inertia = np.empty((3, 3))
-        momentum_kernel(self.body, positions, turned, positions, turned, 1.0, np.empty(3), inertia)
+        placed, inertia = self._parts(self.start.root, self.start.rotations), np.empty((3, 3))
+        momentum_kernel(self.body, *placed, *placed, 1.0, np.empty(3), inertia)
         return inertia
 
     def _fly(self, momentum: np.ndarray, landed: np.ndarray, tolerance: float) -> None:

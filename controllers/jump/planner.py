@@ -13,7 +13,7 @@ from . import style
 from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel
 from .curves import hermite, monotone
 from .descent import descent
-from .dynamics import Physique, momentum_kernel, place_kernel, turns, vectors
+from .dynamics import Physique, momentum_kernel, turns, vectors
 from .flight import flight_kernel
 from .path import Path
 from .plan import Plan
@@ -181,11 +181,8 @@ class _Draft(Airborne):
         """Take off with a spin (3,): the last poses on the floor, and the momentum that they have."""
         self._stand(spin, len(self.times) - 3)
         step = self.times[-1] - self.times[-2]
-        placed = np.empty((2, self.count, 3)), np.empty((2, self.count, 3, 3))
-        for k in range(2):
-            place_kernel(self.body, self.roots[k - 2], self.local[k - 2], placed[0][k], placed[1][k])
-        momentum_kernel(self.body, placed[0][0], placed[1][0], placed[0][1], placed[1][1], step,
-                        self.momentum, np.empty((3, 3)))
+        momentum_kernel(self.body, *self._parts(self.roots[-2], self.local[-2]), *self._parts(self.roots[-1], self.local[-1]),
+                        step, self.momentum, np.empty((3, 3)))
 
     def _flight(self, landed: np.ndarray, tolerance: float, every: int = 1) -> np.ndarray:
         """The flight, its legs reaching as if it came down turned `landed` (3, 3): its poses (N, J, 3, 3), of `every` so many

@@ -166,16 +166,3 @@ def _learn(gain, step, before, lacks):
     for i in range(3):
         for k in range(3):
             gain[i, k] += (step[i] - moved[i]) * row[k] / whole
-
-
-@kernel
-def float_kernel(body, centre, root, local, positions, orientations):
-    """Put a body whose joints are all given so that its centre of mass is at `centre` (3,)."""
-    found = np.empty(3)
-    place_kernel(body, root, local, positions, orientations)
-    centre_kernel(body, positions, orientations, found)
-    for j in range(len(positions)):
-        for i in range(3):
-            positions[j, i] += centre[i] - found[i]
-    for i in range(3):
-        root[i] += centre[i] - found[i]
