@@ -55,11 +55,13 @@ class _Draft(Airborne):
         self.planted, self.off = planted, way.wind_up
         leave = self.off + way.push.duration
         deep = (measures(physique).stand + planted[0, 1] - physique.tables.sole - way.low[1]) / (DEEP * physique.size)
-        super().__init__(
-            physique, start, way, landing, leave,
-            [0.0, self.off, *(leave + style.flying(way.airtime)[:3])],
-            style.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms),
-            min(max(style.SWING - way.push.duration, 0.0), 0.3 * self.off))
+        times = np.array([0.0, self.off, *(leave + style.flying(way.airtime)[:3])])
+        keys = style.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms)
+        first = min(max(style.SWING - way.push.duration, 0.0), 0.3 * self.off)
+        if way.running:
+            style.unhurried(times, keys, min(style.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
+            first = 0.0
+        super().__init__(physique, start, way, landing, leave, times, keys, first)
 
     def plan(self) -> Plan:
         """Everything, in order."""

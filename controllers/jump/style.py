@@ -31,6 +31,8 @@ LOW_ARMS = np.radians([-22.0, -23.0, -26.0, -30.0])
 """How far arms are swung that something is above or before: the same, and at touch-down."""
 SWING = 0.33
 """The arms swing up in no less [s]: they begin before the legs do."""
+UNHURRIED = 0.46
+"""A runner's arms take as long at least [s], at standard height."""
 AFTER = 0.08
 """So long after take-off they are raised highest [s]."""
 ABSORB = np.radians([46.0, 26.0, -26.0, -34.0, 30.0, 40.0])
@@ -83,6 +85,17 @@ def shapes(crouch: float, absorbing: float, lean: float = 0.0, fold: float = 0.0
 def flying(airtime: float) -> np.ndarray:
     """When (4,) [s] in a flight its keys are due: take-off, a little after it, the middle, touch-down."""
     return np.array([0.0, min(AFTER, 0.2 * airtime), 0.45 * airtime, airtime])
+
+
+def unhurried(times: np.ndarray, keys: np.ndarray, lasts: float) -> None:
+    """Let a runner's arms swing up from the start on, for so long [s], and the trunk straighten until take-off; `keys` (8, 6),
+    of which the first are due at `times` (T,), are written. A foot strikes late and leaves soon: what waited for the push
+    would be torn up."""
+    for columns, until, target in ((slice(0, 3), times[2], keys[2]), (slice(3, 6), lasts, keys[3])):
+        for n in range(1, len(times)):
+            if times[n] < until:
+                share = times[n] / until
+                keys[n, columns] = keys[0, columns] + share**2 * (3.0 - 2.0 * share) * (target - keys[0])[columns]
 
 
 def falling(absorbing: float) -> np.ndarray:
