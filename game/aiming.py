@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from controllers.contract import CharacterState, Intent, Leap
+from controllers.contract import CharacterState, Leap
 from controllers.jump import Jump, Physique
 from controllers.jump.ballistics import along
 from controllers.jump.controller import FRESH, RUNNING
 from controllers.jump.path import Path
 from controllers.jump.stance import Start
 from controllers.jump.plan import Plan
-from controllers.jump.reach import Refused
 from controllers.navigation import floor_at
 
 from .input.aim import Aim
@@ -46,7 +45,7 @@ class Preview:
 
     stand, place: (3,) [m] the middle of the feet, and where it is to land. arc, beads: (N, 3), (M, 3) [m] where the centre
     of mass goes, and where it is on every beat. fault: why it can't be made; empty if it can. nearest: (3,) [m] the place
-    on the way there that a standing body can reach; None where there is none.
+    nearest to it that can be reached; None where there is none.
     """
 
     stand: np.ndarray
@@ -91,7 +90,8 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     if not seen.fault or aim.moving or leap.place is None:
         return seen
     kept = before is not None and _same_way(before, seen)
-    return replace(seen, nearest=before.nearest if kept else _nearest(jump, state, Intent(leap=leap, around=solid)))
+    return replace(seen, nearest=before.nearest if kept else jump.nearest(
+        _pushing(jump, jump.start_of(state)), seen.place, float(state.floor), leap.airtime, solid))
 
 
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
@@ -128,15 +128,6 @@ def _same_way(before: Preview, now: Preview) -> bool:
     reach = float(np.linalg.norm((before.nearest - before.stand)[[0, 2]]))
     aside = np.linalg.norm(old / np.linalg.norm(old) - new / np.linalg.norm(new))
     return bool(aside < ALIKE and np.linalg.norm(new) > reach)
-
-
-def _nearest(jump: Jump, state: CharacterState, intent: Intent) -> np.ndarray | None:
-    """The farthest place (3,) [m] on the way to a refused one that a body can jump to."""
-    try:
-        jump.plan(state, intent)
-    except Refused as refusal:
-        return refusal.nearest
-    return None
 
 
 def _flight(way: Path) -> tuple[np.ndarray, np.ndarray]:

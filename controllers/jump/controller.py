@@ -33,6 +33,8 @@ UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 HIGHER = (1.12, 1.26, 1.42, 1.6)
 """What the airtime is multiplied by until the arc clears what stands in its way."""
+CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
+"""For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
 FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 RISEN = 0.45
@@ -117,7 +119,7 @@ class Jump:
                 raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.airtime else 'short'} for this "
                               f"body; the jump there takes {other.airtime:.2f} s")
         if reason:
-            raise Refused(reason, self._nearest(start, here, place, leap.airtime, intent.around), here)
+            raise Refused(reason, self.nearest(start, place, floor, leap.airtime, intent.around), here)
         return plan(self.physique, start, way, place, floor)
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
@@ -155,6 +157,31 @@ class Jump:
             if airtime is not None or not first.strong:
                 break
         return first, reason
+
+    def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
+                around: Sequence[Any] = ()) -> np.ndarray | None:
+        """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from one that takes
+        no effort: where it stands, or where a run would carry the body. None if that can't be reached either."""
+        here = self.middle(start, floor)
+
+        def reached(there: np.ndarray) -> bool:
+            if len(around):
+                there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
+            return not self.survey(start, there, floor, airtime, around)[1]
+        run = start.velocity * FLAT * np.sqrt(9.81 * self.physique.size / -self.gravity[1])
+        easy = here + np.array([[0.0]] if start.single is None else CARRIED) * run
+        found = next((there for there in easy if reached(there)), None)
+        if found is None:
+            return None
+        low, high, begun = 0.0, 1.0, found.copy()
+        for _ in range(7):
+            middle = 0.5 * (low + high)
+            there = begun + middle * (place - begun)
+            if reached(there):
+                low, found = middle, there
+            else:
+                high = middle
+        return found
 
     def middle(self, start: Start, floor: float) -> np.ndarray:
         """The middle (3,) of both soles as they come to stand on a floor [m]: where a jump straight up lands."""
@@ -260,16 +287,3 @@ class Jump:
             return None
         standing = np.asarray(state.contacts).reshape(2, 2).any(1)
         return int(np.argmax(standing)) if standing.sum() == 1 else None
-
-    def _nearest(self, start: Start, here: np.ndarray, place: np.ndarray, airtime, around) -> np.ndarray | None:
-        """The farthest place on the way to the target that can be reached, by bisection; None if none can."""
-        low, high, found = 0.0, 1.0, None
-        for _ in range(7):
-            middle = 0.5 * (low + high)
-            there = here + middle * (place - here)
-            there[1] = floor_at(there[0], there[2], around, max(place[1], here[1]) + 1e-6) if around else there[1]
-            if self.survey(start, there, here[1], airtime, around)[1]:
-                high = middle
-            else:
-                low, found = middle, there
-        return found

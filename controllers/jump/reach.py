@@ -33,12 +33,12 @@ HANDS = "its hands would hit something"
 
 
 class Refused(Unable):
-    """A jump that this body can't make. nearest: a place (3,) [m] on the way there that it can reach from
-    `here` (3,), if one was found."""
+    """A jump that this body can't make. nearest: the place (3,) [m] nearest to the target that it can reach
+    from `here` (3,), if one was found."""
 
     def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None):
         if nearest is not None:
-            reason += "; it reaches " + ("" if here is None else f"{np.linalg.norm((nearest - here)[[0, 2]]):.1f} m that way, to ")
+            reason += "; the nearest that it reaches is " + ("" if here is None else f"{np.linalg.norm((nearest - here)[[0, 2]]):.1f} m away, at ")
             reason += f"({nearest[0]:.2f}, {nearest[1]:.2f}, {nearest[2]:.2f})"
         super().__init__(reason)
         self.nearest = nearest

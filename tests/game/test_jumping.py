@@ -185,7 +185,7 @@ def test_where_a_jump_is_refused_the_nearest_place_is_one_that_can_be_jumped_to(
 def test_the_nearest_place_is_not_sought_anew_while_one_aims_the_same_way(beyond, somebody, monkeypatch):
     timeline, seen = beyond
     sought = []
-    monkeypatch.setattr(type(somebody.controllers["jump"]), "plan", lambda jump, state, intent: sought.append(intent))
+    monkeypatch.setattr(type(somebody.controllers["jump"]), "nearest", lambda jump, start, place, *_: sought.append(place))
     again, = previews(timeline.now, (seen,))
     assert again.nearest is seen.nearest and not sought
     turned = replace(seen, nearest=seen.stand + [0.5, 0.0, 1.5])

@@ -85,7 +85,7 @@ def test_a_step_must_be_one(jump, standing, dt):
     (Physique(), leap(1.3, around=(Pillar((0.0, 0.0, 0.8)),)), "would hit"),
     (Physique(), leap(1.2, around=(ROOF,)), "head would hit"),
     (Physique(), leap(0.4, 0.3, around=(Box((0.0, 0.1, 3.0), (1.0, 0.2, 1.0)),)), "nothing to land on"),
-    (Physique(), leap(8.0), "too far: 8.0 m; it reaches .* m that way"),
+    (Physique(), leap(8.0), "too far: 8.0 m; the nearest that it reaches is .* m away"),
     (Physique(), leap(0.8, 2.0), "too high: 0.8 m away and 2.0 m up"),
     (Physique(strength=0.15), leap(1.0), "too weak"),
     (Physique(), leap(0.5, airtime=2.0), "2 s in the air is too long"),
@@ -102,6 +102,20 @@ def test_a_refusal_names_a_place_that_can_be_reached(jump, standing):
     nearest = refused.value.nearest
     assert 0.8 < nearest[2] < 5.0 and f"{nearest[2]:.2f}" in str(refused.value)
     jump.enter(standing, Intent(np.zeros(3), Leap(nearest)))
+
+
+@pytest.mark.parametrize(("far", "reason"), [(0.4, "too near for this run|no leg pushes off so hard"), (9.0, "no leg|too far")])
+def test_a_runner_who_is_refused_is_told_the_nearest_place_too(jump, running, far, reason):
+    """Beyond the target, if that is too near."""
+    here = jump.middle(jump.start_of(running), float(running.floor))
+    towards = running.pose.rotations[0][:, 2] * [1.0, 0.0, 1.0]
+    with pytest.raises(Refused, match=f"({reason}).*the nearest that it reaches is") as refused:
+        jump.enter(running, Intent(leap=Leap(here + far * towards)))
+    nearest = refused.value.nearest
+    jump.enter(running, Intent(leap=Leap(nearest)))
+    closer = nearest + 0.1 * (here + far * towards - nearest)
+    with pytest.raises(Refused):
+        jump.enter(running, Intent(leap=Leap(closer)))
 
 
 def test_a_goal_stops_nobody(jump, standing):
