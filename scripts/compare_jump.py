@@ -30,6 +30,8 @@ from controllers.jump.controller import Jump  # noqa: E402
 from controllers.jump.reach import Refused  # noqa: E402
 from controllers.mocap import calibrate, load, retarget  # noqa: E402
 
+from _plots import pictures, pyplot  # noqa: E402
+
 MOCAP = Path(__file__).resolve().parents[1].parent / "shared" / "mocap"
 CLIPS = ("woody2/wd2_Physics_Jump00.bvh", "woody2/wd2_Physics_Jump02.bvh", "woody2/wd2_Physics_Jump03.bvh",
          "woody2/wd2_long_broad_jump.bvh", *(f"cmu/16/16_{n:02d}.amc" for n in (1, 2, 3, 5, 6, 9)),
@@ -142,9 +144,7 @@ def compare(jump: Jump, clip: Clip, first: int, last: int, plots: Path | None, n
 
 def draw(path: Path, title: str, times, ours: Curves, theirs: Curves, at, inside, air: float) -> None:
     """Three curves over time from take-off, ours beside theirs."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    plt = pyplot()
     figure, axes = plt.subplots(3, 1, sharex=True, figsize=(7, 7))
     for axis, label, a, b in zip(axes, ("knee [°]", "hip [°]", "centre of mass [m]"), (ours.knee, ours.hip, ours.centre[:, 1]),
                                  (theirs.knee[at], theirs.hip[at], theirs.centre[at, 1])):
@@ -167,14 +167,7 @@ def main() -> int:
     if not MOCAP.is_dir():
         print("no ../shared/mocap beside the project: recorded jumps are not to be had here; nothing compared")
         return 0
-    if given.plots:
-        try:
-            import matplotlib  # noqa: F401
-            given.plots.mkdir(parents=True, exist_ok=True)
-        except ImportError:
-            parser.error('--plots needs matplotlib: .venv/bin/pip install -e ".[report]"')
-        except OSError as error:
-            parser.error(f"--plots: {error}")
+    pictures(parser, given.plots)
     jump, all_rms = Jump(), []
     for clip, found in recorded(jump, given.clips or CLIPS):
         if not found:

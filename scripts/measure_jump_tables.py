@@ -26,6 +26,8 @@ from controllers.jump.sampling import sample
 from controllers.jump.thrust import push
 from controllers.jump.windup import GAINS, Crouch, crouch, crouch_depth, strength, strongest
 
+from _plots import pictures, pyplot
+
 ADULT = Physique()
 G = 9.81
 BODIES = (("adult", ADULT), ("child", Physique(25.0, 1.25, 0.9)), ("heavy", Physique(110.0, 1.78, 0.85)),
@@ -213,13 +215,7 @@ def thrusts() -> list:
 
 def draw(folder: Path, runs, poses, by_height, thrusts) -> None:
     """The figures."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    plt.rcParams.update({"figure.dpi": 110, "font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False,
-                         "axes.spines.right": False, "legend.frameon": False, "savefig.bbox": "tight"})
-    folder.mkdir(parents=True, exist_ok=True)
-
+    plt = pyplot()
     figure, (a, b) = plt.subplots(1, 2, figsize=(9, 3.2))
     for k_p, k_d, found in runs:
         if (k_p, k_d) in ((0.05, 0.1), (0.1, 0.1), (0.3, 0.1), (0.75, 0.1), (0.3, 0.9)):
@@ -337,6 +333,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--plots", type=Path, metavar="FOLDER", help="where the figures go")
     options = parser.parse_args()
+    pictures(parser, options.plots)
     runs = controls()
     poses = springs()
     limits()
