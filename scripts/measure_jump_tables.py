@@ -24,7 +24,8 @@ from controllers.jump.muscles import STIFFNESS, WIDTH, Muscle, spring_bend, spri
 from controllers.jump.stance import measures
 from controllers.jump.sampling import sample
 from controllers.jump.thrust import push
-from controllers.jump.windup import GAINS, Crouch, crouch, crouch_depth, strength, strongest
+from controllers.jump.strength import crouch_depth, strength, strongest
+from controllers.jump.windup import GAINS, Crouch, crouch
 
 from _plots import pictures, pyplot
 

@@ -22,7 +22,8 @@ import numpy as np
 
 from .chain import CHAIN, COLUMNS, EXPLICIT, MOVED, PRINTED, RUNGE_KUTTA, SEMI_IMPLICIT, Links, links_kernel, thrust_kernel
 from .dynamics import GRAVITY, Physique, place_kernel
-from .windup import DELAYS, STEP, Crouch, upward
+from .strength import DELAYS, STEP, upward
+from .windup import Crouch
 
 LONGEST_STEP = 1.0 / 240.0
 """No longer steps are taken [s]."""

@@ -14,7 +14,7 @@ from .ballistics import along
 from .dynamics import Physique, turns
 from .path import Path
 from .stance import FLAT, measures
-from .windup import strongest
+from .strength import strongest
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""

@@ -20,7 +20,8 @@ from ..compiled import kernel
 from .dynamics import GRAVITY, Physique, centre_kernel
 from .muscles import Arm, Reading, force_kernel, muscle
 from .poise import frame, pose_kernel, stand_pelvis_kernel, support_kernel
-from .windup import between_kernel, held_kernel, planted, squared_kernel, strength, upward
+from .strength import between_kernel, held_kernel, squared_kernel, strength, upward
+from .windup import planted
 
 KEPT = 0.1
 """The share that counts as having the wished momentum: "ten percent was found empirically"."""

@@ -20,8 +20,8 @@ from ..body.rotations import yaw
 from ..compiled import kernel
 from .dynamics import Physique
 from .stance import FLAT, Measures, Start, leaning, over
+from .strength import crouch_depth, strength
 from .thrust import MOMENTS, risen, upward
-from .windup import crouch_depth, strength
 
 TOES = 0.03
 """At take-off the ground pushes so far ahead of the balls of the feet [m], at standard height."""

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from controllers.jump.dynamics import Physique
 from controllers.jump.extension import LONGEST_STEP, extend, shoot
 from controllers.jump.muscles import spring_work
-from controllers.jump.windup import crouch, strongest
+from controllers.jump.strength import strongest
+from controllers.jump.windup import crouch
 
 ADULT = Physique()
 RISE = 0.109

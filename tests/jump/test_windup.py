@@ -8,7 +8,8 @@ from controllers.jump.dynamics import Physique, centre_kernel, place_kernel
 from controllers.jump.extension import extend
 from controllers.jump.muscles import spring_work
 from controllers.jump.poise import flat_feet, frame
-from controllers.jump.windup import GAINS, crouch, crouch_depth, strength, strongest
+from controllers.jump.strength import crouch_depth, strength, strongest
+from controllers.jump.windup import GAINS, crouch
 
 ADULT = Physique()
 BODIES = (ADULT, Physique(25.0, 1.25), Physique(110.0, 1.8), Physique(60.0, 1.65, 1.3, 1.2, "female"))
