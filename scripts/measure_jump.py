@@ -235,7 +235,7 @@ def report_hand_over(locomotion: Locomotion, count: int, rng: np.random.Generato
         print(f"  {name:9s} {count} moments, refused {count - len(met)}, waited {np.mean(waits or [0]):.2f} s ({max(waits, default=0):.2f})")
         for reference, limit in limits.items():
             told = []
-            for kind in ("walk → jump", "touch-down", "jump → walk"):
+            for kind in ("the gait before", "walk → jump", "touch-down", "jump → walk"):
                 ratios = np.array([over[kind] / limit for over in met if kind in over])
                 if len(ratios):
                     worst = ratios[int(ratios.max(1).argmax())]
@@ -268,9 +268,10 @@ def hand_over(locomotion: Locomotion, speed: float, far: float, wait: int):
     moments = {"walk → jump": begun, "touch-down": begun + round(made.touch_down * FPS)}
     if len(ends) > 1:
         moments["jump → walk"] = int(ends[1]) + 1
+    windows = {kind: positions[max(at - 6, 0):at + 7] for kind, at in moments.items()}
+    windows["the gait before"] = positions[wait - 60:max(begun - 6, wait)]
     out = {}
-    for kind, at in moments.items():
-        window = positions[max(at - 6, 0):at + 7]
+    for kind, window in windows.items():
         out[kind] = np.max([joint_acceleration(window[phase:], 1 / FPS).max(0) for phase in (0, 1)], 0)
     return out, begun - wait
 
