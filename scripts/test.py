@@ -9,7 +9,7 @@ import sys
 
 import _setup
 
-ALL = ("-n", "auto", "--maxprocesses", "8", "--dist", "loadfile")
+ALL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
 
 
 def main() -> int:
