@@ -65,7 +65,7 @@ a body on its own output would run away, with more it would not follow what neig
 PLENTY = 30_000
 """From so many poses on networks are as wide as `learn` has them."""
 NARROW = {"hidden": (384, 384), "batches": 2500}
-"""How networks learn from fewer: in three fifths of the time they are as good on poses like those, seen or not."""
+"""How networks learn from fewer: in half the time they are as good on poses like those, seen or not."""
 ACCELERATION = 10.0
 """How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
 ROUGH = 0.003
