@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numba
-from numba import njit
+from numba import njit, types
 
 _PACKAGE = Path(__file__).parent
 DAY = 86400.0
@@ -53,6 +53,15 @@ def kernel(function=None, **options):
         return lambda f: kernel(f, **options)
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
     try:
-        return njit(cache=True, **options)(function)
+        return _general(njit(cache=True, **options)(function))
     finally:
         numba.config.CACHE_DIR = before
+
+
+def _general(made):
+    """A kernel whose callers' constants are numbers like any: numba would compile it anew for each of them."""
+    if hasattr(made, "get_call_template"):  # a plain function has none, where compiling is switched off
+        known = made.get_call_template
+        made.get_call_template = lambda args, kws: known(
+            [types.unliteral(arg) for arg in args], {name: types.unliteral(arg) for name, arg in kws.items()})
+    return made

@@ -4,6 +4,8 @@ The recorded motion is no part of the project.
 """
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,9 +13,12 @@ from hypothesis import settings
 
 settings.register_profile("gambol", deadline=None)  # a busy machine breaks no law
 settings.load_profile("gambol")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # threads cost small matrices far more than they save
+for library in ("OPENBLAS", "OMP"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")  # threads cost small matrices far more than they save
 
-SHARED = Path(__file__).resolve().parents[1].parent / "shared"
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared"
+REHEARSALS = ("-m", "controllers.jump.rehearsal"), ("tests/rehearsal.py",)
 
 
 @pytest.fixture(scope="session")
@@ -22,3 +27,13 @@ def shared() -> Path:
     if not (SHARED / "mocap").is_dir():
         pytest.skip("no ../shared/mocap beside the project: recorded motion is not to be had here")
     return SHARED
+
+
+def pytest_sessionstart(session):
+    """Before tests run on several cores, two programs compile what most of them need: else each core would do it for itself."""
+    from controllers.compiled import cold
+
+    if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput") and cold():
+        print("compiling the motion, once: a minute", flush=True)
+        for program in [subprocess.Popen([sys.executable, *one], cwd=ROOT) for one in REHEARSALS]:
+            program.wait()

@@ -39,6 +39,13 @@ def folders(package):
     return sorted(p.name for p in (package / "__pycache__").glob("kernels-*"))
 
 
+def test_a_kernel_is_compiled_once_for_all_constants(package):
+    (package / "outer.py").write_text("from .compiled import kernel\nfrom .inner import inner\n\n"
+                                      "@kernel\ndef outer(x):\n    n = inner(1) + inner(x=2)\n"
+                                      "    for _ in range(3):\n        n = inner(n)\n    return n\n")
+    assert call(package, "from pack.inner import inner; print(outer(1.0), len(inner.signatures))") == ["8", "1"]
+
+
 def touch(path, text):
     """Rewrite a file so that its time differs, as an editor would."""
     before = path.stat().st_mtime_ns

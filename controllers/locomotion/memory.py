@@ -66,7 +66,7 @@ def legs_of(library: Library) -> Legs:
 def memory_dtype(primitives: int) -> np.dtype:
     """The record of one character over a library of that many primitives.
 
-    There is room for the next multiple of 64, since kernels are compiled anew for every width: one
+    There is room for the next multiple of 128, since kernels are compiled anew for every width: one
     serves most libraries. The four contact points are left heel, left ball, right heel, right ball; feet are left, right.
     """
     return np.dtype([
@@ -75,7 +75,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("velocity", "f4", 3),  # achieved (v_f, ω, v_l)
         ("command", "f4", 3), ("rate", "f4", 3),  # the shaped wish and its rate
         ("family", "i4"), ("simplex", "i4", 2),  # WALK or RUN; last simplex in each one's space
-        ("weights", "f4", -(-primitives // 64) * 64), ("phase", "f4"),
+        ("weights", "f4", -(-primitives // 128) * 128), ("phase", "f4"),
         ("settled", "i4"),  # at rest, both feet in place
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame

@@ -54,9 +54,12 @@ def test_a_part_of_a_log_at_any_rate_shows_the_same_moments(log, tmp_path, fps):
     assert np.allclose(feet(Stage.scenes), np.interp(times, np.arange(120), whole), atol=2e-3)
 
 
-def test_in_the_background_progress_is_told_in_lines(log, tmp_path):
+def test_in_the_background_progress_is_told_in_lines_and_others_come_first(log, tmp_path, monkeypatch):
+    given = []
+    monkeypatch.setattr("os.nice", given.append, raising=False)  # or all tests after this one came last
     done = gambol("render", "--replay", log, "-o", tmp_path / "f", "--size", "16x16", "--to", "0.1", "--background")
     assert done.exit_code == 0 and "1 of 6\n" in done.output and "6 of 6\n" in done.output
+    assert len(given) == 1 and given[0] > 0
 
 
 def test_a_log_that_goes_another_way_is_filmed_with_a_warning(log, tmp_path, monkeypatch):

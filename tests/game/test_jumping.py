@@ -62,6 +62,18 @@ def played(tmp_path_factory, somebody):
     return scenario, list(film.run(scenario, somebody))
 
 
+@pytest.fixture
+def same_run(played, monkeypatch):
+    """The scenario of that run; who would run it once more gets its frames."""
+    scenario, frames = played
+
+    def run(wanted, controller):
+        assert wanted == scenario, "at another rate it would be another run"
+        return iter(frames)
+    monkeypatch.setattr("game.strip.run", run)
+    return scenario
+
+
 def jumps_of(frames, who):
     """The plans that an actor carried out, in order."""
     plans = []
@@ -242,9 +254,8 @@ def test_what_is_drawn_is_drawn_for_the_overlays_that_show_it(played):
     assert not any(map(len, sketched(drawn, Overlays(), camera, 700.0)))
 
 
-def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(played, somebody):
-    scenario, _ = played
-    scenes = strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="A")
+def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(same_run, somebody):
+    scenes = strip(same_run, somebody, 6, Overlays(), (1200, 400), actor="A")
     assert [scene.part for scene in scenes] == [pytest.approx((n / 6, 0.0, 1 / 6, 1.0)) for n in range(6)]
     heights = [scene.figures[0].positions[:, 1].max() for scene in scenes]
     assert max(heights) > heights[0] + 0.1
@@ -254,21 +265,19 @@ def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(played
         assert abs(sight[2]) < 0.01 * abs(sight[0]) and np.linalg.norm(sight) > 3
 
 
-def test_every_actor_of_a_strip_has_a_row(played, somebody):
-    scenario, _ = played
-    scenes = strip(scenario, somebody, 4, Overlays(), (1200, 900))
+def test_every_actor_of_a_strip_has_a_row(same_run, somebody):
+    scenes = strip(same_run, somebody, 4, Overlays(), (1200, 900))
     assert [scene.part for scene in scenes] == [pytest.approx((n / 4, row / 3, 1 / 4, 1 / 3)) for row in range(3) for n in range(4)]
     for row, start in enumerate((0.0, 3.0, -3.0)):
         for scene in scenes[4 * row:4 * row + 4]:
             assert len(scene.figures) == 1 and abs(scene.figures[0].positions[0, 0] - start) < 1.0
 
 
-def test_a_strip_of_nobody_and_of_no_time_is_refused(played, somebody):
-    scenario, _ = played
+def test_a_strip_of_nobody_and_of_no_time_is_refused(same_run, somebody):
     with pytest.raises(ScenarioError, match="no actor is called 'Z'; there are A, B, C"):
-        strip(scenario, somebody, 6, Overlays(), (1200, 400), actor="Z")
+        strip(same_run, somebody, 6, Overlays(), (1200, 400), actor="Z")
     with pytest.raises(ScenarioError, match="nothing lies from 9 to 5 s"):
-        strip(scenario, somebody, 6, Overlays(), (1200, 400), 9.0, 5.0)
+        strip(same_run, somebody, 6, Overlays(), (1200, 400), 9.0, 5.0)
 
 
 def test_the_ground_pushes_whoever_stands_or_walks_and_nobody_in_the_air(played):

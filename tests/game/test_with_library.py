@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from controllers.locomotion import Locomotion
+from controllers.reconstruction import ours, store
+from controllers.reconstruction.learning import learn
 from game.film import run
 from game.log import LogWriter, fingerprint, of_library, read, replay
+from game.methods import methods
 from game.play import Play
 from game.hosts.events import KeyEvent
 from game.scenario import load, shipped
@@ -18,6 +21,17 @@ def locomotion():
     return Locomotion.load()
 
 
+@pytest.fixture(scope="module")
+def hasty(tmp_path_factory):
+    """Networks learn for a moment only, and lie apart from those that serve."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ours, "learn", lambda samples, progress, **_: learn(samples, 1, 300, (64,), progress))
+        patch.setattr(store, "cache_folder", lambda: tmp_path_factory.getbasetemp() / "hasty" / "kernels")
+        methods.cache_clear()
+        yield
+        methods.cache_clear()
+
+
 def same(a, b):
     return all(np.array_equal(x.state.ground, y.state.ground) and np.array_equal(x.state.pose.root, y.state.pose.root)
                and np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
@@ -25,7 +39,7 @@ def same(a, b):
 
 
 @pytest.mark.parametrize("name", shipped())
-def test_a_scenario_is_the_same_to_the_bit(name, locomotion):
+def test_a_scenario_is_the_same_to_the_bit(name, locomotion, hasty):
     """A minute of the medley, and the beginnings of the others: the checks cost more than the steps."""
     scenario = load(name)
     seconds = scenario.duration if name == "medley" else 1.5 if scenario.followers else 5.0

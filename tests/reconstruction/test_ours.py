@@ -19,7 +19,7 @@ from controllers.reconstruction.method import Fused, Local, LocalRegression, SPA
 from controllers.reconstruction.moments import Moments
 from controllers.reconstruction.neighbours_cells import Cells
 from controllers.reconstruction.ours import (
-    FADING, HEARD, KEPT, LASTING, LISTENED, NEAR, NEARER, Expectation, Ours, Torn, cells, ours)
+    FADING, HEARD, KEPT, LASTING, LISTENED, NARROW, NEAR, NEARER, Expectation, Ours, Torn, cells, ours)
 from controllers.reconstruction.segments import Segments
 from controllers.reconstruction.solver import Solver
 
@@ -279,7 +279,7 @@ def disk(tmp_path, monkeypatch):
     """Networks are learnt in three batches and kept in a folder of the test's own; the list of what was learnt."""
     learnt, learn_ = [], module.learn
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "kernels")
-    monkeypatch.setattr(module, "learn", lambda samples, progress: learnt.append(1) or learn_(samples, 1, 3, (8,), progress))
+    monkeypatch.setattr(module, "learn", lambda samples, progress, **how: learnt.append(how) or learn_(samples, 1, 3, (8,), progress))
     return learnt
 
 
@@ -297,6 +297,14 @@ def test_what_was_learnt_is_kept_for_the_same_takes_and_points_alone(world, disk
     assert len(disk) == 4
     ours(database, parse("4", SKELETON), steady=False)
     assert len(disk) == 4
+
+
+def test_networks_of_few_poses_are_narrow_and_apart_from_wide_ones(world, disk, monkeypatch):
+    for plenty in (len(world[0]) + 1, len(world[0])):
+        monkeypatch.setattr(module, "PLENTY", plenty)
+        for _ in range(2):
+            ours(world[0], parse("4", SKELETON))
+    assert disk == [NARROW, {}]
 
 
 def test_what_is_damaged_on_disk_is_learnt_anew(world, disk, tmp_path):

@@ -1,0 +1,24 @@
+"""A walk, and a body from points: `python tests/rehearsal.py` compiles what most tests of them need."""
+
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent / "reconstruction")]
+import walks  # noqa: E402
+
+from controllers.reconstruction.chart import SKELETON  # noqa: E402
+from controllers.reconstruction.controls import parse  # noqa: E402
+from controllers.reconstruction.method import Local, LocalRegression, Method  # noqa: E402
+from controllers.reconstruction.neighbours_cells import Cells  # noqa: E402
+from controllers.reconstruction.ours import LISTENED  # noqa: E402
+from controllers.reconstruction.segments import Segments  # noqa: E402
+from controllers.reconstruction.solver import Solver  # noqa: E402
+from game.methods import rehearse  # noqa: E402
+
+if __name__ == "__main__":
+    with TemporaryDirectory() as folder:
+        known, _ = walks.database(Path(folder) / "walks.gambolmotion")
+        four = parse("4", SKELETON)
+        search = Cells(Segments.of(known, 3, 4, four.joints))
+        rehearse(Method(Local(LocalRegression(LISTENED), search, 50), Solver(four, 1 / known.fps)), four)
