@@ -36,6 +36,7 @@ from controllers.jump.controller import Jump  # noqa: E402
 from controllers.jump.dynamics import Physique  # noqa: E402
 from controllers.jump.reach import Refused  # noqa: E402
 from controllers.jump.stance import airtime_up, measures  # noqa: E402
+from controllers.jump.strength import strength  # noqa: E402
 from controllers.locomotion import Locomotion  # noqa: E402
 from controllers.locomotion.cycles import joint_acceleration  # noqa: E402
 from controllers.supervisor import Supervisor  # noqa: E402
@@ -45,12 +46,17 @@ from game.scene import Box  # noqa: E402
 def report_targets(trials: int, rng: np.random.Generator, locomotion: Locomotion) -> None:
     """Random targets until so many were accepted."""
     rest, runners = starts(locomotion, rng, 40)
-    results, refused, wrong, asked, spent, steps, failed = [], Counter(), Counter(), Counter(), [], [], []
+    results, refused, wrong, asked, bodies, spent, steps, failed = [], Counter(), Counter(), Counter(), [], [], [], []
     planned = Counter()
     while len(results) < trials:
         t = trial(rng, rest, runners)
         way = "running" if t.running else "standing"
         asked[way] += 1
+        begin = time.perf_counter()
+        for low in (False, True):  # found once a body
+            measures(t.jump.physique, low)
+        strength(t.jump.physique, gravity=-float(t.jump.gravity[1]))
+        bodies.append(time.perf_counter() - begin)
         begin = time.perf_counter()
         try:
             entered = t.jump.enter(t.state, t.intent)
@@ -105,8 +111,8 @@ def report_targets(trials: int, rng: np.random.Generator, locomotion: Locomotion
               f"median {np.median(values):.2f} cm, above 0 in {100.0 * (values > 0.0).mean():.1f} %")
     print("  joints beyond their limits: " + (", ".join(f"{name} {count}" for name, count in Counter(
         r["joint beyond"] for r in results if r["joint beyond"]).most_common()) or "none"))
-    print(f"Time: planning p50 {1e3 * np.median(spent):.1f} ms, p99 {1e3 * np.percentile(spent, 99):.1f} ms; "
-          f"a step p50 {1e3 * np.median(steps):.3f} ms, p99 {1e3 * np.percentile(steps, 99):.3f} ms")
+    print(f"Time: planning p50 {1e3 * np.median(spent):.1f} ms, p99 {1e3 * np.percentile(spent, 99):.1f} ms; a body's heights and "
+          f"strength, once, p50 {1e3 * np.median(bodies):.1f} ms; a step p50 {1e3 * np.median(steps):.3f} ms, p99 {1e3 * np.percentile(steps, 99):.3f} ms")
 
 
 def rows(name: str, results: list[dict], limit: float | None) -> None:

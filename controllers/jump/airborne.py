@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..body.rotations import yaw
@@ -18,6 +20,8 @@ from .stance import TOES_DOWN, Start, measures, soles
 
 GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
+SHORT = 0.5
+"""Flights that last longer [s] are slower, and need fewer poses a second."""
 PLANT = 0.09
 """From the toes' landing to the heels' [s]."""
 HEEL = 0.03
@@ -78,7 +82,8 @@ class Airborne:
     def _prepare_air(self) -> None:
         """The flight's times, arc and carriage."""
         way = self.way
-        self.flying = np.linspace(0.0, way.airtime, 3 * max(int(np.ceil(AIR_RATE * way.airtime / 3.0)), 3) + 1)
+        count = AIR_RATE * min(way.airtime, math.sqrt(SHORT * way.airtime))
+        self.flying = np.linspace(0.0, way.airtime, 3 * max(math.ceil(count / 3.0), 3) + 1)
         t = self.flying[:, None]
         self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
         self.air_angles = self.carriage(self.leave + self.flying)
@@ -164,9 +169,11 @@ def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, roo
     for n in range(len(centres)):
         carry_on_kernel(angles[n], joints, offsets[n], local[n])
         local[n, 0] = turns[n]
-        if n > 0:
-            for i in range(3):
-                root[i] += centres[n, i] - centres[n - 1, i]
+        for i in range(3):  # the pelvis goes on as it went, seen from the centre of mass
+            if n > 1:
+                root[i] = centres[n, i] + 2.0 * (roots[n - 1, i] - centres[n - 1, i]) - (roots[n - 2, i] - centres[n - 2, i])
+            elif n == 1:
+                root[i] += centres[1, i] - centres[0, i]
         stand_kernel(body, centres[n], feet[n], flex, root, local[n], positions, orientations)
         roots[n] = root
 

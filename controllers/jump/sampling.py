@@ -69,7 +69,7 @@ def sample(physique: Physique, velocity, rise: float, gravity=GRAVITY, *, feet: 
     low, high = lines.min(0), lines.max(0)
     ground = feet[:, 1].mean() - body.sole
     box = np.array([[low[0], ground, low[1]], [high[0], pelvis[1], high[1]]])
-    tried = qmc.scale(qmc.Halton(3, rng=np.random.default_rng(seed)).random(count), *box)
+    tried = np.ascontiguousarray(qmc.scale(qmc.Halton(3, rng=np.random.default_rng(seed)).random(count), *box))
     found = np.full((count, 6), np.nan)
     samples_kernel(fixed, spring, feet, pelvis[1], standing, velocity / np.linalg.norm(velocity), float(rise), gravity,
                    able.depth, able.spent, tried, turns, local, positions, turned, found)

@@ -84,9 +84,13 @@ class Measures:
         return over(float(np.interp(lead, self.leads, self.leaves)), aside)
 
 
-@lru_cache(maxsize=64)
 def measures(physique: Physique, low_arms: bool = False) -> Measures:
-    """The heights of the centre of mass of a body over its own feet."""
+    """The heights of the centre of mass of a body over its own feet; found once."""
+    return _measures(physique, low_arms)  # however it is called
+
+
+@lru_cache(maxsize=64)
+def _measures(physique, low_arms):
     body = physique.tables
     feet = landing_feet(np.zeros(3), 0.0, body)
     leave, touch = style.TAKE_OFF.copy(), style.TOUCH.copy()

@@ -48,13 +48,17 @@ class Strength(NamedTuple):
     spent: np.ndarray
 
 
-@lru_cache(maxsize=64)
 def strength(physique: Physique, reading: Reading = "wedge", arm: Arm = "constant", gravity: float = 9.81) -> Strength:
-    """What a body's muscles can do under `gravity` [m/s²] downward. A body too stiff to crouch has one depth, 0."""
+    """What a body's muscles can do under `gravity` [m/s²] downward; found once. A body too stiff to crouch has one depth, 0."""
+    return _strength(physique, reading, arm, gravity)  # however it is called
+
+
+@lru_cache(maxsize=64)
+def _strength(physique, reading, arm, gravity):
     fixed, count, feet = frame(physique), len(physique.skeleton), flat_feet(physique)
-    table = np.zeros((64, 5))
+    table, delays = np.zeros((64, 5)), DELAYS.copy()  # kernels are compiled anew for what is read only
     found = strength_kernel(fixed, muscle(physique, reading, arm), gravity, feet, np.tile(np.eye(3), (count, 1, 1)),
-                            np.empty((count, 3)), np.empty((count, 3, 3)), 0.03 * physique.size, DELAYS, table)
+                            np.empty((count, 3)), np.empty((count, 3, 3)), 0.03 * physique.size, delays, table)
     return Strength(*np.ascontiguousarray(table[:found].T))
 
 
