@@ -66,13 +66,14 @@ class Airborne:
         """What the start's pose differs by from one carried by `angles` (6,): it fades, see `_left_over`."""
         local = np.tile(np.eye(3), (self.count, 1, 1))
         style.carry_kernel(angles, self.joints, local)
-        self.offset, self.offset_rate = vectors(self.start.rotations @ np.swapaxes(local, -1, -2)), self.start.rates
+        self.offset, self.offset_rate = vectors(self.start.rotations @ np.swapaxes(local, -1, -2)), self.start.rates.copy()
+        for part in (self.offset, self.offset_rate):
+            part[0] = part[self.legs] = 0.0
 
     def _left_over(self, times: np.ndarray) -> np.ndarray:
         """What is left (N, J, 3) [rad] of the start's pose at times (N,) [s], pelvis and legs apart."""
         left = faded(self.offset, self.offset_rate, FADE, times)
-        left[:, 0] = left[:, self.legs] = 0.0
-        left[np.abs(left).max(-1) < 1e-6] = 0.0
+        left[np.einsum("njk,njk->nj", left, left) < 1e-12] = 0.0
         return left
 
     def _upright(self, lean: np.ndarray) -> np.ndarray:
@@ -113,17 +114,19 @@ class Airborne:
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The local rotations (J, 3, 3) at touch-down, the body turned `turn` (3, 3), and how fast the legs
         (8, 3) bend then [rad/s]: they begin to give before the floor makes them."""
-        step, posed = 1.0 / 240.0, []
-        for time in (0.0, step):
-            local = self.air[-1].copy()
-            local[0] = turn
-            centre = self.way.land + time * self.way.falling
-            feet = np.column_stack([self.landing[:, :4], np.full(2, _toes_down(time)), np.zeros(2)])
-            stand_kernel(self.body, centre, feet, self.flex, centre + [0.0, -0.05, 0.0], local,
-                         np.empty((self.count, 3)), np.empty((self.count, 3, 3)))
-            posed.append(local)
-        bending = (vectors(posed[1][self.legs]) - vectors(posed[0][self.legs])) / step
-        return posed[0], np.clip(MEET[0] * bending, -MEET[1], MEET[1])
+        step, feet = 1.0 / 240.0, np.zeros((2, 6))
+        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
+        posed = np.stack([self.air[-1], self.air[-1]])
+        posed[:, 0] = turn
+        feet[:, :4] = self.landing[:, :4]
+        centre = self.way.land.copy()
+        root = centre - [0.0, 0.05, 0.0]
+        for k, pitch in enumerate((TOES_DOWN, TOES_DOWN * (1.0 - step / PLANT) ** 2)):
+            feet[:, 4] = pitch
+            stand_kernel(self.body, centre, feet, self.flex, root, posed[k], positions, turned)
+            centre += step * self.way.falling
+        bent = vectors(posed[:, self.legs])
+        return posed[0], np.clip(MEET[0] / step * (bent[1] - bent[0]), -MEET[1], MEET[1])
 
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
@@ -154,7 +157,8 @@ def _toes_down(time):
 
 def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
     """Offsets (N, ...) at times (N,) [s] of one (...) that settles from its rate."""
-    return settle(offset, rate, halflife, times.reshape((-1,) + (1,) * np.ndim(offset)))[0]
+    kept, carried = settle(np.array([1.0, 0.0]), np.array([0.0, 1.0]), halflife, times[:, None])[0].T  # of offset, of rate
+    return np.multiply.outer(kept, offset) + np.multiply.outer(carried, rate)
 
 
 @kernel

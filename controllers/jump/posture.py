@@ -130,9 +130,9 @@ def stand_kernel(body, centre, feet, flex, root, local, positions, orientations)
     started = feet[:, 4].copy()
     gain = GAIN * np.eye(3)
     missing = 1.0
+    place_kernel(body, root, local, positions, orientations)
     for attempt in range(60):
         feet[:, 4] = started
-        place_kernel(body, root, local, positions, orientations)
         gap = 0.0
         for side in range(2):
             if feet[side, 5] >= 0.0:
@@ -148,7 +148,11 @@ def stand_kernel(body, centre, feet, flex, root, local, positions, orientations)
         for i in range(3):
             step[i] = gain[i, 0] * lacks[0] + gain[i, 1] * lacks[1] + gain[i, 2] * lacks[2]
             root[i] += step[i]
-    place_kernel(body, root, local, positions, orientations)
+        for j in range(len(positions)):  # all but the legs moves along
+            for i in range(3):
+                positions[j, i] += step[i]
+    else:
+        place_kernel(body, root, local, positions, orientations)
     return max(gap, missing)
 
 
