@@ -175,16 +175,16 @@ class Study:
 
     def time(self) -> str:
         """A frame, all in: neighbours, prior and solver."""
-        rows = []
+        rows, sets = [], [points for points in self.sets if points in ("4", "6")]
         for name in self.methods:
             cells = [name]
             for course in ("seen", "seen_large"):
-                for points in ("4", "6"):
+                for points in sets:
                     times = 1e3 * self.bench.times(name, getattr(self.on, course), points)
                     clock, own = times.T
                     cells.append(f"{np.median(clock):.2f} ({np.quantile(clock, 0.99):.2f}), {own.mean():.2f}")
             rows.append(cells)
-        sizes = [f"{len(getattr(self.on, course).learnt):,} poses, {points} points" for course in ("seen", "seen_large") for points in ("4", "6")]
+        sizes = [f"{len(getattr(self.on, course).learnt):,} poses, {points} points" for course in ("seen", "seen_large") for points in sets]
         return ("Milliseconds of a frame on one thread: the median, what one in a hundred is beyond, and the mean of the "
                 "process's own time, which others on the machine hardly change.\n\n") + table(["", *sizes], rows)
 
@@ -218,7 +218,7 @@ def main() -> None:
     parser.add_argument("--large", type=Path, metavar="FOLDER", help="the same and many more, for Table 2; by default FOLDER itself")
     parser.add_argument("--only", help=f"some of {','.join(SECTIONS)}")
     parser.add_argument("--methods", help="some of the methods; LPCR and ours are always among them")
-    parser.add_argument("--points", help=f"some of Table 1's control points: {','.join(SETS)}")
+    parser.add_argument("--points", help=f"some of the control points of Table 1 and of the times: {','.join(SETS)}")
     parser.add_argument("--out", type=Path, help="where tables (.md) and plots (.png) are written")
     parser.add_argument("--cache", type=Path, default=cache_folder().parent / "measured", help="where outcomes are kept")
     parser.add_argument("--takes", type=int, default=22, help="how many takes are tested on; half as many are tuned on")

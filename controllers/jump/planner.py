@@ -174,7 +174,8 @@ class _Draft(Airborne):
             if before is not None:
                 if np.abs(off).max() < SAME:
                     break
-                beyond = float(np.clip(beyond * (before @ (before - off)) / ((before - off) @ (before - off)), 0.8, 2.5))
+                change = before - off
+                beyond = float(np.clip(beyond * (before @ change) / max(change @ change, 1e-12), 0.8, 2.5))
             landed = landed @ turns(beyond * off)
             flown = self._flight(landed, 1e-9)
         return spin
