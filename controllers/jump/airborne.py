@@ -121,7 +121,7 @@ class Airborne:
         feet[:, :4] = self.landing[:, :4]
         centre = self.way.land.copy()
         root = centre - [0.0, 0.05, 0.0]
-        for k, pitch in enumerate((TOES_DOWN, TOES_DOWN * (1.0 - step / PLANT) ** 2)):
+        for k, pitch in enumerate(_toes_down([0.0, step])):
             feet[:, 4] = pitch
             stand_kernel(self.body, centre, feet, self.flex, root, posed[k], positions, turned)
             centre += step * self.way.falling

@@ -59,7 +59,7 @@ class _Draft(Airborne):
         keys = style.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms)
         first = min(max(style.SWING - way.push.duration, 0.0), 0.3 * self.off)
         if way.running:
-            style.unhurried(times, keys, min(style.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
+            keys = style.unhurried(times, keys, min(style.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
             first = 0.0
         super().__init__(physique, start, way, landing, leave, times, keys, first)
 

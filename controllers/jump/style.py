@@ -87,15 +87,17 @@ def flying(airtime: float) -> np.ndarray:
     return np.array([0.0, min(AFTER, 0.2 * airtime), 0.45 * airtime, airtime])
 
 
-def unhurried(times: np.ndarray, keys: np.ndarray, lasts: float) -> None:
-    """Let a runner's arms swing up from the start on, for so long [s], and the trunk straighten until take-off; `keys` (8, 6),
-    of which the first are due at `times` (T,), are written. A foot strikes late and leaves soon: what waited for the push
-    would be torn up."""
+def unhurried(times: np.ndarray, keys: np.ndarray, lasts: float) -> np.ndarray:
+    """The keys (8, 6), of which the first are due at `times` (T,), of a runner whose arms swing up from the start on, for so
+    long [s], and whose trunk straightens until take-off. A foot strikes late and leaves soon: what waited for the push would
+    be torn up."""
+    swung = keys.copy()
     for columns, until, target in ((slice(0, 3), times[2], keys[2]), (slice(3, 6), lasts, keys[3])):
         for n in range(1, len(times)):
             if times[n] < until:
                 share = times[n] / until
-                keys[n, columns] = keys[0, columns] + share**2 * (3.0 - 2.0 * share) * (target - keys[0])[columns]
+                swung[n, columns] = keys[0, columns] + share**2 * (3.0 - 2.0 * share) * (target - keys[0])[columns]
+    return swung
 
 
 def falling(absorbing: float) -> np.ndarray:
