@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Line:
+class Row:
     """A line of a table; lit while what it tells of is being done. A title stands alone over its lines."""
 
     cells: tuple[str, ...]
@@ -57,6 +57,6 @@ class Sheet:
     """
 
     title: str
-    tables: tuple[tuple[Line, ...], ...]
+    tables: tuple[tuple[Row, ...], ...]
     pads: tuple[Pad, ...] = ()
     note: str = ""

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby, zip_longest
 from typing import Any
 
-from ..sheet import Bar, Dial, Lamp, Line, Pad, Sheet
+from ..sheet import Bar, Dial, Lamp, Row, Pad, Sheet
 from .bindings import Binding, Bindings
 from .devices import Keyboard, buttons_down, drivers, mode_of, pad_wish, player_of, pulls
 from .names import button_label, key_label
 
 LEFT = 2
 """How many sections stand on the left."""
-BLANK = Line(("",))
+BLANK = Row(("",))
 LAMPS = (("A", "B", "X", "Y", "LB", "RB", "LS", "RS"), ("UP", "RIGHT", "DOWN", "LEFT", "BACK", "START", "GUIDE"))
 """Rows of lamps."""
 LABELS = {"UP": "↑", "RIGHT": "→", "DOWN": "↓", "LEFT": "←", "BACK": "Back", "START": "Start", "GUIDE": "Guide"}
@@ -51,11 +51,11 @@ def _lit(bindings: Bindings, keyboard: Keyboard, pads: Sequence[Any], players: i
     return frozenset(row.action for row in rows)
 
 
-def _section(title: str, rows: Iterable[Binding], top: bool, bindings: Bindings, lit: frozenset[str]) -> tuple[Line, ...]:
-    lines = [Line((title, "keyboard, mouse", "gamepad") if top else (title,), title=True)]
+def _section(title: str, rows: Iterable[Binding], top: bool, bindings: Bindings, lit: frozenset[str]) -> tuple[Row, ...]:
+    lines = [Row((title, "keyboard, mouse", "gamepad") if top else (title,), title=True)]
     for text, group in groupby(rows, key=lambda row: row.help):
         group = tuple(group)
-        lines.append(Line((text, _keys(group), _buttons(group, bindings)), any(row.action in lit for row in group)))
+        lines.append(Row((text, _keys(group), _buttons(group, bindings)), any(row.action in lit for row in group)))
     return tuple(lines)
 
 

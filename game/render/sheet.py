@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..sheet import Line, Pad, Sheet
+from ..sheet import Row, Pad, Sheet
 from . import gl
 from .text import Atlas, atlas, spelled, width_of
 
@@ -88,7 +88,7 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
     return rows, whole
 
 
-def _table(pen: _Pen, table: tuple[Line, ...], left: float, top: float) -> float:
+def _table(pen: _Pen, table: tuple[Row, ...], left: float, top: float) -> float:
     """Write a table; its width [px]."""
     font, unit = pen.font, pen.font.line
     count = max(len(line.cells) for line in table)
