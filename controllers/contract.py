@@ -34,7 +34,7 @@ class Intent:
     velocity: (..., 3) forward speed v_f [m/s], angular speed ω [rad/s, counter-clockwise from
     above] and lateral speed v_l [m/s, positive to the left]. leap: a jump, as long as it is wanted.
     around: what stands about, anything with a box's centre, size and heading or a pillar's foot,
-    radius and height (`game.scene` has both). points: (n, 3) [m] in the world, where the points on
+    radius and height (`gambol.game.scene.scene` has both). points: (n, 3) [m] in the world, where the points on
     the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish.
     """
 

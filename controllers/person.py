@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .contract import Intent
-from .jump import GRAVITY, Jump, Physique, rehearsal
+from .jump import GRAVITY, Jump, Physique, warm_up
 from .locomotion import Locomotion
 from .scaled import Scaled
 from .supervisor import Supervisor
@@ -29,7 +29,7 @@ def rehearse(someone: Any) -> None:
     """One step and one jump of nobody, so that what they compile or load does not halt a game."""
     someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
     if "jump" in getattr(someone, "controllers", {}):
-        rehearsal.rehearse(someone.controllers["jump"])
+        warm_up.rehearse(someone.controllers["jump"])
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:

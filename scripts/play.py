@@ -16,13 +16,13 @@ SHARED = ("--library", "--preset", "--size")  # what `gambol play` and `gambol r
 def main() -> int:
     _setup.ready()
     # -P: nothing in the user's folder is taken for a module of Gambol
-    code = _setup.run("-P", "-m", "game.cli", "play", *sys.argv[1:])
+    code = _setup.run("-P", "-m", "gambol.game.cli", "play", *sys.argv[1:])
     if code != NO_DISPLAY:
         return code
     options, others = for_film(sys.argv[1:])
     print(f"There is no display here, so the demo is filmed into {FILM}"
           + (f" (where {' '.join(others)} means nothing)" if others else ""), flush=True)
-    code = _setup.run("-P", "-m", "game.cli", "render", "demo", "-o", FILM, "--fps", "30", *options)
+    code = _setup.run("-P", "-m", "gambol.game.cli", "render", "demo", "-o", FILM, "--fps", "30", *options)
     if code == 0:
         print(f"Done: copy {FILM} to where you can watch it", flush=True)
     return code

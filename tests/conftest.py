@@ -18,7 +18,7 @@ for library in ("OPENBLAS", "OMP"):
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
-REHEARSALS = ("-m", "controllers.jump.rehearsal"), ("tests/rehearsal.py",)
+REHEARSALS = ("-m", "gambol.controllers.jump.warm_up"), ("tests/rehearsal.py",)
 
 
 @pytest.fixture(scope="session")
@@ -31,7 +31,7 @@ def shared() -> Path:
 
 def pytest_sessionstart(session):
     """Before tests run on several cores, two programs compile what most of them need: else each core would do it for itself."""
-    from controllers.compiled import cold
+    from gambol.controllers.compiled import cold
 
     if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput") and cold():
         print("compiling the motion, once: a minute", flush=True)

@@ -4,17 +4,17 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent / "reconstruction")]
+sys.path.insert(0, str(Path(__file__).parent / "reconstruction"))
 import walks  # noqa: E402
 
-from controllers.reconstruction.chart import SKELETON  # noqa: E402
-from controllers.reconstruction.controls import parse  # noqa: E402
-from controllers.reconstruction.method import Local, LocalRegression, Method  # noqa: E402
-from controllers.reconstruction.neighbours_cells import Cells  # noqa: E402
-from controllers.reconstruction.ours import LISTENED  # noqa: E402
-from controllers.reconstruction.segments import Segments  # noqa: E402
-from controllers.reconstruction.solver import Solver  # noqa: E402
-from game.methods import rehearse  # noqa: E402
+from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
+from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
+from gambol.controllers.reconstruction.regression.method import Local, LocalRegression, Method  # noqa: E402
+from gambol.controllers.reconstruction.neighbours.cells import Cells  # noqa: E402
+from gambol.controllers.reconstruction.ours.ours import LISTENED  # noqa: E402
+from gambol.controllers.reconstruction.neighbours.segments import Segments  # noqa: E402
+from gambol.controllers.reconstruction.regression.map_solver import Solver  # noqa: E402
+from gambol.game.world.methods import rehearse  # noqa: E402
 
 if __name__ == "__main__":
     with TemporaryDirectory() as folder:

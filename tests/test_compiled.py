@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-import controllers.compiled as compiled
+from gambol.controllers import compiled
 
 SOURCE = Path(compiled.__file__)
 

@@ -25,8 +25,9 @@ def parsed(path):
 
 
 def dotted(path):
+    """The name that a module is imported by."""
     parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+    return ".".join(("gambol", *(parts[:-1] if parts[-1] == "__init__" else parts)))
 
 
 def in_a_fresh_interpreter(code):
@@ -37,17 +38,17 @@ def in_a_fresh_interpreter(code):
 
 
 def test_controllers_know_no_window_and_no_game():
-    names = [dotted(p) for p in MODULES if dotted(p).startswith("controllers")]
+    names = [dotted(p) for p in MODULES if dotted(p).startswith("gambol.controllers")]
     loaded = in_a_fresh_interpreter(f"import importlib, sys\nfor n in {names}: importlib.import_module(n)\n"
                                     "print(*sys.modules)")
-    assert {"controllers.locomotion.step", "controllers.mocap.bvh"} <= set(loaded)
+    assert {"gambol.controllers.locomotion.step", "gambol.controllers.mocap.bvh"} <= set(loaded)
     foreign = {"moderngl", "glfw", "game", "imgui_bundle", "OpenGL", "av", "PIL", "matplotlib", "tkinter"}
     assert not foreign & {name.split(".")[0] for name in loaded}
 
 
 def test_importing_the_game_opens_no_window_and_no_context():
     """Whatever would open one is made to fail first."""
-    names = [dotted(p) for p in MODULES if dotted(p).startswith("game") and not dotted(p).endswith("__main__")]
+    names = [dotted(p) for p in MODULES if dotted(p).startswith("gambol.game") and not dotted(p).endswith("__main__")]
     assert names
     in_a_fresh_interpreter(
         "import importlib\n"
@@ -60,7 +61,7 @@ def test_importing_the_game_opens_no_window_and_no_context():
 def test_imports_run_one_way():
     """Game → controllers, never back; told from the sources, whatever is imported when."""
     for path in MODULES:
-        if dotted(path).startswith("controllers"):
+        if dotted(path).startswith("gambol.controllers"):
             for node in ast.walk(parsed(path)):
                 names = [a.name for a in node.names] if isinstance(node, ast.Import) else \
                     [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
@@ -94,7 +95,7 @@ def test_nothing_imports_what_imports_it(level):
     for path in MODULES:
         here = level(dotted(path))
         needs.setdefault(here, set()).update({level(name) for name in imported(path)} - {here, *WINGS})
-    assert "controllers.body" in needs["controllers.supervisor"] and "game.session" in needs["game.play"]
+    assert "gambol.controllers.body" in needs["gambol.controllers.supervisor"] and "gambol.game.session.tick" in needs["gambol.game.app.play"]
     tuple(TopologicalSorter(needs).static_order())  # raises CycleError, which names the ring
 
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from controllers.body import Pose, forward_kinematics, human
-from controllers.contract import CharacterState, Intent, Leap, Status, Unable
-from controllers.jump.controller import Jump
-from controllers.locomotion import Locomotion
-from controllers.supervisor import Supervisor
+from gambol.controllers.body import Pose, forward_kinematics, human
+from gambol.controllers.contract import CharacterState, Intent, Leap, Status, Unable
+from gambol.controllers.jump.controller import Jump
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.supervisor import Supervisor
 
 FPS = 60
 WANTED = Intent(leap=Leap(np.zeros(3)))

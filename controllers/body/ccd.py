@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import kernel
-from .turning import exp_kernel, log_kernel
+from .rotation_kernels import exp_kernel, log_kernel
 
 ITERATIONS = 100
 """Enough to converge (the thesis: 100, "with as few as 30 working well")."""

@@ -2,8 +2,11 @@
 flight, landing, and take-offs from a run. A jump is planned whole, then played; see `planner`.
 """
 
-from .controller import Jump, Jumping
-from .dynamics import GRAVITY, Physique
-from .reach import Refused
+from . import warm_up
+from .body import GRAVITY, Physique
+from .controller import FRESH, RUNNING, Jump, Jumping
+from .feasibility import Refused
 
-__all__ = ["GRAVITY", "Jump", "Jumping", "Physique", "Refused"]
+__all__ = [
+    "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "warm_up",
+]

@@ -8,19 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, Skeleton, forward_kinematics
-from ..body.anatomy import centre_of_mass
-from ..body.rotations import wrap
+from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
 from ..contract import CharacterState, Intent, Status
 from ..navigation import floor_at, gap
-from .ballistics import along
-from .dynamics import GRAVITY, Physique, vectors
-from .fall import fall, struck
-from .path import Path, path
-from .plan import Plan
+from .body import FLAT, GRAVITY, Physique, Start, along, landing_feet, soles, vectors
+from .feasibility import HANDS, Refused, fault
+from .motion import Path, Plan, fall, path, struck
 from .planner import plan
-from .reach import HANDS, Refused, fault
-from .stance import FLAT, Start, landing_feet, soles
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed

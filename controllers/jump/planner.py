@@ -8,17 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..body.rotations import yaw
-from . import style
-from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel
-from .curves import hermite, monotone
-from .descent import descent
-from .dynamics import Physique, momentum_kernel, turns, vectors
-from .flight import flight_kernel
-from .path import Path
-from .plan import Plan
-from .poise import DEEP
-from .stance import FOOT_FADE, HEEL_UP, Start, landing_feet, measures
+from ..body import yaw
+from .body import (DEEP, FOOT_FADE, HEEL_UP, Physique, Start, hermite, landing_feet, measures, momentum_kernel, monotone,
+                   carriage, turns, vectors)
+from .motion import (FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, Path, Plan, descent, faded, flight_kernel,
+                     ground_kernel)
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
@@ -55,11 +49,11 @@ class _Draft(Airborne):
         self.planted, self.off = planted, way.wind_up
         leave = self.off + way.push.duration
         deep = (measures(physique).stand + planted[0, 1] - physique.tables.sole - way.low[1]) / (DEEP * physique.size)
-        times = np.array([0.0, self.off, *(leave + style.flying(way.airtime)[:3])])
-        keys = style.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms)
-        first = min(max(style.SWING - way.push.duration, 0.0), 0.3 * self.off)
+        times = np.array([0.0, self.off, *(leave + carriage.flying(way.airtime)[:3])])
+        keys = carriage.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms)
+        first = min(max(carriage.SWING - way.push.duration, 0.0), 0.3 * self.off)
         if way.running:
-            keys = style.unhurried(times, keys, min(style.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
+            keys = carriage.unhurried(times, keys, min(carriage.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
             first = 0.0
         super().__init__(physique, start, way, landing, leave, times, keys, first)
 

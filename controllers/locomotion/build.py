@@ -10,17 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ..body import Clip, human
-from ..body import rotations as rot
-from ..body.clip import mirror_index
-from ..body.ground import relative
-from ..body.human import CONTACT_HEIGHT
+from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotations as rot
 from ..mocap import MotionFileError, calibrate, load, retarget
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
 from .selection import Choice, neighbours, select
-from .steady import settle
+from .velocity_correction import settle
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is done and how much there is."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-import assets
+from gambol import assets
 
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Intent, Status
@@ -17,8 +17,8 @@ from .entry import entered
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
 from .memory import Settings, legs_of, memory_dtype, put
-from .steady import space_of
 from .step import step_kernel
+from .velocity_correction import space_of
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
 

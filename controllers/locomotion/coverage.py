@@ -6,7 +6,7 @@ import numpy as np
 
 from .control_space import SCALE, ControlSpace
 from .library import Library
-from .steady import space_of
+from .velocity_correction import space_of
 
 FORWARD, BACKWARD = np.array([1.4, 2.5, 0.6]), np.array([0.7, 1.5, 0.6])
 """Half-axes of the wishes that a walker should meet: (v_f [m/s], ω [rad/s], v_l [m/s])."""

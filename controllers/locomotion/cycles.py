@@ -14,11 +14,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import uniform_filter1d
 
-from ..body import Clip
-from ..body import rotations as rot
-from ..body.contact import contact_points
-from ..body.ground import advance, compose, relative, screw
-from ..body.human import CONTACT_HEIGHT
+from ..body import CONTACT_HEIGHT, Clip, advance, compose, contact_points, relative, rotations as rot, screw
 
 RATE = 120.0
 """Frames a second at which clips are analysed."""

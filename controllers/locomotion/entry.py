@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, forward_kinematics
-from ..body.contact import contact_points
-from ..body.rotations import log, yaw
+from ..body import Pose, contact_points, forward_kinematics, log, yaw
 from ..contract import CharacterState
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel
 from .memory import RUN, WALK

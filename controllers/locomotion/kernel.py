@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.contact import heel_offset
+from ..body import heel_offset
 from ..compiled import kernel
 from .control_space import EDGES, INSIDE, SCALE, ControlSpace
 from .library import HIPS, Library

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..body.ik import two_bone_kernel
+from ..body import two_bone_kernel
 from ..compiled import kernel
 from .kernel import joint_kernel
 

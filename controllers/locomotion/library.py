@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..body import Skeleton, human
-from ..body import rotations as rot
+from ..body import Skeleton, human, rotations as rot
 from .cycles import Cycle
 
 # what the columns of a coefficient array are, for J joints

@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.contact import contact_height
-from ..body.ground import compose, relative
+from ..body import compose, contact_height, relative
 from .kernel import COLUMNS
 from .library import Library
 

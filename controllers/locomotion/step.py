@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..body.springs import spring_kernel
+from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
-from .footing import at_rest, place_feet
+from .foot_lock import at_rest, place_feet
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK

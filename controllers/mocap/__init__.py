@@ -3,10 +3,13 @@
 from .acclaim import AcclaimSkeleton, read_asf
 from .acclaim_motion import read_amc
 from .bvh import read_bvh, write_bvh
-from .calibration import Calibration, calibrate
+from .calibration import Calibration, calibrate, zero_positions
 from .detect import Detected, detect, load, read, standardise
+from .names import Roles, plain, roles
 from .retarget import retarget
 from .text import MotionFileError
 
-__all__ = ["AcclaimSkeleton", "Calibration", "Detected", "MotionFileError", "calibrate", "detect", "load", "read", "read_amc",
-           "read_asf", "read_bvh", "retarget", "standardise", "write_bvh"]
+__all__ = [
+    "AcclaimSkeleton", "Calibration", "Detected", "MotionFileError", "Roles", "calibrate", "detect", "load", "plain",
+    "read", "read_amc", "read_asf", "read_bvh", "retarget", "roles", "standardise", "write_bvh", "zero_positions",
+]

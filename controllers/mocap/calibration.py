@@ -15,10 +15,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..body import Clip, Skeleton, forward_kinematics, human
-from ..body.rotations import between, exp, heading_of, mean, yaw
+from ..body import Clip, Skeleton, between, exp, forward_kinematics, heading_of, human, mean, yaw
+from .flat_stance import flat_stance
 from .names import Roles, roles
-from .stance import flat_stance
 
 LIMBS = {"UpLeg": "Leg", "Leg": "Foot", "Arm": "ForeArm", "ForeArm": "Hand"}
 """The bones of the limbs: from a joint to the next, by our names without the side."""

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..body import Clip, Skeleton
-from ..body.rotations import between
+from ..body import Clip, Skeleton, between
 from .acclaim_motion import read_amc
 from .bvh import read_bvh
 from .text import MotionFileError, fail

@@ -10,12 +10,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..body import Clip, Skeleton, forward_kinematics, human, local_rotations
-from ..body.contact import contact_height
-from ..body.ik import two_bone_turns
-from ..body.rotations import between, exp, log
+from ..body import (Clip, Skeleton, between, contact_height, exp, forward_kinematics, human, local_rotations, log,
+                    two_bone_turns)
 from .calibration import SIDES, Calibration, calibrate, place_feet
-from .stance import flat_frames, foot_points
+from .flat_stance import flat_frames, foot_points
 
 _TRUNK = ("Spine", "Spine1", "Spine2")
 _NECK = ("Neck", "Head")

@@ -4,5 +4,6 @@ from .obstacles import floor_at, gap, slide
 from .path import Path, follow
 from .steering import Reach, Steering, drift, in_world, steer, turn_towards
 
-__all__ = ["Path", "Reach", "Steering", "drift", "floor_at", "follow", "gap", "in_world", "slide", "steer",
-           "turn_towards"]
+__all__ = [
+    "Path", "Reach", "Steering", "drift", "floor_at", "follow", "gap", "in_world", "slide", "steer", "turn_towards",
+]

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..body.ground import advance
-from ..body.rotations import wrap
+from ..body import advance, wrap
 from ..contract import Intent
 
 

@@ -1,8 +1,13 @@
 """Whole bodies from a few points: motion databases, local regression and the pose that explains the points best (Mousas 2014)."""
 
-from .database import Database, DatabaseError
-from .database_build import build
-from .features import Weights
-from .segments import Neighbourhood, Segments
+from . import control_points, pose_vector
+from .control_points import NAMES, SETS, Controls, parse
+from .controller import Reconstruction, towards
+from .database import Database, DatabaseError, build
+from .neighbours import Neighbourhood, Segments, Weights
+from .pose_vector import HEIGHT, JOINTS, SKELETON, WIDTH, encode
 
-__all__ = ["Database", "DatabaseError", "Neighbourhood", "Segments", "Weights", "build"]
+__all__ = [
+    "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "Controls", "Database", "DatabaseError", "Neighbourhood",
+    "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse", "pose_vector", "towards",
+]

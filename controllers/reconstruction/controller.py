@@ -13,18 +13,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..body import Pose, Skeleton, forward_kinematics, human
-from ..body.contact import HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact_points
-from ..body.human import STATURE
-from ..body.rotations import heading_of, wrap
-from ..body.springs import damp, settle
+from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, Skeleton, contact_height, contact_points, damp,
+                    forward_kinematics, heading_of, human, settle, wrap)
 from ..contract import CharacterState, Intent, Status, Unable
-from .carrying import difference, guessed_past, joints_of, moved
-from .chart import SKELETON, decode
-from .controls import Controls
-from .feet import above
-from .gating import Gate
-from .starts import Starts
+from .control_points import Controls
+from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved
+from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
 """How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""

@@ -11,12 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from controllers.body.rotations import between, yaw
+from gambol.controllers.body import between, yaw
 
-from ..render import skin
-from ..render.mesh import Body, Mesh
-from ..render.wear import leg_length
-
+from ..render import Body, Mesh, leg_length, skin
 from . import gltf, materials
 from .gltf import CharacterError, Document, Nodes
 from .parts import parts

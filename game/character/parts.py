@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from controllers.body import Skeleton
-from controllers.mocap.names import Roles, plain, roles
+from gambol.controllers.body import Skeleton
+from gambol.controllers.mocap import Roles, plain, roles
 
 from ..render import skin
 from .gltf import CharacterError, Document, Nodes

@@ -11,14 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from controllers.body import Skeleton
-from controllers.body.human import STATURE
-from controllers.body.rotations import between
-from controllers.mocap.calibration import zero_positions
-from controllers.mocap.names import roles
+from gambol.controllers.body import STATURE, Skeleton, between
+from gambol.controllers.mocap import roles, zero_positions
 
-from ..render import skin
-from ..render.mesh import Body, Mesh, mannequin
+from ..render import Body, Mesh, mannequin, skin
 from .surface import smooth
 
 _NAMES, _PARENTS = skin.STANDARD.names, skin.STANDARD.parents

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..render import skin
-from ..render.mesh import Mesh
+from ..render import Mesh, skin
 from .surface import unit
 
 

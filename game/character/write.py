@@ -16,9 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from ..output import output_file, whole
-from ..render import skin
-from ..render.mesh import Body, Mesh
+from ..files import output_file, whole
+from ..render import Body, Mesh, skin
 from ..scene import TINT
 from .twotone import cut
 

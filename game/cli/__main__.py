@@ -1,4 +1,4 @@
-"""`python -m game.cli` is `gambol`."""
+"""`python -m gambol.game.cli` is `gambol`."""
 
 from . import main
 

@@ -64,18 +64,18 @@ def say(text: str) -> None:
 
 def person_of(library: Path | None, character: Path | None = None) -> Any:
     """Who moves, with a gait library (the shipped one by default), in a character's body if one is named."""
-    from controllers.compiled import cold
-    from controllers.contract import Intent
-    from controllers.locomotion import Locomotion
-    from controllers.locomotion.controller import DEFAULT_LIBRARY
-    from controllers.locomotion.library import Library as Gaits
-    from controllers.person import person, rehearse
+    from gambol.controllers.compiled import cold
+    from gambol.controllers.contract import Intent
+    from gambol.controllers.locomotion import Locomotion
+    from gambol.controllers.locomotion import DEFAULT_LIBRARY
+    from gambol.controllers.locomotion import Library as Gaits
+    from gambol.controllers.person import person, rehearse
 
     gaits = Gaits.load(library or DEFAULT_LIBRARY)
     beside = None
     if cold():
         say("compiling the motion, once: half a minute")
-        beside = subprocess.Popen([sys.executable, "-P", "-m", "controllers.jump.rehearsal"], stdin=subprocess.DEVNULL)
+        beside = subprocess.Popen([sys.executable, "-P", "-m", "gambol.controllers.jump.warm_up"], stdin=subprocess.DEVNULL)
     somebody = person(Locomotion(gaits))
     if beside is not None:
         somebody.step(somebody.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
@@ -84,7 +84,7 @@ def person_of(library: Path | None, character: Path | None = None) -> Any:
     if character is None:
         return somebody
     from ..character import load
-    from ..embodied import Embodied
+    from ..world import Embodied
 
     return Embodied.of(somebody, load(character))
 
@@ -93,7 +93,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     """Have methods, (name, points) each, learnt by another program where they were not yet, told of as it goes; and read them."""
     if not wanted:
         return
-    from ..methods import Learning, methods
+    from ..world import Learning, methods
 
     known = methods(database)
     wanted = [one for one in wanted if not known.knows(*one)]
@@ -120,8 +120,8 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
 
 def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
     """An input log and who moves in it; what its studies need is learnt. LogError for one that can't be played."""
-    from ..log import of_library, performer_of, read
-    from ..study import wanted
+    from ..session import of_library, performer_of, read
+    from ..session import wanted
 
     log = read(file)
     performer = performer_of(log, controller)

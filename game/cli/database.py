@@ -21,10 +21,10 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
           fps: Annotated[float, typer.Option(help="Frames a second.")] = 60.0,
           mirrors: Annotated[bool, typer.Option("--mirrors/--no-mirrors", help="Add the mirror image of every take.")] = True) -> None:
     """Put every motion file of a folder onto one skeleton, into one file."""
-    from controllers.reconstruction.database import SUFFIX
-    from controllers.reconstruction.database_build import build as build_database
+    from gambol.controllers.reconstruction.database import SUFFIX
+    from gambol.controllers.reconstruction.database import build as build_database
 
-    from ..output import named, output_file
+    from ..files import named, output_file
 
     output_file(out, SUFFIX)
     with progress_bar() as bar, named(out):
@@ -44,7 +44,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
 def report(file: Annotated[Path, typer.Argument(help="A .gambolmotion file.")],
            takes: Annotated[bool, typer.Option("--takes", help="List every take.")] = False) -> None:
     """What a database holds."""
-    from controllers.reconstruction.database import Database
+    from gambol.controllers.reconstruction.database import Database
 
     opened = Database.open(file)
     for line in _in_words(opened):

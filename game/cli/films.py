@@ -41,7 +41,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
         if given is not None:
             raise Mistake(f"{option} goes with --replay")
 
-    from .. import scenario as scenarios
+    from ..scenario import scenario as scenarios
 
     film = scenarios.load(scenario)
     film = film if fps is None else film.at_fps(fps)
@@ -51,8 +51,8 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
                 raise Mistake(f"{option} means nothing for {out}: BVH holds the motion, not pictures of it")
         write_motion(film, out, person_of(library, character))
         return
-    from ..film import scenes
-    from ..shots import overlays
+    from ..scenario import scenes
+    from ..scenario import overlays
 
     film = film if size is None else film.at_size(pixels_of(size))
     shown = None if overlay is None else overlays(overlays_of(overlay))
@@ -71,8 +71,8 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
               preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
-    from ..shots import overlays
-    from ..views import filmed, frames
+    from ..scenario import overlays
+    from ..app import filmed, frames
 
     log, controller = replayed(file, controller)
     start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
@@ -90,7 +90,7 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
 def _draw(scenes, frames: int, title: str, out: str, size: tuple[int, int], fps: int, preset: Preset | None,
           background: bool) -> None:
     """Draw scenes into a film or a folder."""
-    from ..recorder import recorder
+    from ..output import recorder
 
     target = recorder(out, size, fps)
 
@@ -123,11 +123,11 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     """Draw a motion as a strip of poses, one picture beside the other."""
     from PIL import Image
 
-    from .. import scenario as scenarios
+    from ..scenario import scenario as scenarios
     from ..hosts import GraphicsError, Offscreen
-    from ..output import named, output_file
-    from ..shots import overlays
-    from ..strip import strip as poses
+    from ..files import named, output_file
+    from ..scenario import overlays
+    from ..output import strip as poses
 
     output_file(out, ".png")
     film = scenarios.load(scenario)
@@ -173,7 +173,7 @@ def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scen
             library: Library = None,
             force: Annotated[bool, typer.Option("--force", help="Make films anew that are up to date.")] = False) -> None:
     """Film all scenarios into a folder, with a page of posters, films and figures."""
-    from ..gallery import PAGE, make, plan, write_page
+    from ..output import PAGE, make, plan, write_page
     from ..scenario import shipped
 
     controller = person_of(library)

@@ -20,9 +20,9 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
           out: Annotated[Path, typer.Option("-o", "--out", help="The library file to write.")] = Path("library.npz"),
           recipe: Annotated[Path | None, typer.Option(help="A TOML recipe: which files for which gait.")] = None) -> None:
     """Cut gait cycles out of motion capture and make a library of them."""
-    from controllers.locomotion.build import build_library
+    from gambol.controllers.locomotion import build_library
 
-    from ..output import named, output_file
+    from ..files import named, output_file
 
     output_file(out, ".npz")
     with progress_bar() as bar:
@@ -37,7 +37,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
     with named(out):
         made.save(out)
 
-    from controllers.locomotion.coverage import report as in_words
+    from gambol.controllers.locomotion import report as in_words
 
     for line in [*notes, *in_words(made), str(out)]:
         say(line)
@@ -49,15 +49,15 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
            picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None,
            primitives: Annotated[bool, typer.Option("--primitives", help="List every primitive and its clip.")] = False) -> None:
     """What a library covers, and where its primitives come from."""
-    from controllers.locomotion import DEFAULT_LIBRARY
-    from controllers.locomotion import Library as GaitLibrary
+    from gambol.controllers.locomotion import DEFAULT_LIBRARY
+    from gambol.controllers.locomotion import Library as GaitLibrary
 
     made = GaitLibrary.load(file or DEFAULT_LIBRARY)
 
-    from controllers.locomotion.coverage import picture as draw
-    from controllers.locomotion.coverage import report as in_words
+    from gambol.controllers.locomotion import picture as draw
+    from gambol.controllers.locomotion import report as in_words
 
-    from ..output import named, output_file
+    from ..files import named, output_file
 
     if picture:
         output_file(picture, ".png")

@@ -17,12 +17,12 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            library: Library = None, character: Wearing = None) -> None:
     """Write the motion of a scenario or an input log for other programs."""
-    from ..export import checked, sampled, takes, write
-    from ..log import SUFFIX, replay
+    from ..output import checked, sampled, takes, write
+    from ..session import SUFFIX, replay
 
     checked(out)
     if not what.lower().endswith(SUFFIX):
-        from .. import scenario as scenarios
+        from ..scenario import scenario as scenarios
 
         film = scenarios.load(what)
         write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character))
@@ -37,8 +37,8 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
 
 def write_motion(film: Any, out: str | Path, controller: Any) -> None:
     """Write the motion of a scenario, told of as it goes."""
-    from ..export import checked, takes, write
-    from ..film import run
+    from ..output import checked, takes, write
+    from ..scenario import run
 
     checked(out, [actor.name for actor in film.actors])
     learn(film.wanted, film.database)
@@ -60,12 +60,12 @@ def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb fi
               skeleton: Annotated[Path | None, typer.Option(help="Take the lengths of bones from this BVH or ASF/AMC file.")] = None) -> None:
     """Make a mannequin of any size and build, as a GLB with skin and joints."""
     from ..character import Actor, Build, joints_of, tailored, write
-    from ..output import output_file
+    from ..files import output_file
 
     output_file(out, ".glb")
     bones = None
     if skeleton is not None:
-        from controllers.mocap import load
+        from gambol.controllers.mocap import load
 
         bones = load(skeleton).skeleton
     body = tailored(Build(height, weight, child, shoulders, hips), bones, out.stem)

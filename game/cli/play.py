@@ -23,15 +23,15 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          record: Annotated[Path | None, typer.Option(help="Keep the input log in this new .gambol file; by default in out/.")] = None,
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    from ..input.remap import load as load_bindings
+    from ..input import load as load_bindings
 
     pixels, hands = pixels_of(size), load_bindings(bindings)
     controller = person_of(library, character)
 
-    from ..log import LogWriter
-    from ..methods import methods
-    from ..play import Play
-    from ..studio import OUT, Studio, log_file
+    from ..session import LogWriter
+    from ..world import methods
+    from ..app import Play
+    from ..app import OUT, Studio, log_file
 
     tape, clip, database = None, None, None
     if replay is not None:
@@ -65,9 +65,9 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
           size: str = "1280x720", preset: Preset = Preset.full) -> None:
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
-    stream: a `controllers.reconstruction.sources.Source` of these points, placed where the first player's would be.
+    stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
     """
-    from controllers.reconstruction.controls import SETS
+    from gambol.controllers.reconstruction import SETS
 
     points = next((name for name, some in SETS.items() if points == ",".join(some)), points)
     pixels = pixels_of(size)
@@ -75,13 +75,13 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
-    from ..input.remap import load as load_bindings
-    from ..log import LogWriter
-    from ..methods import methods
-    from ..play import Play
-    from ..recorded import Recorded
-    from ..studio import OUT, Studio, log_file
-    from ..study import Study
+    from ..input import load as load_bindings
+    from ..session import LogWriter
+    from ..world import methods
+    from ..app import Play
+    from ..world import Recorded
+    from ..app import OUT, Studio, log_file
+    from ..session import Study
 
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
@@ -96,8 +96,8 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
 def bindings(file: Hands = None,
              write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
     """Print the keys, buttons and sticks in force, as a file to edit."""
-    from ..input.remap import as_toml, load
-    from ..output import named, output_file
+    from ..input import as_toml, load
+    from ..files import named, output_file
 
     text = as_toml(load(file))
     if write is None:

@@ -49,12 +49,12 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
             if given is not None:
                 raise Mistake(f"{option} goes with -o")
     else:
-        from ..export import checked
+        from ..output import checked
 
         checked(out)
     method = _known(method)
     if database is not None:  # what is wrong with it is best said before anything is learnt
-        from controllers.reconstruction.database import Database
+        from gambol.controllers.reconstruction.database import Database
 
         Database.open(database)
     if clip is not None:
@@ -64,7 +64,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         else:
             _clip(clip, names, out, method, database, noise / 100.0, seed)
         return
-    from controllers.reconstruction.stream import PORT, Stream, read_map, usual_map
+    from gambol.controllers.reconstruction.live import PORT, Stream, read_map, usual_map
 
     worn = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn.values())
@@ -77,7 +77,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
 
 
 def _known(method: str) -> str:
-    from ..methods import METHODS
+    from ..world import METHODS
 
     if method not in METHODS:
         raise Mistake(f"--method {method!r}: there is no such method; choose from {', '.join(METHODS)}")
@@ -86,8 +86,8 @@ def _known(method: str) -> str:
 
 def _named(text: str) -> str:
     """Points by name, a set of the paper spelt out. Mistake for a point that there is not."""
-    from controllers.reconstruction.chart import SKELETON
-    from controllers.reconstruction.controls import parse
+    from gambol.controllers.reconstruction import SKELETON
+    from gambol.controllers.reconstruction import parse
 
     try:
         return ",".join(parse(text, SKELETON).names)
@@ -97,9 +97,9 @@ def _named(text: str) -> str:
 
 def _controller(method: str, file: Path | None, points: str) -> Any:
     """The controller that follows some points, learnt from a database where it has not been yet."""
-    from controllers.reconstruction.controller import Reconstruction
+    from gambol.controllers.reconstruction import Reconstruction
 
-    from ..methods import methods
+    from ..world import methods
 
     learn([(method, points)], file)
     known = methods(file)
@@ -111,8 +111,8 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
     """Reconstruct a recorded clip from its points, and tell how good that is."""
     import numpy as np
 
-    from controllers.contract import Intent
-    from controllers.reconstruction.sources import Recorded
+    from gambol.controllers.contract import Intent
+    from gambol.controllers.reconstruction.live import Recorded
 
     clip = _performance(path)
     controller = _controller(method, file, points)
@@ -137,7 +137,7 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
 
 def _performance(path: Path) -> Any:
     """A motion file at 60 frames a second on the standard human. MotionFileError, naming it, if it can't be used."""
-    from controllers.mocap import MotionFileError, load, retarget
+    from gambol.controllers.mocap import MotionFileError, load, retarget
 
     clip = load(path)
     if len(clip) < 4:
@@ -152,8 +152,8 @@ def _figures(clip: Any, poses: list) -> list[str]:
     """How far the poses are from a clip's, in some lines."""
     import numpy as np
 
-    from controllers.body import forward_kinematics
-    from controllers.reconstruction.metrics import angle_error, jitter, position_error
+    from gambol.controllers.body import forward_kinematics
+    from gambol.controllers.reconstruction.evaluation import angle_error, jitter, position_error
 
     rotations = np.stack([pose.rotations for pose in poses])
     found = forward_kinematics(clip.skeleton, np.stack([pose.root for pose in poses]), rotations)[0]
@@ -167,10 +167,10 @@ def _figures(clip: Any, poses: list) -> list[str]:
 
 def _record(source: Any, controller: Any, out: Path, height: float | None, seconds: float | None) -> None:
     """Record what a stream says until the time is up or somebody stops it; what there is by then is written."""
-    from controllers.contract import Intent
-    from controllers.locomotion import Locomotion
-    from controllers.reconstruction.controller import towards
-    from controllers.supervisor import Supervisor
+    from gambol.controllers.contract import Intent
+    from gambol.controllers.locomotion import Locomotion
+    from gambol.controllers.reconstruction import towards
+    from gambol.controllers.supervisor import Supervisor
 
     someone = Supervisor({"locomotion": Locomotion.load(), "reconstruction": controller})
     someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
@@ -206,7 +206,7 @@ def _placement(source: Any, height: float | None) -> Any:
     """Wait until somebody who wears the trackers stands still, and tell from it where floor and body are."""
     import numpy as np
 
-    from controllers.reconstruction.placing import Standing, placed
+    from gambol.controllers.reconstruction.live import Standing, placed
 
     names = source.controls.names
     say(f"listening at port {source.port}: stand upright for a second, in T-pose or with the arms down")
@@ -255,7 +255,7 @@ def _stoppable() -> Iterator[None]:
 def _write(out: Path, name: str, skeleton: Any, poses: list, contacts: list) -> None:
     import numpy as np
 
-    from ..export import Take, write
+    from ..output import Take, write
 
     for path in write(out, [Take(name, skeleton, tuple(poses), np.stack(contacts))], FPS):
         say(f"{path}: {len(poses)} frames, {len(poses) / FPS:.1f} s")

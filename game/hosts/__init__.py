@@ -4,9 +4,12 @@ Both draw the same scenes with the same renderer; neither knows what is simulate
 package opens nothing.
 """
 
-from .events import App, Event, Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
+from . import offscreen
+from .events import PADS, App, Event, Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 from .offscreen import GraphicsError, Offscreen, offscreen_context
 from .window import DisplayError, run_window
 
-__all__ = ["App", "DisplayError", "Event", "Focus", "GraphicsError", "KeyEvent", "MouseMove", "Offscreen", "PadState",
-           "Resize", "Scroll", "offscreen_context", "run_window"]
+__all__ = [
+    "PADS", "App", "DisplayError", "Event", "Focus", "GraphicsError", "KeyEvent", "MouseMove", "Offscreen", "PadState",
+    "Resize", "Scroll", "offscreen", "offscreen_context", "run_window",
+]

@@ -8,7 +8,7 @@ import sys
 import time
 from typing import Any
 
-from ..input.names import PAD_BUTTONS
+from ..input import PAD_BUTTONS
 from ..render import Preset, Renderer
 from .events import PADS, App, Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..hosts.events import Event, Focus, KeyEvent, MouseMove, Scroll
-from ..ink import VERTEX, Ink, Stroke
+from ..hosts import Event, Focus, KeyEvent, MouseMove, Scroll
+from ..scene import VERTEX, Ink, Stroke
 from . import style
 from .toolkit import imgui, implot
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from controllers.body import forward_kinematics
-from controllers.body import rotations as rot
-from controllers.locomotion import Library, fourier
-from controllers.locomotion.library import HIPS, LABELS
+from gambol.controllers.body import forward_kinematics, rotations as rot
+from gambol.controllers.locomotion import HIPS, LABELS, Library, fourier
 
 from ..scene import Figure
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from controllers.reconstruction.controls import NAMES
+from gambol.controllers.reconstruction import NAMES
 
-from ..follow import KEPT
-from ..ink import Ink
-from ..pointing import Row
+from ..explain import Row
+from ..scene import Ink
+from ..world import KEPT
 from . import style
 from .canvas import Canvas
 from .toolkit import imgui

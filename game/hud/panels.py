@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from ..hosts.events import Event
-from ..ink import PANELS, Ink
-from ..moment import Moment
-from ..pointing import Row
-from ..scene import Figure
-from . import legend, meter, plots, sliders, space, transport
+from ..explain import Row
+from ..hosts import Event
+from ..scene import PANELS, Figure, Ink
+from ..session import Moment
+from . import legend, plots, quality_meter, sliders, space_panel, time_strip
 from .canvas import Canvas
 from .ghost import ghost
+from .history import Trace
 from .toolkit import imgui
-from .trace import Trace
 
 MARGIN = 12.0
 STRIP = 70.0
@@ -32,7 +31,7 @@ class Hud:
     def __init__(self):
         self.canvas: Canvas | None = None
         self.open: frozenset[str] = frozenset()
-        self.trace, self.meter, self.space = Trace(), meter.Meter(), space.SpacePanel()
+        self.trace, self.meter, self.space = Trace(), quality_meter.Meter(), space_panel.SpacePanel()
         self.who, self.phase = 0, 0.0
 
     def handle(self, event: Event) -> bool:
@@ -80,7 +79,7 @@ class Hud:
         _place(places["strip"], moved)
         imgui.begin("time", None, imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize
                     | imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_nav)
-        self.who, asked = transport.draw(now, history[-1], behind, kept, self.who, scale)
+        self.who, asked = time_strip.draw(now, history[-1], behind, kept, self.who, scale)
         imgui.end()
         if self.space.chosen is not None and self.space.library is not None:
             self.phase = (self.phase + seconds / self.space.library.primitives[self.space.chosen].period) % 1.0

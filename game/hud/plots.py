@@ -8,8 +8,8 @@ import numpy as np
 
 from ..world import RATE
 from . import style
+from .history import STEPS, Signals
 from .toolkit import imgui, implot
-from .trace import STEPS, Signals
 
 ROWS = (("forward", "m/s", 1.5), ("turning", "rad/s", 1.0), ("to the left", "m/s", 0.5))
 """Each velocity: what to call it, its unit, and the least that its axis spans either way."""

@@ -11,10 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..moment import Moment, owners
-from ..settings import SETTINGS, Setting
+from ..session import SETTINGS, Moment, Setting, owners
 from . import style
-from .duty import own
+from .on_duty import own
 from .toolkit import imgui
 
 DIAL = 0.5

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from controllers.body.springs import damp
-from controllers.locomotion.control_space import SCALE
+from gambol.controllers.body import damp
+from gambol.controllers.locomotion import SCALE
 
 SEEN = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """Scaled (v_f, ω, v_l) to right, up, away."""

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from controllers.contract import CharacterState, Leap
-from controllers.navigation import floor_at, in_world
+from gambol.controllers.contract import CharacterState, Leap
+from gambol.controllers.navigation import floor_at, in_world
 
 from .wish import Wish
 

@@ -1,7 +1,7 @@
 """The one table of keys and buttons: what the devices read is what the help sheet shows.
 
 `Bindings` is a value that is passed to whatever reads a device; `DEFAULT` is what Gambol comes with,
-and `game.input.remap` reads another from a file.
+and `gambol.game.input.remap` reads another from a file.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Keyboard, mouse and gamepads as wishes.
 
-A pad is a `game.hosts.PadState`, or None where none is plugged in; pads are a tuple of them by slot.
+A pad is a `gambol.game.hosts.PadState`, or None where none is plugged in; pads are a tuple of them by slot.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby, zip_longest
 from typing import Any
 
-from ..sheet import Bar, Dial, Lamp, Row, Pad, Sheet
+from ..scene import Bar, Dial, Lamp, Pad, Row, Sheet
 from .bindings import Binding, Bindings
 from .devices import Keyboard, buttons_down, drivers, mode_of, pad_wish, player_of, pulls
 from .names import button_label, key_label

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from controllers.contract import CharacterState, Intent
-from controllers.navigation import Steering, steer
+from gambol.controllers.contract import CharacterState, Intent
+from gambol.controllers.navigation import Steering, steer
 
 from .wish import Wish
 

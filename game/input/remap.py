@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from .. import toml
+from ..files import toml
 from .bindings import DEFAULT, Binding, Bindings, Mouse, Sticks
 from .names import BUTTONS, KEYS
 

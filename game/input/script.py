@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from controllers.contract import CharacterState, Intent, Leap
-from controllers.navigation import Path, follow, steer
+from gambol.controllers.contract import CharacterState, Intent, Leap
+from gambol.controllers.navigation import Path, follow, steer
 
 from .pilot import STEERING
 

@@ -4,7 +4,15 @@
 pixels, `blit` shows them elsewhere. Importing this package touches no GL; hosts make the context.
 """
 
+from . import gl, mesh, occlusion, overlays, skin, sun, text, view
+from .mesh import Body, Mesh, mannequin, pack
 from .presets import FAST, FULL, PRESETS, Preset, preset
 from .renderer import Renderer
+from .skin import NAMES
+from .view import NEAR, look_at, scale_of
+from .wear import leg_length, worn
 
-__all__ = ["FAST", "FULL", "PRESETS", "Preset", "Renderer", "preset"]
+__all__ = [
+    "FAST", "FULL", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "gl", "leg_length", "look_at",
+    "mannequin", "mesh", "occlusion", "overlays", "pack", "preset", "scale_of", "skin", "sun", "text", "view", "worn",
+]

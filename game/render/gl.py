@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-import assets
+from gambol import assets
 
 BLOCKS = {"Frame": 0, "Figures": 1, "Occluders": 2}
 """Binding points of the uniform blocks."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from controllers.body import end_positions
+from gambol.controllers.body import end_positions
 
 from ..scene import Box, Figure, Pillar
 from . import gl, occlusion, skin

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-import assets
+from gambol import assets
 
 from . import skin
 

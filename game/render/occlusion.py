@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from controllers.body import end_positions
-from controllers.body.human import HEEL
+from gambol.controllers.body import HEEL, end_positions
 
 from ..scene import Box, Camera, Figure, Pillar
 from . import gl, skin

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from controllers.body.human import HEEL
+from gambol.controllers.body import HEEL
 
 from ..scene import Camera, Figure, Overlays
 from . import gl, skin

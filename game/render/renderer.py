@@ -9,14 +9,14 @@ import numpy as np
 
 from ..scene import Figure, Goal, Scene
 from . import gl, view
+from .draw_list_pass import InkPass
 from .figures import Figures, drawable
 from .ground import Ground, touched_floor
-from .ink import InkPass
+from .help_pass import SheetPass
 from .occlusion import Occluders
 from .overlays import OverlayPass
 from .presets import Preset, preset
 from .props import Goals, Solids
-from .sheet import SheetPass
 from .sun import SUN, LightBox, figures_box, solids_box
 from .text import TextPass
 

@@ -3,7 +3,7 @@
 The helpers spread twist: where a mocap forearm turns about its own length, flesh near the elbow
 turns little and flesh near the wrist fully. `UpperArm0`, `Forearm0` and `Thigh0` swing with their
 bone without its twist; `Forearm1` has the hand's twist as well. Their weights (made by
-`scripts/build_character.py`) run from one to the next along the limb.
+`scripts/build/mannequin.py`) run from one to the next along the limb.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from controllers.body import forward_kinematics, human
+from gambol.controllers.body import forward_kinematics, human
 
 STANDARD = human()
 REST, _ = forward_kinematics(STANDARD, STANDARD.offsets[0], np.broadcast_to(np.eye(3), (len(STANDARD), 3, 3)))

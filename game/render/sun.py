@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from controllers.body.rotations import yaw
+from gambol.controllers.body import yaw
 
 from ..scene import Box, Camera, Figure, Pillar
 

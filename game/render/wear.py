@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from controllers.body.ik import two_bone_turns
+from gambol.controllers.body import two_bone_turns
 
 from . import skin
 from .mesh import Body, mannequin

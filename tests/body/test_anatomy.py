@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from sampling import BATCHES, rotations
 
-from controllers.body import forward_kinematics, human
-from controllers.body.anatomy import anatomy, centre_of_mass, joint_limits, segment_centres
-from controllers.body.rotations import exp
+from gambol.controllers.body import forward_kinematics, human
+from gambol.controllers.body.anatomy import anatomy, centre_of_mass, joint_limits, segment_centres
+from gambol.controllers.body.rotations import exp
 
 SEXES = ("male", "female")
 

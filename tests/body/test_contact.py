@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from controllers.body import end_positions, forward_kinematics, human
-from controllers.body.contact import (HEIGHT_GATE, WALK_SPEEDS, contact_height, contact_points, detect_contacts,
-                                      feet_apart, foot_drift, point_speeds)
+from gambol.controllers.body import end_positions, forward_kinematics, human
+from gambol.controllers.body.contact import (HEIGHT_GATE, WALK_SPEEDS, contact_height, contact_points, detect_contacts,
+                                             feet_apart, foot_drift, point_speeds)
 
 
 @pytest.mark.parametrize("batch", [(), (1,), (3, 1, 2, 1)], ids=str)

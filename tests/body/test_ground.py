@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from controllers.body.ground import advance, compose, relative, screw
+from gambol.controllers.body.ground_frame import advance, compose, relative, screw
 
 law = settings(max_examples=40, deadline=None)
 BATCHES = ((), (1,), (3, 1, 2, 1))

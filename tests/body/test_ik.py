@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from controllers.body import forward_kinematics, human, local_rotations
-from controllers.body.ik import EPSILON, pole_of, two_bone, two_bone_kernel, two_bone_turns
+from gambol.controllers.body import forward_kinematics, human, local_rotations
+from gambol.controllers.body.ik import EPSILON, pole_of, two_bone, two_bone_kernel, two_bone_turns
 
 BATCHES = ((), (1,), (3, 1, 2, 1))
 
@@ -95,7 +95,7 @@ def test_it_is_the_same_problem_wherever_the_world_is_turned(rng):
 def test_the_turns_put_a_whole_leg_there_and_keep_the_knee_a_hinge(rng):
     """Through forward kinematics: a leg that bends about X goes on bending about X."""
     skeleton = human()
-    from controllers.body.rotations import exp
+    from gambol.controllers.body.rotations import exp
     hip, knee, foot = (skeleton.index("Left" + n) for n in ("UpLeg", "Leg", "Foot"))
     vectors = np.zeros((40, len(skeleton), 3))
     vectors[:, hip] = rng.normal(size=(40, 3)) * 0.4

@@ -5,9 +5,9 @@ import pytest
 from sampling import BATCHES, angle, rotations
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from controllers.body import Clip, Skeleton, end_positions, forward_kinematics, human, local_rotations
-from controllers.body.clip import mirror_index
-from controllers.body.human import CONTACT_HEIGHT, HEEL, STATURE
+from gambol.controllers.body import Clip, Skeleton, end_positions, forward_kinematics, human, local_rotations
+from gambol.controllers.body.clip import mirror_index
+from gambol.controllers.body.human import CONTACT_HEIGHT, HEEL, STATURE
 
 
 def random_tree(rng, count=9):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sampling import BATCHES, KINDS, angle, rotations
 
-from controllers.body.rotations import between, continuous, exp, heading_of, log, mean, wrap, yaw
+from gambol.controllers.body.rotations import between, continuous, exp, heading_of, log, mean, wrap, yaw
 
 
 @pytest.fixture(params=KINDS)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from controllers.body.springs import damp, decay, settle, spring_kernel
+from gambol.controllers.body.springs import damp, decay, settle, spring_kernel
 
 BATCHES = ((), (1,), (3, 1, 2, 1))
 HALFLIVES = (0.02, 0.2, 1.5)

@@ -10,9 +10,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "render"))
 
 from poses import figure  # noqa: E402
 
-from game.character.write import FLOAT, UBYTE, USHORT, Glb  # noqa: E402
-from game.render import skin  # noqa: E402
-from game.render.mesh import mannequin  # noqa: E402
+from gambol.game.character.write import FLOAT, UBYTE, USHORT, Glb  # noqa: E402
+from gambol.game.render import skin  # noqa: E402
+from gambol.game.render.mesh import mannequin  # noqa: E402
 
 A_POSE = dict(LeftArm=(0, 0, -50), RightArm=(0, 0, 50), LeftUpLeg=(0, 0, 6), RightUpLeg=(0, 0, -6),
               LeftFoot=(0, 0, -6), RightFoot=(0, 0, 6))

@@ -2,8 +2,8 @@
 
 import pytest
 
-from game.hosts.events import KeyEvent, PadState
-from game.play import Play
+from gambol.game.app.play import Play
+from gambol.game.hosts.events import KeyEvent, PadState
 from stand_in import Glide
 
 FRAME = 1 / 60

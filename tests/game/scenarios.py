@@ -2,7 +2,7 @@
 
 import pytest
 
-from game.scenario import ScenarioError, load
+from gambol.game.scenario.scenario import ScenarioError, load
 
 
 def written(folder, text):

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from controllers.body import Pose, Skeleton, human
-from controllers.body.rotations import yaw
-from controllers.contract import CharacterState, Intent, Status
-from controllers.navigation import drift
+from gambol.controllers.body import Pose, Skeleton, human
+from gambol.controllers.body.rotations import yaw
+from gambol.controllers.contract import CharacterState, Intent, Status
+from gambol.controllers.navigation import drift
 
 
 @dataclass(frozen=True, eq=False)

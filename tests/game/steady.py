@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from controllers.locomotion import Locomotion
-from controllers.reconstruction.beliefs import Gaussian
-from controllers.reconstruction.chart import HEIGHT, PITCH, ROLL, WIDTH, YAW_RATE
-from controllers.reconstruction.method import Method
-from controllers.reconstruction.solver import Solver
-from controllers.supervisor import Supervisor
-from game import methods as learning
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.reconstruction.pose_vector import HEIGHT, PITCH, ROLL, WIDTH, YAW_RATE
+from gambol.controllers.reconstruction.regression.beliefs import Gaussian
+from gambol.controllers.reconstruction.regression.map_solver import Solver
+from gambol.controllers.reconstruction.regression.method import Method
+from gambol.controllers.supervisor import Supervisor
+from gambol.game.world import methods as learning
 
 
 class Steady:

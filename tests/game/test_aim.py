@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controllers.navigation import drift
-from game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, Aim
-from game.input.wish import Wish
-from game.scene import Box
-from game.world import DT
+from gambol.controllers.navigation import drift
+from gambol.game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, Aim
+from gambol.game.input.wish import Wish
+from gambol.game.scene.scene import Box
+from gambol.game.world.world import DT
 from stand_in import Glide
 
 HELD, FREE = Wish(jump=True), Wish()

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from game.cli import app
-from game.hosts.events import PadState
-from game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, names
-from game.input.remap import BindingsError, as_toml, clashes, load, remapped, user_file
+from gambol.game.cli import app
+from gambol.game.hosts.events import PadState
+from gambol.game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, names
+from gambol.game.input.remap import BindingsError, as_toml, clashes, load, remapped, user_file
 
 
 def read(tmp_path, text):

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body.rotations import wrap
-from game.camera import BESIDE, CUT, CameraSettings, Follow, Free, between, cycled
-from game.input import Wish
-from game.obstacles import FLOOR, MARGIN, above_floor, free_way, outside
-from game.rail import dolly, fixed, on_rail
-from game.rig import angles, forward
-from game.scene import Box, Goal, Pillar
+from gambol.controllers.body.rotations import wrap
+from gambol.game.camera.arm import angles, forward
+from gambol.game.camera.dolly import dolly, fixed, on_rail
+from gambol.game.camera.held import BESIDE, CUT, CameraSettings, Follow, Free, between, cycled
+from gambol.game.camera.line_of_sight import FLOOR, MARGIN, above_floor, free_way, outside
+from gambol.game.input import Wish
+from gambol.game.scene.scene import Box, Goal, Pillar
 
 STILL = Wish()
 HERE = np.zeros(3)

@@ -7,10 +7,10 @@ import foreign
 import numpy as np
 import pytest
 
-from game.character import Build, BuildError, CharacterError, load, tailored
-from game.render import skin
-from game.render.mesh import mannequin
-from game.render.wear import leg_length, worn
+from gambol.game.character import Build, BuildError, CharacterError, load, tailored
+from gambol.game.render import skin
+from gambol.game.render.mesh import mannequin
+from gambol.game.render.wear import leg_length, worn
 
 STRIDE = foreign.figure(LeftUpLeg=(-28, 0, 0), LeftLeg=(12, 0, 0), LeftFoot=(14, 0, 0), RightUpLeg=(16, 0, 0),
                         RightLeg=(32, 0, 0), LeftArm=(0, 0, -70), RightForeArm=(0, 40, 0))
@@ -213,7 +213,7 @@ def test_the_standard_build_is_the_mannequin_itself():
 
 def test_the_mannequin_is_modelled_around_any_skeleton():
     """Bones of another length, in any pose and roll: the body's are in proportion."""
-    from controllers.body import Skeleton
+    from gambol.controllers.body import Skeleton
 
     longer = {"LeftLeg": 1.2, "RightLeg": 1.2, "LeftForeArm": 0.8, "RightForeArm": 0.8}
     offsets = skin.STANDARD.offsets * [[longer.get(n, 1.0)] for n in skin.STANDARD.names]

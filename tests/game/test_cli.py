@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import game.hosts
-from game import cli
-from game.character import Build
+from gambol.game import hosts
+from gambol.game import cli
+from gambol.game.character import Build
 from stand_in import Glide
 
 SHORT = """
@@ -46,8 +46,8 @@ class Stage:
 
 @pytest.fixture
 def short(tmp_path, monkeypatch):
-    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
-    monkeypatch.setattr(game.hosts, "Offscreen", Stage, raising=False)
+    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
+    monkeypatch.setattr(hosts, "Offscreen", Stage, raising=False)
     file = tmp_path / "short.toml"
     file.write_text(SHORT)
     return file
@@ -120,9 +120,9 @@ def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monk
     """A folder is in the way of each; whoever would simulate, draw or build fails loudly."""
     def never(*args, **kwargs):
         raise AssertionError("worked in vain")
-    for work in ("game.film.run", "controllers.locomotion.build.build_library", "controllers.locomotion.coverage.report"):
+    for work in ("gambol.game.scenario.film.run", "gambol.controllers.locomotion.build.build_library", "gambol.controllers.locomotion.coverage.report"):
         monkeypatch.setattr(work, never)
-    monkeypatch.setattr(game.hosts, "Offscreen", never)
+    monkeypatch.setattr(hosts, "Offscreen", never)
     short.write_text(SHORT + '[[actors]]\nname = "B"\n')
     (tmp_path / name).mkdir()
     done = gambol(*{"a.mp4": ("render", short, "-o", tmp_path / "a.mp4"),
@@ -133,14 +133,14 @@ def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monk
 
 
 def test_a_picture_of_a_library_goes_into_a_new_folder(tmp_path, monkeypatch):
-    monkeypatch.setattr("controllers.locomotion.coverage.picture", lambda library, path: path.write_bytes(b"drawn"))
+    monkeypatch.setattr("gambol.controllers.locomotion.coverage.picture", lambda library, path: path.write_bytes(b"drawn"))
     done = gambol("library", "report", "--picture", tmp_path / "new" / "a.png")
     assert done.exit_code == 0 and (tmp_path / "new" / "a.png").exists()
 
 
 @pytest.mark.parametrize(("error", "code", "says"), [
     (KeyboardInterrupt(), 130, "gambol: stopped"),
-    (game.hosts.GraphicsError("the driver is gone"), 2, "gambol: the driver is gone"),
+    (hosts.GraphicsError("the driver is gone"), 2, "gambol: the driver is gone"),
     (OSError(5, "Input/output error"), 2, "Input/output error"),
     (MemoryError(), 1, ""),
 ])
@@ -168,8 +168,8 @@ def test_playing_without_a_display_says_what_to_do(short, monkeypatch):
 
 def test_a_machine_without_opengl_says_so_and_leaves_nothing(short, tmp_path, monkeypatch):
     def none(*_):
-        raise game.hosts.GraphicsError("no OpenGL here. Type: apt install it")
-    monkeypatch.setattr(game.hosts, "Offscreen", none)
+        raise hosts.GraphicsError("no OpenGL here. Type: apt install it")
+    monkeypatch.setattr(hosts, "Offscreen", none)
     done = gambol("render", short, "-o", tmp_path / "a.mp4")
     assert done.exit_code == 2 and done.output == "gambol: no OpenGL here. Type: apt install it\n"
     assert not list(tmp_path.glob("a.*"))
@@ -189,16 +189,16 @@ def test_scenarios_are_listed():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows reports a closed pipe in another way")
 def test_a_reader_who_has_had_enough_is_no_mistake():
-    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['scenarios']; from game.cli import main; main()"
+    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['scenarios']; from gambol.game.cli import main; main()"
     done = subprocess.run([sys.executable, "-u", "-c", code], capture_output=True, text=True)
     assert done.stderr == "" and done.returncode == 1
 
 
 def test_help_comes_without_loading_the_rest():
-    code = "import sys, game.cli; print(*[m for m in ('numpy', 'scipy', 'numba', 'pydantic', 'av') if m in sys.modules])"
+    code = "import sys, gambol.game.cli; print(*[m for m in ('numpy', 'scipy', 'numba', 'pydantic', 'av') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""
-    done = subprocess.run([sys.executable, "-m", "game.cli", "--help"], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "gambol.game.cli", "--help"], capture_output=True, text=True)
     assert done.returncode == 0 and "render" in done.stdout
 
 

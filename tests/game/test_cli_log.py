@@ -4,11 +4,11 @@ import av
 import numpy as np
 import pytest
 
-import game.hosts
-from game.hosts import DisplayError
-from game.hosts.events import KeyEvent
-from game.log import LogWriter, fingerprint, read, replay
-from game.play import Play
+from gambol.game import hosts
+from gambol.game.app.play import Play
+from gambol.game.hosts import DisplayError
+from gambol.game.hosts.events import KeyEvent
+from gambol.game.session.input_log import LogWriter, fingerprint, read, replay
 from stand_in import Glide
 from test_cli import Stage, gambol
 
@@ -16,8 +16,8 @@ from test_cli import Stage, gambol
 @pytest.fixture
 def log(tmp_path, monkeypatch):
     """Two seconds of two who walk, from the second one on."""
-    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
-    monkeypatch.setattr(game.hosts, "Offscreen", Stage, raising=False)
+    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
+    monkeypatch.setattr(hosts, "Offscreen", Stage, raising=False)
     path = tmp_path / "a.gambol"
     played = Play(Glide(), 2, log=LogWriter(path, Glide(), 2))
     for frame in range(120):
@@ -63,7 +63,7 @@ def test_in_the_background_progress_is_told_in_lines_and_others_come_first(log, 
 
 
 def test_a_log_that_goes_another_way_is_filmed_with_a_warning(log, tmp_path, monkeypatch):
-    monkeypatch.setattr("controllers.person.person", lambda *_: Glide(halflife=0.3))
+    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide(halflife=0.3))
     done = gambol("render", "--replay", log, "-o", tmp_path / "f", "--size", "16x16", "--fps", 5)
     assert done.exit_code == 0 and done.output.count("another version of Gambol") == 1
 
@@ -97,7 +97,7 @@ def test_what_was_played_is_kept_however_the_window_ends(log, tmp_path, monkeypa
         if end is not None:
             raise end
         window.last = app.now
-    monkeypatch.setattr(game.hosts, "run_window", window)
+    monkeypatch.setattr(hosts, "run_window", window)
     done = gambol("play", "--record", tmp_path / "new" / "b.gambol", "--players", 2)
     assert "b.gambol: 2 s; `gambol play --replay` shows it" in done.output
     kept = read(tmp_path / "new" / "b.gambol")
@@ -109,6 +109,6 @@ def test_what_was_played_is_kept_however_the_window_ends(log, tmp_path, monkeypa
 
 def test_a_game_that_never_began_leaves_no_log(log, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(game.hosts, "run_window", lambda *_: 0)
+    monkeypatch.setattr(hosts, "run_window", lambda *_: 0)
     assert gambol("play").exit_code == 0
     assert [p.name for p in tmp_path.iterdir()] == ["a.gambol"]

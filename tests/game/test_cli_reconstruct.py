@@ -19,11 +19,11 @@ from typer.testing import CliRunner
 sys.path.insert(0, str(Path(__file__).parents[1] / "reconstruction"))
 import walks  # noqa: E402
 
-from controllers.mocap import load, write_bvh  # noqa: E402
-from controllers.reconstruction.chart import SKELETON  # noqa: E402
-from controllers.reconstruction.controls import parse  # noqa: E402
-from controllers.reconstruction.placing import stances  # noqa: E402
-from game import cli  # noqa: E402
+from gambol.controllers.mocap import load, write_bvh  # noqa: E402
+from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
+from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
+from gambol.controllers.reconstruction.live.placing import stances  # noqa: E402
+from gambol.game import cli  # noqa: E402
 
 WORN = "lwrist", "rwrist", "lankle", "rankle"
 
@@ -112,7 +112,7 @@ def test_streams_are_recorded_until_they_are_ended_and_never_lost(motion, tmp_pa
     ends, programs = (signal.SIGINT, signal.SIGTERM, None), []
     for port, end in zip(ports, ends):
         programs.append(subprocess.Popen(
-            [sys.executable, "-m", "game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(WORN),
+            [sys.executable, "-m", "gambol.game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(WORN),
              "--method", "nearest", "--database", str(motion[0]), "-o", str(tmp_path / f"{port}.bvh"), *([] if end else ["--seconds", "2"])],
             stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)))  # a shell's background jobs are deaf to Ctrl-C

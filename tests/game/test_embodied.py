@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from controllers.contract import Intent
-from controllers.locomotion import Locomotion
-from game.character import Build, tailored
-from game.embodied import Embodied
-from game.render.mesh import mannequin
-from game.render.wear import leg_length
-from game.world import DT, Character, World, figures
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import Locomotion
+from gambol.game.character import Build, tailored
+from gambol.game.render.mesh import mannequin
+from gambol.game.render.wear import leg_length
+from gambol.game.world.embodied import Embodied
+from gambol.game.world.world import DT, Character, World, figures
 
 
 @pytest.fixture(scope="module")

@@ -10,17 +10,17 @@ import foreign
 import numpy as np
 import pytest
 
-from controllers.body import Pose, human
-from controllers.body.rotations import exp, yaw
-from game import export
-from game.character import load
-from game.output import OutputError
-from game.render import skin
-from game.world import RATE
+from gambol.controllers.body import Pose, human
+from gambol.controllers.body.rotations import exp, yaw
+from gambol.game.character import load
+from gambol.game.files.paths import OutputError
+from gambol.game.output import export
+from gambol.game.render import skin
+from gambol.game.world.world import RATE
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
 
-from measure_export import bvh_joints, glb_joints, own_joints  # noqa: E402
+from export import bvh_joints, glb_joints, own_joints  # noqa: E402
 
 RNG = np.random.default_rng(4)
 
@@ -88,7 +88,7 @@ def test_the_rest_pose_stands_on_the_floor_in_metres_and_faces_z(tmp_path, heigh
 
 def test_rotations_take_the_short_way_between_frames(tmp_path):
     file, = export.write(tmp_path / "x.glb", [take(frames=400)])
-    from game.character import gltf
+    from gambol.game.character import gltf
     document = gltf.read(file)
     for channel in document.json["animations"][0]["channels"]:
         if channel["target"]["path"] == "rotation":
@@ -147,8 +147,8 @@ def test_what_cannot_be_written_is_said(tmp_path):
 def test_the_key_keeps_what_was_played_since_the_last_reset(tmp_path):
     from stand_in import Glide
 
-    from game.play import Play
-    from game.studio import Studio
+    from gambol.game.app.play import Play
+    from gambol.game.app.capture import Studio
 
     game = Play(Glide(), studio=Studio(tmp_path))
     for tick in range(50):
@@ -167,7 +167,7 @@ def test_the_commands_write_what_they_are_asked_for(tmp_path, monkeypatch):
     from stand_in import Glide
     from typer.testing import CliRunner
 
-    from game import cli
+    from gambol.game import cli
 
     def said(*words):
         done = CliRunner().invoke(cli.app, list(map(str, words)))
@@ -178,7 +178,7 @@ def test_the_commands_write_what_they_are_asked_for(tmp_path, monkeypatch):
     assert code == 2 and "height 12" in text
     code, text = said("export", "demo", "-o", tmp_path / "x.glb", "--character", tmp_path / "none.glb")
     assert code == 2 and "none.glb: can't be read" in text
-    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
+    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
     assert said("export", "start_stop", "-o", tmp_path / "x.glb", "--fps", 10)[0] == 0
     assert described(tmp_path / "x.glb")["animations"][0]["extras"]["fps"] == 10
     code, text = said("export", "start_stop", "-o", tmp_path / "x.fbx")

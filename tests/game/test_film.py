@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controllers.person import person
-from game import film
-from game.obstacles import blocked
-from game.scenario import load, shipped
-from game.scene import Overlays
-from game.shots import parts
+from gambol.controllers.person import person
+from gambol.game.camera.line_of_sight import blocked
+from gambol.game.scenario import film
+from gambol.game.scenario.scenario import load, shipped
+from gambol.game.scenario.shots import parts
+from gambol.game.scene.scene import Overlays
 from scenarios import written
 from stand_in import Glide
 

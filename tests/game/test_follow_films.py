@@ -3,19 +3,20 @@
 import numpy as np
 import pytest
 
-from controllers.body import forward_kinematics
-from controllers.contract import Intent
-from controllers.mocap import write_bvh
-from controllers.reconstruction import metrics
-from controllers.reconstruction.chart import JOINTS, SKELETON
-from game import film, methods as learning
-from game.follow import Follows, errors, lately
-from game.hud.legend import cells
-from game.pointing import pointed, rows
-from game.recorder import motion_clip
-from game.scenario import load, shipped
-from game.scene import Dot, Overlays
-from game.world import DT, figures
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.mocap import write_bvh
+from gambol.controllers.reconstruction.evaluation import metrics
+from gambol.controllers.reconstruction.pose_vector import JOINTS, SKELETON
+from gambol.game.explain.points import pointed, rows
+from gambol.game.hud.legend import cells
+from gambol.game.output.recorder import motion_clip
+from gambol.game.scenario import film
+from gambol.game.scenario.scenario import load, shipped
+from gambol.game.scene.scene import Dot, Overlays
+from gambol.game.world import methods as learning
+from gambol.game.world.followers import Follows, errors, lately
+from gambol.game.world.world import DT, figures
 from scenarios import tells, written
 from steady import SCENE, no_database, walker  # noqa: F401, fixtures
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import game.hosts
-from game import cli, gallery
-from game.scenario import ScenarioError, load, locate
+from gambol.game import hosts
+from gambol.game import cli
+from gambol.game.output import gallery
+from gambol.game.scenario.scenario import ScenarioError, load, locate
 from stand_in import Glide
 
 TEXT = """
@@ -130,8 +131,8 @@ def test_the_command_makes_what_is_missing(names, tmp_path, monkeypatch):
         __enter__ = lambda self: self
         __exit__ = lambda self, *error: None
 
-    monkeypatch.setattr(game.hosts, "Offscreen", Hidden)
-    monkeypatch.setattr("controllers.person.person", lambda *_: Glide())
+    monkeypatch.setattr(hosts, "Offscreen", Hidden)
+    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
     def gallery_of(*more):
         return CliRunner().invoke(cli.app, ["gallery", *more, "-o", str(tmp_path / "out"), "--preset", "fast"])
     assert "1 of 1 films made" in gallery_of(names[0]).stderr

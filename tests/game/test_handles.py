@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from game.handles import Grip, nearest, project, unproject
-from game.scene import Camera
+from gambol.game.app.point_picking import Grip, nearest, project, unproject
+from gambol.game.scene.scene import Camera
 
 
 vectors = st.tuples(*(st.floats(-5, 5),) * 3).map(np.array)
@@ -20,7 +20,7 @@ def test_projecting_undoes_unprojecting(eye, away, fov, aspect, x, y, depth):
 
 
 def test_the_renderer_draws_a_point_where_it_is_picked():
-    from game.render import view
+    from gambol.game.render import view
 
     camera, size = Camera(np.array([2.0, 1.5, -3.0]), np.array([0.3, 1.0, 0.0]), fov=0.8), (1280, 720)
     rng = np.random.default_rng(0)

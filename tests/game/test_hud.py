@@ -10,25 +10,26 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body.rotations import yaw
-from controllers.locomotion import Locomotion
-from controllers.person import person
-from game.character import Build, tailored
-from game.embodied import Embodied
-from game.hosts.events import Focus, KeyEvent, MouseMove, Scroll
-from game.hud import Hud, reason
-from game.hud.duty import acting, own, why
-from game.hud.ghost import ghost
-from game.hud.panels import PANELS, layout
-from game.hud.plots import runs, ticks
-from game.hud.sliders import Row
-from game.hud.tetrahedra import Mesh, Orbit
-from game.hud.trace import STEPS, Trace
-from game.input import Wish
-from game.moment import opening, owners
-from game.play import Play
-from game.session import Timeline
-from game.settings import SETTINGS
+from gambol.controllers.body.rotations import yaw
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.person import person
+from gambol.game.app.play import Play
+from gambol.game.character import Build, tailored
+from gambol.game.hosts.events import Focus, KeyEvent, MouseMove, Scroll
+from gambol.game.hud import Hud, reason
+from gambol.game.hud.ghost import ghost
+from gambol.game.hud.history import STEPS, Trace
+from gambol.game.hud.on_duty import acting, own, why
+from gambol.game.hud.panels import layout
+from gambol.game.scene import PANELS
+from gambol.game.hud.plots import runs, ticks
+from gambol.game.hud.sliders import Row
+from gambol.game.hud.tetrahedra import Mesh, Orbit
+from gambol.game.input import Wish
+from gambol.game.session.settings import SETTINGS
+from gambol.game.session.state import opening, owners
+from gambol.game.session.tick import Timeline
+from gambol.game.world.embodied import Embodied
 from stand_in import Glide
 
 SIZE = (1280, 720)
@@ -86,7 +87,7 @@ def walked(controller, seconds, *wishes):
 
 
 def test_who_opens_no_panel_never_loads_imgui():
-    done = subprocess.run([sys.executable, "-c", "import game.play, game.hosts.window, game.render, sys\n"
+    done = subprocess.run([sys.executable, "-c", "import gambol.game.app.play, gambol.game.hosts.window, gambol.game.render, sys\n"
                            "print('imgui_bundle' in sys.modules)"], cwd=Path(__file__).parents[2],
                           capture_output=True, text=True, timeout=120)
     assert done.stdout.split() == ["False"], done.stderr
@@ -305,7 +306,7 @@ def test_the_mesh_has_every_edge_once_and_knows_its_hull(locomotion):
     on_hull = set(mesh.edges[mesh.outer].ravel().tolist())
     from scipy.spatial import ConvexHull
 
-    from controllers.locomotion.control_space import SCALE
+    from gambol.controllers.locomotion.control_space import SCALE
     assert on_hull == set(ConvexHull(mesh.points / SCALE).vertices.tolist())
     # Euler: a closed surface of triangles over V vertices has 3 V - 6 edges
     assert mesh.outer.sum() == 3 * len(on_hull) - 6

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from game.hosts.events import PadState
-from game.input import DEFAULT, JOINING, REWOUND, Keyboard, Pilot, Sticks, Wish, devices, drivers, mode_of, player_of, wheel_wish
-from game.input.names import PAD_BUTTONS
-from game.input.remap import remapped
+from gambol.game.hosts.events import PadState
+from gambol.game.input import (DEFAULT, JOINING, REWOUND, Keyboard, Pilot, Sticks, Wish, devices, drivers, mode_of,
+                               player_of, wheel_wish)
+from gambol.game.input.names import PAD_BUTTONS
+from gambol.game.input.remap import remapped
 from stand_in import Glide
 
 INNER, OUTER = DEFAULT.sticks.dead_zone, DEFAULT.sticks.full

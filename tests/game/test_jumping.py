@@ -5,23 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.contract import Intent, Leap
-from controllers.jump import Physique
-from controllers.person import person
-from game import film
-from game.aiming import CAN, CANNOT, aimed, previewed
-from game.effort import pushed
-from game.input.script import jumping
-from game.input.wish import Wish
-from game.jumping import LAYERS, explained
-from game.moment import begin, opening
-from game.render.sketches import sketched
-from game.scenario import ScenarioError, load
-from game.scene import Camera, Line, Overlays, Patch
-from game.session import Timeline, advance, refused
-from game.strip import strip
-from game.views import previews
-from game.world import Character, World, figures
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Physique
+from gambol.controllers.person import person
+from gambol.game.app.views import previews
+from gambol.game.explain.forces import pushed
+from gambol.game.explain.jump import LAYERS, explained
+from gambol.game.explain.jump_preview import CAN, CANNOT, aimed, previewed
+from gambol.game.input.script import jumping
+from gambol.game.input.wish import Wish
+from gambol.game.output.strip import strip
+from gambol.game.render.sketches import sketched
+from gambol.game.scenario import film
+from gambol.game.scenario.scenario import ScenarioError, load
+from gambol.game.scene.scene import Camera, Line, Overlays, Patch
+from gambol.game.session.state import begin, opening
+from gambol.game.session.tick import Timeline, advance, refused
+from gambol.game.world.world import Character, World, figures
 from scenarios import tells, written
 
 TEXT = """
@@ -70,7 +70,7 @@ def same_run(played, monkeypatch):
     def run(wanted, controller):
         assert wanted == scenario, "at another rate it would be another run"
         return iter(frames)
-    monkeypatch.setattr("game.strip.run", run)
+    monkeypatch.setattr("gambol.game.output.strip.run", run)
     return scenario
 
 
@@ -86,8 +86,8 @@ def jumps_of(frames, who):
 
 def soles_at(plan, someone):
     """The middle of both soles (3,), from heel to tip, as they come to stand."""
-    from controllers.body import forward_kinematics
-    from controllers.body.support import sole_corners
+    from gambol.controllers.body import forward_kinematics
+    from gambol.controllers.body.support_polygon import sole_corners
     skeleton = someone.controller.skeleton
     pose = plan.at(plan.lowest)
     return sole_corners(skeleton, *forward_kinematics(skeleton, pose.root, pose.rotations))[[0, 1, 4, 5, 6, 7, 10, 11]].mean(0)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from game.log import LogWriter, fingerprint, read, replay
-from game.output import OutputError
-from game.play import Play
-from game.studio import Film, Studio, log_file
+from gambol.game.app.capture import Film, Studio, log_file
+from gambol.game.app.play import Play
+from gambol.game.files.paths import OutputError
+from gambol.game.session.input_log import LogWriter, fingerprint, read, replay
 from hands import FRAME, at, game, press, tap, text, wait, walked  # noqa: F401, the fixture
 from stand_in import Glide
 
@@ -68,7 +68,7 @@ def test_a_film_is_made_of_what_was_played_meanwhile(tmp_path, monkeypatch):
 
         def status(self):
             return f"{self.path.name}: 5 %"
-    monkeypatch.setattr("game.studio.Film", Film)
+    monkeypatch.setattr("gambol.game.app.capture.Film", Film)
     game = Play(Glide(), log=LogWriter(tmp_path / "a.gambol", Glide(), 1), studio=Studio(tmp_path, ("--library", "x.npz")))
     wait(game, 1.0)
     tap(game, "F10")

@@ -12,13 +12,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.locomotion import Locomotion
-from game.input import Wish
-from game.log import LogError, LogWriter, fingerprint, of_library, read, replay, strayed
-from game.moment import opening
-from game.output import OutputError
-from game.session import Timeline
-from game.settings import SETTINGS
+from gambol.controllers.locomotion import Locomotion
+from gambol.game.files.paths import OutputError
+from gambol.game.input import Wish
+from gambol.game.session.input_log import LogError, LogWriter, fingerprint, of_library, read, replay, strayed
+from gambol.game.session.settings import SETTINGS
+from gambol.game.session.state import opening
+from gambol.game.session.tick import Timeline
 from stand_in import Glide
 
 ROOT = Path(__file__).parents[2]
@@ -177,9 +177,9 @@ GAME = '''
 import sys, time
 sys.path.insert(0, "tests/game")
 from stand_in import Glide
-from game.hosts.events import KeyEvent
-from game.log import LogWriter
-from game.play import Play
+from gambol.game.hosts.events import KeyEvent
+from gambol.game.session.input_log import LogWriter
+from gambol.game.app.play import Play
 game = Play(Glide(), log=LogWriter(sys.argv[1], Glide(), 1))
 game.handle(KeyEvent("W", True))
 while True:

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from controllers.person import person
-from game.hosts.events import Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
-from game.play import Play
+from gambol.controllers.person import person
+from gambol.game.app.play import Play
+from gambol.game.hosts.events import Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 from hands import FRAME, at, camera, game, pad, press, release, tap, text, wait, wanted  # noqa: F401, the fixture
 from stand_in import Glide
 

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body import forward_kinematics, human
-from controllers.body.rotations import yaw
-from controllers.contract import Intent
-from controllers.locomotion import Locomotion
-from game.quality import Quality, measure, running
-from game.world import DT
+from gambol.controllers.body import forward_kinematics, human
+from gambol.controllers.body.rotations import yaw
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import Locomotion
+from gambol.game.explain.quality import Quality, measure, running
+from gambol.game.world.world import DT
 
 HUMAN = human()
 NATURAL = {"walk": np.full(len(HUMAN), 10.0), "run": np.full(len(HUMAN), 40.0)}

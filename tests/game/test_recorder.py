@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from controllers.body import human
-from game.output import OutputError, output_file
-from game.recorder import Film, Pictures, motion_clip, recorder, write_motion
-from game.world import DT
+from gambol.controllers.body import human
+from gambol.game.files.paths import OutputError, output_file
+from gambol.game.output.recorder import Film, Pictures, motion_clip, recorder, write_motion
+from gambol.game.world.world import DT
 from stand_in import Glide
 
 
@@ -84,7 +84,7 @@ with Film({str(tmp_path / "a.mp4")!r}, (120, 90), 10) as film:
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     last = done.stderr.splitlines()[-1]
-    assert last == f"game.output.OutputError: {tmp_path / 'a.part.mp4'}: can't be written: File too large"
+    assert last == f"gambol.game.files.paths.OutputError: {tmp_path / 'a.part.mp4'}: can't be written: File too large"
     with av.open(str(tmp_path / "a.part.mp4")) as film:  # whose last frame is cut off
         assert len(list(islice(film.decode(video=0), 5))) == 5
 
@@ -155,7 +155,7 @@ def test_motion_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
     def full(clip, path):
         path.write_text("half")
         raise OSError(28, "No space left on device")
-    monkeypatch.setattr("controllers.mocap.write_bvh", full)
+    monkeypatch.setattr("gambol.controllers.mocap.write_bvh", full)
     with pytest.raises(OutputError, match="a.bvh: can't be written: No space left on device"):
         write_motion(clip, tmp_path / "new" / "a.bvh")
     assert not list((tmp_path / "new").iterdir())

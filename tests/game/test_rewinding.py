@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from game.hosts.events import MouseMove
-from game.session import KEPT
+from gambol.game.hosts.events import MouseMove
+from gambol.game.session.tick import KEPT
 from hands import FRAME, at, camera, game, press, release, tap, text, wait, walked  # noqa: F401, the fixture
 
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from controllers.contract import Intent
-from game import film
-from game.input.script import Move, Script
-from game.scenario import Scenario, ScenarioError, load, shipped
-from game.scene import Overlays
-from game.shots import OVERLAYS
-from game.world import DT
+from gambol.controllers.contract import Intent
+from gambol.game.input.script import Move, Script
+from gambol.game.scenario import film
+from gambol.game.scenario.scenario import Scenario, ScenarioError, load, shipped
+from gambol.game.scenario.shots import OVERLAYS
+from gambol.game.scene.scene import Overlays
+from gambol.game.world.world import DT
 from scenarios import tells, written
 from stand_in import Glide
 

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.locomotion import Locomotion
-from game.deeds import SLOWER
-from game.input import Wish
-from game.moment import opening
-from game.session import KEPT, Timeline, advance
-from game.settings import SETTINGS, SettingError
+from gambol.controllers.locomotion import Locomotion
+from gambol.game.input import Wish
+from gambol.game.session.actions import SLOWER
+from gambol.game.session.settings import SETTINGS, SettingError
+from gambol.game.session.state import opening
+from gambol.game.session.tick import KEPT, Timeline, advance
 from stand_in import Glide
 
 AHEAD = Wish(move=(0.0, 1.0))

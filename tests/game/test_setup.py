@@ -115,8 +115,8 @@ def started(calls, monkeypatch, tmp_path):
 
 def test_the_film_instead_follows_the_players_options(started, capsys):
     (first, where), (second, there) = started("--library", "mine.npz", "--size=640x360", "--loud", "--preset", "fast")
-    assert first == ["-P", "-m", "game.cli", "play", "--library", "mine.npz", "--size=640x360", "--loud", "--preset", "fast"]
-    assert second == ["-P", "-m", "game.cli", "render", "demo", "-o", "out/demo.mp4", "--fps", "30",
+    assert first == ["-P", "-m", "gambol.game.cli", "play", "--library", "mine.npz", "--size=640x360", "--loud", "--preset", "fast"]
+    assert second == ["-P", "-m", "gambol.game.cli", "render", "demo", "-o", "out/demo.mp4", "--fps", "30",
                       "--library", "mine.npz", "--preset", "fast", "--size", "640x360"]
     assert where is None and there is None, "paths are meant from where the user is"
     assert "filmed into out/demo.mp4 (where --loud means nothing)" in capsys.readouterr().out
@@ -125,7 +125,7 @@ def test_the_film_instead_follows_the_players_options(started, capsys):
 
 
 def test_both_commands_know_what_is_handed_on():
-    from game import cli
+    from gambol.game import cli
     commands = {command.callback.__name__: command.callback for command in cli.app.registered_commands}
     for name in ("play", "render"):
         known = commands[name].__wrapped__.__annotations__

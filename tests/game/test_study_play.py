@@ -6,22 +6,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.mocap import write_bvh
-from game import methods as learning
-from game.handles import project
-from game.hosts.events import KeyEvent, MouseMove, Scroll
-from game.hud.legend import cells
-from game.input import Wish
-from game.log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
-from game.moment import opening
-from game.play import Play
-from game.pointing import rows
-from game.recorded import Recorded
-from game.recorder import motion_clip
-from game.session import Timeline
-from game.settings import SettingError
-from game.study import Study, opened, written
-from game.world import DT
+from gambol.controllers.mocap import write_bvh
+from gambol.game.app.play import Play
+from gambol.game.app.point_picking import project
+from gambol.game.explain.points import rows
+from gambol.game.hosts.events import KeyEvent, MouseMove, Scroll
+from gambol.game.hud.legend import cells
+from gambol.game.input import Wish
+from gambol.game.output.recorder import motion_clip
+from gambol.game.session.comparison import Study, opened, written
+from gambol.game.session.input_log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
+from gambol.game.session.settings import SettingError
+from gambol.game.session.state import opening
+from gambol.game.session.tick import Timeline
+from gambol.game.world import methods as learning
+from gambol.game.world.recorded import Recorded
+from gambol.game.world.world import DT
 from steady import no_database, walker  # noqa: F401, fixtures
 
 

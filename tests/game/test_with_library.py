@@ -5,15 +5,16 @@ import itertools
 import numpy as np
 import pytest
 
-from controllers.locomotion import Locomotion
-from controllers.reconstruction import ours, store
-from controllers.reconstruction.learning import learn
-from game.film import run
-from game.log import LogWriter, fingerprint, of_library, read, replay
-from game.methods import methods
-from game.play import Play
-from game.hosts.events import KeyEvent
-from game.scenario import load, shipped
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.reconstruction.database import store
+from gambol.controllers.reconstruction.ours import ours
+from gambol.controllers.reconstruction.ours.networks import learn
+from gambol.game.app.play import Play
+from gambol.game.hosts.events import KeyEvent
+from gambol.game.scenario.film import run
+from gambol.game.scenario.scenario import load, shipped
+from gambol.game.session.input_log import LogWriter, fingerprint, of_library, read, replay
+from gambol.game.world.methods import methods
 
 
 @pytest.fixture(scope="module")

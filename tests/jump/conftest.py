@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.contract import Intent, Leap
-from controllers.jump.controller import Jump
-from controllers.locomotion import Locomotion
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump.controller import Jump
+from gambol.controllers.locomotion import Locomotion
 
 FPS = 60
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.optimize import minimize_scalar
 
-from controllers.jump.ballistics import along, apex_airtime, least_effort, take_off_velocity
+from gambol.controllers.jump.body.ballistics import along, apex_airtime, least_effort, take_off_velocity
 
 places = arrays(float, 3, elements=st.floats(-4, 4))
 falls = st.sampled_from([9.81, 1.62, 3.7, 25.0]).map(lambda g: np.array([0.0, -g, 0.0]))

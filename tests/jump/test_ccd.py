@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from controllers.body import human
-from controllers.body.anatomy import joint_limits
-from controllers.body.ccd import foot_turn_kernel, reach
-from controllers.body.turning import exp_kernel, log_kernel
+from gambol.controllers.body import human
+from gambol.controllers.body.anatomy import joint_limits
+from gambol.controllers.body.ccd import foot_turn_kernel, reach
+from gambol.controllers.body.rotation_kernels import exp_kernel, log_kernel
 
 
 def end_of(turns, bones):

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis.extra.numpy import arrays
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
-from controllers.jump.curves import hermite, monotone
+from gambol.controllers.jump.body.curves import hermite, monotone
 
 KEYS = st.integers(3, 7).flatmap(lambda count: st.tuples(
     arrays(float, count, elements=st.floats(0.05, 2.0)).map(np.cumsum),

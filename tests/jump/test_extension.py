@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.jump.dynamics import Physique
-from controllers.jump.extension import LONGEST_STEP, extend, shoot
-from controllers.jump.muscles import spring_work
-from controllers.jump.strength import strongest
-from controllers.jump.windup import crouch
+from gambol.controllers.jump.body.dynamics import Physique
+from gambol.controllers.jump.muscles.extension import LONGEST_STEP, extend, shoot
+from gambol.controllers.jump.muscles.spring_muscles import spring_work
+from gambol.controllers.jump.muscles.strength import strongest
+from gambol.controllers.jump.muscles.windup import crouch
 
 ADULT = Physique()
 RISE = 0.109

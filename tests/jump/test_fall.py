@@ -6,14 +6,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from conftest import ahead
-from controllers.body import end_positions, forward_kinematics
-from controllers.body.anatomy import centre_of_mass
-from controllers.body.support import sole_corners
-from controllers.contract import Intent, Leap
-from controllers.jump.fall import Hit, struck
-from controllers.navigation import gap
-from controllers.supervisor import Supervisor
-from game.scene import Box
+from gambol.controllers.body import end_positions, forward_kinematics
+from gambol.controllers.body.anatomy import centre_of_mass
+from gambol.controllers.body.support_polygon import sole_corners
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump.motion.fall import Hit, struck
+from gambol.controllers.navigation import gap
+from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene.scene import Box
 
 FPS = 60
 HIGH = Box((0.0, 1.5, -1.0), (3.0, 3.0, 2.4))

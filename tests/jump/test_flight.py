@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body import forward_kinematics
-from controllers.body.anatomy import centre_of_mass, segment_centres
-from controllers.body.rotations import exp, log
-from controllers.jump.dynamics import Physique
-from controllers.jump.flight import flight_kernel
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body.anatomy import centre_of_mass, segment_centres
+from gambol.controllers.body.rotations import exp, log
+from gambol.controllers.jump.body.dynamics import Physique
+from gambol.controllers.jump.motion.flight import flight_kernel
 
 law = settings(max_examples=12, deadline=None)
 PHYSIQUE, STEP = Physique(), 1 / 120

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body import end_positions, forward_kinematics
-from controllers.contract import Intent, Leap
-from controllers.jump.controller import Jump, Jumping
-from controllers.jump.dynamics import Physique
-from controllers.jump.reach import Refused
-from controllers.jump.stance import soles
-from controllers.navigation import gap
-from controllers.supervisor import Supervisor
-from game.scene import Box, Goal, Pillar
+from gambol.controllers.body import end_positions, forward_kinematics
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump.body.dynamics import Physique
+from gambol.controllers.jump.body.start import soles
+from gambol.controllers.jump.controller import Jump, Jumping
+from gambol.controllers.jump.feasibility import Refused
+from gambol.controllers.navigation import gap
+from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene.scene import Box, Goal, Pillar
 
 FPS = 60
 WALL = Box((0.0, 1.5, 0.8), (3.0, 3.0, 0.2))

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from controllers.jump.dynamics import Physique, place_kernel
-from controllers.jump.muscles import (Muscle, moment_arm, muscle, spring_bend, spring_force, spring_torque,
-                                      spring_work, torque_kernel)
-from controllers.jump.windup import crouch
+from gambol.controllers.jump.body.dynamics import Physique, place_kernel
+from gambol.controllers.jump.muscles.spring_muscles import (Muscle, moment_arm, muscle, spring_bend, spring_force,
+                                                            spring_torque, spring_work, torque_kernel)
+from gambol.controllers.jump.muscles.windup import crouch
 
 K, R = 14.1e3, 0.05
 SPRINGS = [Muscle(K, R, printed, attached) for printed in (False, True) for attached in (False, True)]

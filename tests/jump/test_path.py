@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body.support import hull, margin
-from controllers.jump.ballistics import along
-from controllers.jump.controller import Jump
-from controllers.jump.dynamics import Physique
-from controllers.jump.stance import landing_feet, measures, soles
+from gambol.controllers.body.support_polygon import hull, margin
+from gambol.controllers.jump.body.ballistics import along
+from gambol.controllers.jump.body.dynamics import Physique
+from gambol.controllers.jump.body.start import landing_feet, measures, soles
+from gambol.controllers.jump.controller import Jump
 
 law = settings(max_examples=60, deadline=None)
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from controllers.body import forward_kinematics
-from controllers.body.anatomy import centre_of_mass, joint_limits
-from controllers.body.rotations import log
-from controllers.body.support import hull, margin, sole_corners
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body.anatomy import centre_of_mass, joint_limits
+from gambol.controllers.body.rotations import log
+from gambol.controllers.body.support_polygon import hull, margin, sole_corners
 
 NAMES = ("up", "far", "onto", "down", "on the Moon", "at a run")
 every = pytest.mark.parametrize("name", NAMES)
@@ -159,7 +159,7 @@ def test_nothing_pushes_in_the_air(plans, name):
 
 
 def test_two_plans_of_one_jump_are_the_same_to_the_bit(plans):
-    from controllers.contract import Intent, Leap
+    from gambol.controllers.contract import Intent, Leap
     who, state, made = plans["far"]
     again = who.plan(state, Intent(leap=Leap(np.array([state.ground[0] + 0.8 * np.sin(state.ground[2]), 0.0,
                                                        state.ground[1] + 0.8 * np.cos(state.ground[2])]))))

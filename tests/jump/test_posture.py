@@ -4,13 +4,13 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from controllers.body import forward_kinematics
-from controllers.body.anatomy import centre_of_mass
-from controllers.jump import style
-from controllers.jump.dynamics import Physique
-from controllers.jump.stance import landing_feet, measures
-from controllers.jump.poise import FLEX
-from controllers.jump.posture import STRAIGHT, stand_kernel
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body.anatomy import centre_of_mass
+from gambol.controllers.jump.body import carriage as style
+from gambol.controllers.jump.body.balance import FLEX
+from gambol.controllers.jump.body.dynamics import Physique
+from gambol.controllers.jump.body.planted_pose import STRAIGHT, stand_kernel
+from gambol.controllers.jump.body.start import landing_feet, measures
 
 BODIES = (Physique(), Physique(30.0, 1.25), Physique(110.0, 1.85, 0.8, 0.8, "female"))
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from controllers.jump.dynamics import Physique
-from controllers.jump.sampling import sample
-from controllers.jump.windup import crouch
+from gambol.controllers.jump.body.dynamics import Physique
+from gambol.controllers.jump.muscles.sampling import sample
+from gambol.controllers.jump.muscles.windup import crouch
 
 ADULT = Physique()
 

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial import ConvexHull, QhullError
 
-from controllers.body import forward_kinematics, human
-from controllers.body.support import CORNERS, centroid, hull, margin, sole_corners, standing_corners
+from gambol.controllers.body import forward_kinematics, human
+from gambol.controllers.body.support_polygon import CORNERS, centroid, hull, margin, sole_corners, standing_corners
 
 clouds = arrays(float, st.tuples(st.integers(3, 14), st.just(2)), elements=st.integers(-40, 40).map(lambda v: v / 16))
 

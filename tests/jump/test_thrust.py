@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad_vec
 
-from controllers.jump.thrust import RISE, push, risen
+from gambol.controllers.jump.motion.thrust import RISE, push, risen
 
 speed = st.floats(-3.0, 3.0)
 cases = st.tuples(speed, speed, st.floats(0.05, 4.0), speed, st.floats(-0.5, 0.5), st.floats(0.02, 0.6), st.floats(0.5, 25.0))

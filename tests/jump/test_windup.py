@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from controllers.body.support import centroid, hull, margin, sole_corners, standing_corners
-from controllers.jump.dynamics import Physique, centre_kernel, place_kernel
-from controllers.jump.extension import extend
-from controllers.jump.muscles import spring_work
-from controllers.jump.poise import flat_feet, frame
-from controllers.jump.strength import crouch_depth, strength, strongest
-from controllers.jump.windup import GAINS, crouch
+from gambol.controllers.body.support_polygon import centroid, hull, margin, sole_corners, standing_corners
+from gambol.controllers.jump.body.balance import flat_feet, frame
+from gambol.controllers.jump.body.dynamics import Physique, centre_kernel, place_kernel
+from gambol.controllers.jump.muscles.extension import extend
+from gambol.controllers.jump.muscles.spring_muscles import spring_work
+from gambol.controllers.jump.muscles.strength import crouch_depth, strength, strongest
+from gambol.controllers.jump.muscles.windup import GAINS, crouch
 
 ADULT = Physique()
 BODIES = (ADULT, Physique(25.0, 1.25), Physique(110.0, 1.8), Physique(60.0, 1.65, 1.3, 1.2, "female"))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from controllers.locomotion import Library, Locomotion
-from controllers.locomotion.controller import DEFAULT_LIBRARY
+from gambol.controllers.locomotion import Library, Locomotion
+from gambol.controllers.locomotion.controller import DEFAULT_LIBRARY
 
 from playing import WISHES, hold, play, whims
 

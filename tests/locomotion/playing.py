@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip, forward_kinematics
-from controllers.body.contact import contact_points
-from controllers.body.ground import relative
-from controllers.contract import Intent
+from gambol.controllers.body import Clip, forward_kinematics
+from gambol.controllers.body.contact import contact_points
+from gambol.controllers.body.ground_frame import relative
+from gambol.controllers.contract import Intent
 
 FPS = 60
 WISHES = ((1.0, 0, 0), (0.5, 0, 0), (1.3, 0, 0), (0.9, 0.6, 0), (0.9, -0.6, 0), (0, 0, 0.4), (0, 0, -0.4), (0.5, 0, 0.35),

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
-from controllers.body import human
-from controllers.body.clip import mirror_index
-from controllers.body.rotations import log
-from controllers.locomotion import Library, LibraryError, Locomotion
-from controllers.locomotion.build import Source, build_library, gather, mirrored, read_recipe
-from controllers.locomotion.cycles import SAMPLES, cut, track
-from controllers.mocap import write_bvh
+from gambol.controllers.body import human
+from gambol.controllers.body.clip import mirror_index
+from gambol.controllers.body.rotations import log
+from gambol.controllers.locomotion import Library, LibraryError, Locomotion
+from gambol.controllers.locomotion.build import Source, build_library, gather, mirrored, read_recipe
+from gambol.controllers.locomotion.cycles import SAMPLES, cut, track
+from gambol.controllers.mocap import write_bvh
 from playing import FPS, hold, mean_velocity, play
 
 WALKS = {"slow": (0.5, 0, 0), "forward": (0.9, 0, 0), "brisk": (1.25, 0, 0), "left": (0.9, 0.6, 0), "right": (0.9, -0.6, 0),

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull, Delaunay
 
-from controllers.locomotion.control_space import SCALE, ControlSpace, thin
+from gambol.controllers.locomotion.control_space import SCALE, ControlSpace, thin
 
 law = settings(max_examples=20, deadline=None)
 seeds = st.integers(0, 2**32 - 1)

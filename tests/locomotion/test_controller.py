@@ -7,9 +7,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from controllers.body.ground import compose
-from controllers.contract import Intent
-from controllers.locomotion import LibraryError, Locomotion
+from gambol.controllers.body.ground_frame import compose
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import LibraryError, Locomotion
 from playing import FPS, WISHES, hold, mean_velocity, play, whims
 
 law = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

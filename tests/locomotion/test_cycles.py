@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body import human
-from controllers.body.ground import advance, compose
-from controllers.body.human import CONTACT_HEIGHT
-from controllers.locomotion.cycles import CONTACT_SPEED, EVENTS, RATE, Track, stance, steady_frame, warp
+from gambol.controllers.body import human
+from gambol.controllers.body.ground_frame import advance, compose
+from gambol.controllers.body.human import CONTACT_HEIGHT
+from gambol.controllers.locomotion.cycles import CONTACT_SPEED, EVENTS, RATE, Track, stance, steady_frame, warp
 
 law = settings(max_examples=40, deadline=None)
 places = st.tuples(*[st.floats(-20, 20)] * 2, st.floats(-7, 7)).map(np.array)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.body import Pose, forward_kinematics
-from controllers.body.rotations import exp, yaw
-from controllers.contract import CharacterState, Intent
+from gambol.controllers.body import Pose, forward_kinematics
+from gambol.controllers.body.rotations import exp, yaw
+from gambol.controllers.contract import CharacterState, Intent
 from playing import FPS
 
 

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from controllers.locomotion import fourier
-from controllers.locomotion.blend import Blender
-from controllers.locomotion.control_space import SCALE, ControlSpace
-from controllers.locomotion.kernel import (COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, body_tables,
-                                           inner_kernel, locate_kernel, pose_kernel, query_kernel, series_kernel,
-                                           series_table, space_tables)
+from gambol.controllers.locomotion import fourier
+from gambol.controllers.locomotion.blend import Blender
+from gambol.controllers.locomotion.control_space import SCALE, ControlSpace
+from gambol.controllers.locomotion.kernel import (COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, body_tables,
+                                                  inner_kernel, locate_kernel, pose_kernel, query_kernel, series_kernel,
+                                                  series_table, space_tables)
 
 law = settings(max_examples=30, deadline=None)
 seeds = st.integers(0, 2**32 - 1)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from controllers.body import human
-from controllers.locomotion import Library, LibraryError, Locomotion
+from gambol.controllers.body import human
+from gambol.controllers.locomotion import Library, LibraryError, Locomotion
 
 
 @pytest.fixture(scope="session")

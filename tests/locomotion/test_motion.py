@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from controllers.body import end_positions, forward_kinematics
-from controllers.body.contact import contact_height, detect_contacts, feet_apart, foot_drift
-from controllers.locomotion import Locomotion, Settings
+from gambol.controllers.body import end_positions, forward_kinematics
+from gambol.controllers.body.contact import contact_height, detect_contacts, feet_apart, foot_drift
+from gambol.controllers.locomotion import Locomotion, Settings
 from playing import FPS, WISHES, hold, mean_velocity, play
 
 # at rest

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip, Skeleton, end_positions, human
+from gambol.controllers.body import Clip, Skeleton, end_positions, human
 
 seeds = st.integers(0, 2**32 - 1)
 """Seeds of generators: the arrays are drawn by numpy, what a failure needs to be found again is one number."""

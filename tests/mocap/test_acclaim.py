@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from motion_samples import AMC, ASF, seeds
 from scipy.spatial.transform import Rotation
 
-from controllers.body import end_positions
-from controllers.mocap import MotionFileError, read_amc, read_asf
+from gambol.controllers.body import end_positions
+from gambol.controllers.mocap import MotionFileError, read_amc, read_asf
 
 METRE = 0.0254 / 0.5
 

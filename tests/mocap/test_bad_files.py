@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_samples import AMC, ASF, BVH
 
-from controllers.body import Clip
-from controllers.mocap import MotionFileError, load, read_amc, read_asf, read_bvh
+from gambol.controllers.body import Clip
+from gambol.controllers.mocap import MotionFileError, load, read_amc, read_asf, read_bvh
 
 BROKEN_BVH = {
     "empty": (lambda t: "", 1, "empty"),

@@ -12,8 +12,8 @@ from pymotion.io.bvh import BVH as OtherReader
 from pymotion.ops.skeleton import fk
 from scipy.spatial.transform import Rotation
 
-from controllers.mocap import read_bvh, write_bvh
-from controllers.mocap.text import parse_number
+from gambol.controllers.mocap import read_bvh, write_bvh
+from gambol.controllers.mocap.text import parse_number
 
 ORDERS = ["".join(order) for order in itertools.permutations("XYZ")]
 

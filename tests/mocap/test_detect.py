@@ -7,9 +7,9 @@ import pytest
 from motion_samples import BVH, standing
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Skeleton
-from controllers.mocap import Detected, MotionFileError, detect, load, read, standardise, write_bvh
-from controllers.mocap.detect import UNITS
+from gambol.controllers.body import Skeleton
+from gambol.controllers.mocap import Detected, MotionFileError, detect, load, read, standardise, write_bvh
+from gambol.controllers.mocap.detect import UNITS
 
 LYING = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]])  # Y up to Z up
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip, Skeleton, end_positions, forward_kinematics, human, local_rotations
-from controllers.body.contact import contact_points, detect_contacts, foot_drift, point_speeds
-from controllers.body.ik import two_bone_turns
-from controllers.body.rotations import exp
-from controllers.mocap import load
-from controllers.mocap.calibration import calibrate
-from controllers.mocap.names import plain, roles
-from controllers.mocap.retarget import retarget
-from controllers.mocap.stance import flat_frames
+from gambol.controllers.body import Clip, Skeleton, end_positions, forward_kinematics, human, local_rotations
+from gambol.controllers.body.contact import contact_points, detect_contacts, foot_drift, point_speeds
+from gambol.controllers.body.ik import two_bone_turns
+from gambol.controllers.body.rotations import exp
+from gambol.controllers.mocap import load
+from gambol.controllers.mocap.calibration import calibrate
+from gambol.controllers.mocap.flat_stance import flat_frames
+from gambol.controllers.mocap.names import plain, roles
+from gambol.controllers.mocap.retarget import retarget
 
 FPS = 60.0
 

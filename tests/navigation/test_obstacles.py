@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controllers.contract import Intent
-from controllers.locomotion import Locomotion
-from controllers.navigation.obstacles import HEAD, SHOULDER, floor_at, gap, slide
-from game.scene import Box
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.navigation.obstacles import HEAD, SHOULDER, floor_at, gap, slide
+from gambol.game.scene.scene import Box
 
 BOX = Box((0.0, 0.3, 4.0), (1.6, 0.6, 1.0), 0.0)
 WALL = Box((0.0, 0.5, 4.0), (2.6, 1.0, 0.1), 0.4)

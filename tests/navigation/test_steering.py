@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controllers.body.rotations import wrap
-from controllers.navigation import Path, Reach, Steering, drift, follow, in_world, steer, turn_towards
-from controllers.navigation.steering import within
+from gambol.controllers.body.rotations import wrap
+from gambol.controllers.navigation import Path, Reach, Steering, drift, follow, in_world, steer, turn_towards
+from gambol.controllers.navigation.steering import within
 
 angle = st.floats(-10.0, 10.0)
 speed = st.floats(0.0, 3.5)

@@ -5,17 +5,18 @@ import pytest
 from scipy.optimize import approx_fprime
 from trajectories import played
 
-from controllers.body import forward_kinematics
-from controllers.reconstruction.baselines import SGPLVM, Layers, LocalPCA, LocalPCR, Nearest, Samples, network, ridge
-from controllers.reconstruction.baselines import gplvm, regressors
-from controllers.reconstruction.chart import ANGLES, FORWARD, HEIGHT, SKELETON, WIDTH, YAW_RATE, advance, decode
-from controllers.reconstruction.controls import parse
-from controllers.reconstruction.database import Database, Writer
-from controllers.reconstruction.method import Fused, Local, LocalRegression, Method
-from controllers.reconstruction.neighbours import Exact
-from controllers.reconstruction.prior import FLOOR, PAPER, Regression
-from controllers.reconstruction.segments import Segments
-from controllers.reconstruction.solver import Solver
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.reconstruction.baselines import (SGPLVM, Layers, LocalPCA, LocalPCR, Nearest, Samples, gplvm,
+                                                         network, regressors, ridge)
+from gambol.controllers.reconstruction.control_points import parse
+from gambol.controllers.reconstruction.database.database import Database, Writer
+from gambol.controllers.reconstruction.neighbours.search import Exact
+from gambol.controllers.reconstruction.neighbours.segments import Segments
+from gambol.controllers.reconstruction.pose_vector import (ANGLES, FORWARD, HEIGHT, SKELETON, WIDTH, YAW_RATE, advance,
+                                                           decode)
+from gambol.controllers.reconstruction.regression.local_regression import FLOOR, PAPER, Regression
+from gambol.controllers.reconstruction.regression.map_solver import Solver
+from gambol.controllers.reconstruction.regression.method import Fused, Local, LocalRegression, Method
 
 DT = 1 / 60
 NAMES = ("regression", "hybrid", "paper", "pca", "pcr", "nearest", "ridge", "network", "gplvm", "fused")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip, forward_kinematics, human
-from controllers.reconstruction.controls import NAMES, SETS, parse
+from gambol.controllers.body import Clip, forward_kinematics, human
+from gambol.controllers.reconstruction.control_points import NAMES, SETS, parse
 
 BODY = human()
 JOINTS_OF_SETS = {

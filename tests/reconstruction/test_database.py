@@ -9,11 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from controllers.body.rotations import exp, yaw
-from controllers.mocap import write_bvh
-from controllers.reconstruction import chart, database_default
-from controllers.reconstruction.database import HEAD, SUFFIX, Database, DatabaseError, Writer
-from controllers.reconstruction.database_build import build, sound
+from gambol.controllers.body.rotations import exp, yaw
+from gambol.controllers.mocap import write_bvh
+from gambol.controllers.reconstruction import pose_vector as chart
+from gambol.controllers.reconstruction.database import default as database_default
+from gambol.controllers.reconstruction.database.build import build, sound
+from gambol.controllers.reconstruction.database.database import HEAD, SUFFIX, Database, DatabaseError, Writer
 from trajectories import clip, database, frames
 
 seeds = st.integers(0, 2**32 - 1)
@@ -207,7 +208,7 @@ def test_jumps_and_impossible_frames_are_unsound():
     (["report", "nothing"], "nothing: can't be read: No such file"),
 ])
 def test_mistakes_get_one_line(given, words, tmp_path, monkeypatch):
-    from game import cli
+    from gambol.game import cli
 
     monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(cli.app, ["database", *given])
@@ -216,7 +217,7 @@ def test_mistakes_get_one_line(given, words, tmp_path, monkeypatch):
 
 
 def test_the_command_builds_and_reports(folder, tmp_path):
-    from game import cli
+    from gambol.game import cli
 
     out = tmp_path / f"made{SUFFIX}"
     done = CliRunner().invoke(cli.app, ["database", "build", str(folder), "-o", str(out)])

@@ -4,9 +4,9 @@ import shutil
 
 import numpy as np
 
-from controllers.reconstruction import database_default as module
-from controllers.reconstruction.chart import WIDTH
-from controllers.reconstruction.database import Writer
+from gambol.controllers.reconstruction.database import default as module
+from gambol.controllers.reconstruction.database.database import Writer
+from gambol.controllers.reconstruction.pose_vector import WIDTH
 
 
 def test_it_is_made_again_only_when_its_sources_change(tmp_path, monkeypatch):

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body import forward_kinematics
-from controllers.body.rotations import yaw
-from controllers.reconstruction import chart
-from controllers.reconstruction.database import DatabaseError
-from controllers.reconstruction.features import Weights, of_points, places
-from controllers.reconstruction.segments import Segments
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body.rotations import yaw
+from gambol.controllers.reconstruction import pose_vector as chart
+from gambol.controllers.reconstruction.database.database import DatabaseError
+from gambol.controllers.reconstruction.neighbours.features import Weights, of_points, places
+from gambol.controllers.reconstruction.neighbours.segments import Segments
 from trajectories import database
 
 JOINTS = tuple(chart.SKELETON.index(name) for name in ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightToe"))

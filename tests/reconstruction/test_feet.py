@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.body import Pose, forward_kinematics, human
-from controllers.body.contact import contact_height, contact_points
-from controllers.body.ik import pole_of
-from controllers.body.rotations import exp
-from controllers.reconstruction.feet import GIVE, above, lift
+from gambol.controllers.body import Pose, forward_kinematics, human
+from gambol.controllers.body.contact import contact_height, contact_points
+from gambol.controllers.body.ik import pole_of
+from gambol.controllers.body.rotations import exp
+from gambol.controllers.reconstruction.following.feet import GIVE, above, lift
 
 
 def standing(skeleton, turns, sunk, floor):

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_discrete_are
 
-from controllers.reconstruction.filters import NATURAL, Motion, gains, noise
+from gambol.controllers.reconstruction.ours.filters import NATURAL, Motion, gains, noise
 
 INDICES = st.one_of(st.floats(0.01, 1e4), st.just(math.inf))
 

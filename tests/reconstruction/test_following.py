@@ -9,21 +9,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import walks
-from controllers.body import Pose, forward_kinematics
-from controllers.body.human import STATURE
-from controllers.body.rotations import exp
-from controllers.contract import Intent, Leap, Unable
-from controllers.jump import Jump, Physique
-from controllers.locomotion import Locomotion
-from controllers.reconstruction.chart import SKELETON
-from controllers.reconstruction.controller import LOST, Reconstruction, towards
-from controllers.reconstruction.controls import SETS, parse
-from controllers.reconstruction.feet import GIVE
-from controllers.reconstruction.metrics import position_error
-from controllers.reconstruction.starts import Starts
-from controllers.scaled import Scaled
-from controllers.supervisor import Duty, Supervisor
-from game.follow import Follows, carried
+from gambol.controllers.body import Pose, forward_kinematics
+from gambol.controllers.body.human import STATURE
+from gambol.controllers.body.rotations import exp
+from gambol.controllers.contract import Intent, Leap, Unable
+from gambol.controllers.jump import Jump, Physique
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.reconstruction.control_points import SETS, parse
+from gambol.controllers.reconstruction.controller import LOST, Reconstruction, towards
+from gambol.controllers.reconstruction.evaluation.metrics import position_error
+from gambol.controllers.reconstruction.following.feet import GIVE
+from gambol.controllers.reconstruction.following.initial_pose import Starts
+from gambol.controllers.reconstruction.pose_vector import SKELETON
+from gambol.controllers.scaled import Scaled
+from gambol.controllers.supervisor import Duty, Supervisor
+from gambol.game.world.followers import Follows, carried
 
 DT = 1 / 60
 

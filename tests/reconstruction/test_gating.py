@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.reconstruction.gating import NEAR, PATIENCE, REACH, Gate
+from gambol.controllers.reconstruction.following.point_gate import NEAR, PATIENCE, REACH, Gate
 
 DT = 1 / 60
 

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from controllers.reconstruction.learning import LAGS, view
-from controllers.reconstruction.moments import NOISE, Moments
+from gambol.controllers.reconstruction.ours.lost_points import NOISE, Moments
+from gambol.controllers.reconstruction.ours.networks import LAGS, view
 
 POINTS = 4
 WIDTH = 3 * POINTS * len(LAGS)

@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
-from controllers.reconstruction import chart
-from controllers.reconstruction.neighbours import Exact, Projection
-from controllers.reconstruction.neighbours_cells import Cells, cluster, nearest
-from controllers.reconstruction.neighbours_graph import Graph
-from controllers.reconstruction.neighbours_tree import Tree
-from controllers.reconstruction.segments import Segments
+from gambol.controllers.reconstruction import pose_vector as chart
+from gambol.controllers.reconstruction.neighbours.cells import Cells, cluster, nearest
+from gambol.controllers.reconstruction.neighbours.graph import Graph
+from gambol.controllers.reconstruction.neighbours.search import Exact, Projection
+from gambol.controllers.reconstruction.neighbours.segments import Segments
+from gambol.controllers.reconstruction.neighbours.tree import Tree
 from trajectories import database
 
 JOINTS = tuple(chart.SKELETON.index(name) for name in ("LeftHand", "RightHand", "LeftFoot", "RightFoot"))

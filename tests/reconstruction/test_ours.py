@@ -8,20 +8,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from trajectories import KINDS, frames as made_up, played
 
-from controllers.body import forward_kinematics
-from controllers.reconstruction import learning, metrics, ours as module, store
-from controllers.reconstruction.baselines.windows import Samples
-from controllers.reconstruction.chart import FORWARD, HEIGHT, JOINTS, LEFTWARD, WIDTH, YAW_RATE, SKELETON, advance, decode
-from controllers.reconstruction.controls import parse
-from controllers.reconstruction.database import Database, DatabaseError, Writer
-from controllers.reconstruction.learning import LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view
-from controllers.reconstruction.method import Fused, Local, LocalRegression, SPAN, Method, posed
-from controllers.reconstruction.moments import Moments
-from controllers.reconstruction.neighbours_cells import Cells
-from controllers.reconstruction.ours import (
-    FADING, HEARD, KEPT, LASTING, LISTENED, NARROW, NEAR, NEARER, Expectation, Ours, Torn, cells, ours)
-from controllers.reconstruction.segments import Segments
-from controllers.reconstruction.solver import Solver
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.reconstruction.baselines.windows import Samples
+from gambol.controllers.reconstruction.control_points import parse
+from gambol.controllers.reconstruction.database import store
+from gambol.controllers.reconstruction.database.database import Database, DatabaseError, Writer
+from gambol.controllers.reconstruction.evaluation import metrics
+from gambol.controllers.reconstruction.neighbours.cells import Cells
+from gambol.controllers.reconstruction.neighbours.segments import Segments
+from gambol.controllers.reconstruction.ours import networks as learning, ours as module
+from gambol.controllers.reconstruction.ours.lost_points import Moments
+from gambol.controllers.reconstruction.ours.networks import (
+    LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view)
+from gambol.controllers.reconstruction.ours.ours import (FADING, HEARD, KEPT, LASTING, LISTENED, NARROW, NEAR, NEARER,
+                                                         Expectation, Ours, Torn, cells, ours)
+from gambol.controllers.reconstruction.pose_vector import (FORWARD, HEIGHT, JOINTS, LEFTWARD, SKELETON, WIDTH, YAW_RATE,
+                                                           advance, decode)
+from gambol.controllers.reconstruction.regression.map_solver import Solver
+from gambol.controllers.reconstruction.regression.method import SPAN, Fused, Local, LocalRegression, Method, posed
 
 DT = 1 / 60
 GROUNDS = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3)).map(np.array)

@@ -5,11 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controllers.reconstruction.chart import SKELETON, WIDTH
-from controllers.reconstruction.controls import parse
-from controllers.reconstruction.beliefs import Gaussian, fuse
-from controllers.reconstruction.prior import FORMS, PAPER, Regression, believe, fit, regress, weights
-from controllers.reconstruction.solver import Solver
+from gambol.controllers.reconstruction.control_points import parse
+from gambol.controllers.reconstruction.pose_vector import SKELETON, WIDTH
+from gambol.controllers.reconstruction.regression.beliefs import Gaussian, fuse
+from gambol.controllers.reconstruction.regression.local_regression import (
+    FORMS, PAPER, Regression, believe, fit, regress, weights)
+from gambol.controllers.reconstruction.regression.map_solver import Solver
 
 SEEDS = st.integers(0, 2**32 - 1)
 

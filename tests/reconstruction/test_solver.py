@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 
-from controllers.body import forward_kinematics
-from controllers.reconstruction.chart import ANGLES, HEIGHT, SKELETON, WIDTH, advance, decode
-from controllers.reconstruction.controls import SETS, parse
-from controllers.reconstruction.beliefs import Gaussian
-from controllers.reconstruction.solver import Solver, in_world, on_ground
-from controllers.reconstruction.solver_kernel import solve_all_kernel
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.reconstruction.control_points import SETS, parse
+from gambol.controllers.reconstruction.pose_vector import ANGLES, HEIGHT, SKELETON, WIDTH, advance, decode
+from gambol.controllers.reconstruction.regression.beliefs import Gaussian
+from gambol.controllers.reconstruction.regression.map_solver import Solver, in_world, on_ground
+from gambol.controllers.reconstruction.regression.solver_kernel import solve_all_kernel
 
 DT = 1 / 60
 SEEDS = st.integers(0, 2**32 - 1)

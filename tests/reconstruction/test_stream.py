@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 from pythonosc.osc_message_builder import OscMessageBuilder
 
-from controllers.body.rotations import yaw
-from controllers.reconstruction.chart import SKELETON
-from controllers.reconstruction.controls import SETS, parse
-from controllers.reconstruction.placing import SECONDS, Placement, Standing, placed, stances
-from controllers.reconstruction.sources import Recorded
-from controllers.reconstruction.stream import STALE, Stream, StreamError, read_map, understood, usual_map
+from gambol.controllers.body.rotations import yaw
+from gambol.controllers.reconstruction.control_points import SETS, parse
+from gambol.controllers.reconstruction.live.placing import SECONDS, Placement, Standing, placed, stances
+from gambol.controllers.reconstruction.live.sources import Recorded
+from gambol.controllers.reconstruction.live.stream import STALE, Stream, StreamError, read_map, understood, usual_map
+from gambol.controllers.reconstruction.pose_vector import SKELETON
 
 WORN = {"LHR-1": "lwrist", "LHR-2": "rwrist", "LHR-3": "lankle"}
 

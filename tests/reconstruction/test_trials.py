@@ -13,16 +13,16 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from scipy.stats import bootstrap
 
-from controllers.body import Pose
-from controllers.reconstruction import metrics, trials
-from controllers.reconstruction.chart import JOINTS, REFERENCE, SKELETON, decode
-from controllers.reconstruction.controls import parse
-from controllers.reconstruction.database import Database, DatabaseError, Writer
-from controllers.reconstruction.method import SPAN
+from gambol.controllers.body import Pose
+from gambol.controllers.reconstruction.control_points import parse
+from gambol.controllers.reconstruction.database.database import Database, DatabaseError, Writer
+from gambol.controllers.reconstruction.evaluation import metrics, trials
+from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, SKELETON, decode
+from gambol.controllers.reconstruction.regression.method import SPAN
 
 from trajectories import frames as made_up
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
 COUNT = len(SKELETON)
 ACTIONS = ("walk", "run", "jump")
 seeds = st.integers(0, 2 ** 31)
@@ -263,9 +263,9 @@ def five(tmp_path_factory) -> Database:
 @pytest.fixture
 def script(monkeypatch, tmp_path):
     """The script with two quick rows and few tries; what it learns is kept apart."""
-    import measure_reconstruction as script
+    import reconstruction as script
     import reconstruction_rivals as rivals
-    from controllers.reconstruction import store
+    from gambol.controllers.reconstruction.database import store
 
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "kernels")
     monkeypatch.setattr(rivals, "TRIES", 2)
@@ -278,7 +278,7 @@ def script(monkeypatch, tmp_path):
 
 def _run(script, monkeypatch, database, tmp_path, *more):
     arguments = [database.path, "--takes", "3", "--cache", tmp_path / "cache", "--out", tmp_path / "out", *more]
-    monkeypatch.setattr(sys, "argv", ["measure_reconstruction.py", *map(str, arguments)])
+    monkeypatch.setattr(sys, "argv", ["measure/reconstruction.py", *map(str, arguments)])
     script.main()
 
 
@@ -342,6 +342,6 @@ def test_the_script_names_what_is_wrong(script, five, database, monkeypatch, tmp
                         (("--methods", "magic"), "no method 'magic'"), (("--large", database.path), "lacks takes")):
         with pytest.raises(SystemExit, match=told):
             _run(script, monkeypatch, five, tmp_path, *wrong)
-    monkeypatch.setattr(sys, "argv", ["measure_reconstruction.py", str(tmp_path / "nothing"), "--cache", str(tmp_path / "cache")])
+    monkeypatch.setattr(sys, "argv", ["measure/reconstruction.py", str(tmp_path / "nothing"), "--cache", str(tmp_path / "cache")])
     with pytest.raises(SystemExit, match="can't be read"):
         script.main()

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip, forward_kinematics
-from controllers.reconstruction import chart
-from controllers.reconstruction.database import Database, Writer
+from gambol.controllers.body import Clip, forward_kinematics
+from gambol.controllers.reconstruction import pose_vector as chart
+from gambol.controllers.reconstruction.database.database import Database, Writer
 
 KINDS = 4
 

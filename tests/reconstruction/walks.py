@@ -3,16 +3,16 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from controllers.body import Clip
-from controllers.contract import Intent
-from controllers.locomotion import Locomotion
-from controllers.reconstruction.chart import encode
-from controllers.reconstruction.database import Database, Writer
-from controllers.reconstruction.method import Local, LocalRegression, Method
-from controllers.reconstruction.neighbours import Exact
-from controllers.reconstruction.prior import Regression
-from controllers.reconstruction.segments import Segments
-from controllers.reconstruction.solver import Solver
+from gambol.controllers.body import Clip
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.reconstruction.database.database import Database, Writer
+from gambol.controllers.reconstruction.neighbours.search import Exact
+from gambol.controllers.reconstruction.neighbours.segments import Segments
+from gambol.controllers.reconstruction.pose_vector import encode
+from gambol.controllers.reconstruction.regression.local_regression import Regression
+from gambol.controllers.reconstruction.regression.map_solver import Solver
+from gambol.controllers.reconstruction.regression.method import Local, LocalRegression, Method
 
 FPS = 60
 WISHES = ([(1, 0, 0, 0), (2, 1.2, 0, 0), (2, 1.0, 0.6, 0), (1.5, 0, 0, 0)], [(0.5, 0, 0, 0), (2, 0.7, 0, 0.3), (1, 0, 0, 0)])

@@ -11,8 +11,8 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from game.hosts import GraphicsError, offscreen_context
-from game.render import Renderer
+from gambol.game.hosts import GraphicsError, offscreen_context
+from gambol.game.render import Renderer
 
 
 @pytest.fixture(scope="session")

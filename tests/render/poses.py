@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from controllers.body import forward_kinematics, human
-from controllers.body.rotations import exp, yaw
-from game.scene import Camera, Figure
+from gambol.controllers.body import forward_kinematics, human
+from gambol.controllers.body.rotations import exp, yaw
+from gambol.game.scene.scene import Camera, Figure
 
 HUMAN = human()
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from game.scene import Box, Scene
+from gambol.game.scene.scene import Box, Scene
 from poses import STAND, camera, figure
 
 WALL = Box((0.0, 1.5, -1.5), (4.0, 3.0, 0.2), tint=(0.7, 0.1, 0.1))

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import glfw
 import pytest
 
-from game.hosts.window import Pads
+from gambol.game.hosts.window import Pads
 
 ROOT = Path(__file__).parents[2]
 APP = '''
@@ -19,8 +19,8 @@ import sys, time
 import numpy as np
 sys.path.insert(0, "tests/render")
 from poses import STRIDE, camera, figure
-from game.hosts import DisplayError, run_window
-from game.scene import Scene
+from gambol.game.hosts import DisplayError, run_window
+from gambol.game.scene.scene import Scene
 
 class App:
     done, time, events, sizes = False, 0.0, [], set()
@@ -68,7 +68,7 @@ def test_without_a_display_the_error_says_what_to_do(environment):
 
 
 def test_a_missing_library_is_named_with_its_package(monkeypatch):
-    from game.hosts import offscreen
+    from gambol.game.hosts import offscreen
 
     monkeypatch.setattr(offscreen.ctypes.util, "find_library", lambda name: None)
     said = offscreen._missing()
@@ -76,7 +76,7 @@ def test_a_missing_library_is_named_with_its_package(monkeypatch):
 
 
 def test_a_pad_at_rest_asks_for_nothing():
-    from game.hosts import PadState
+    from gambol.game.hosts import PadState
 
     pad = PadState()
     assert pad.left == pad.right == (0.0, 0.0) and pad.left_trigger == pad.right_trigger == -1.0 and not pad.buttons
@@ -145,10 +145,10 @@ import sys
 sys.path[:0] = ["tests/render", "tests/game"]
 from pathlib import Path
 from poses import camera
-from game.hosts import KeyEvent, MouseMove, run_window
-from game.input import Keyboard, mouse_wish
-from game.input.remap import load
-from game.scene import Scene
+from gambol.game.hosts import KeyEvent, MouseMove, run_window
+from gambol.game.input import Keyboard, mouse_wish
+from gambol.game.input.remap import load
+from gambol.game.scene.scene import Scene
 
 class App:
     """Says what it is asked for; what is pressed is done before the next tick."""

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controllers.locomotion import Locomotion
-from game.hud import Hud
-from game.hud.panels import PANELS, layout
-from game.ink import VERTEX, Ink, Stroke
-from game.input import Wish
-from game.moment import opening
-from game.render.ink import InkPass
-from game.scene import Scene
-from game.session import Timeline
+from gambol.controllers.locomotion import Locomotion
+from gambol.game.hud import Hud
+from gambol.game.hud.panels import layout
+from gambol.game.scene import PANELS
+from gambol.game.input import Wish
+from gambol.game.render.draw_list_pass import InkPass
+from gambol.game.scene.draw_list import VERTEX, Ink, Stroke
+from gambol.game.scene.scene import Scene
+from gambol.game.session.state import opening
+from gambol.game.session.tick import Timeline
 from poses import STRIDE, camera, figure
 
 WHITE = np.full((1, 1, 4), 255, np.uint8)

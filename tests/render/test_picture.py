@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from poses import CROUCH, HUMAN, STAND, STRIDE, camera, figure
 
-from game.hosts import Offscreen
-from game.render import FULL, Renderer, preset, sun, view
-from game.scene import Box, Caption, Goal, Overlays, Pillar, Scene
+from gambol.game.hosts import Offscreen
+from gambol.game.render import FULL, Renderer, preset, sun, view
+from gambol.game.scene.scene import Box, Caption, Goal, Overlays, Pillar, Scene
 
 WALKER = figure(heading=0.6, options=dict(
     contacts=np.array([1, 0, 0, 1], bool),

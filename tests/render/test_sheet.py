@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from game.hosts.events import PadState
-from game.input import DEFAULT, Keyboard, help_sheet
-from game.input.remap import remapped
-from game.render.sheet import ROOM, SMALLEST, layout, letters_for
-from game.scene import Scene
+from gambol.game.hosts.events import PadState
+from gambol.game.input import DEFAULT, Keyboard, help_sheet
+from gambol.game.input.remap import remapped
+from gambol.game.render.help_pass import ROOM, SMALLEST, layout, letters_for
+from gambol.game.scene.scene import Scene
 from poses import camera
 
 REST = PadState("A gamepad with a rather long name for its size")

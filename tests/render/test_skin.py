@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from poses import CROUCH, HUMAN, STRIDE, figure
 from scipy.spatial.transform import Rotation
 
-from controllers.body import human
-from game.character import twotone
-from game.render import gl, mesh, skin
-from game.render.view import scale_of
+from gambol.controllers.body import human
+from gambol.game.character import twotone
+from gambol.game.render import gl, mesh, skin
+from gambol.game.render.view import scale_of
 
 REST = figure()
 LEVEL = dict(zip(mesh.LEVELS, mesh.mannequin().levels))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from poses import STAND, STRIDE, camera, figure
 
-from game.render import sun
-from game.render.ground import SQUARE, covered, touched_floor
-from game.scene import Box, Camera, Pillar
+from gambol.game.render import sun
+from gambol.game.render.ground import SQUARE, covered, touched_floor
+from gambol.game.scene.scene import Box, Camera, Pillar
 
 
 def seen(matrix, points):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from game.render import text
+from gambol.game.render import text
 
 
 def test_every_character_becomes_one_that_the_font_has():

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from poses import STRIDE, camera, figure
 
-from game.render import overlays, view
-from game.scene import Camera, Overlays
+from gambol.game.render import overlays, view
+from gambol.game.scene.scene import Camera, Overlays
 
 
 def seen(matrix, points):

@@ -15,10 +15,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ..database import Database
-from ..method import Memory
-from ..beliefs import Gaussian
-from ..prior import FLOOR
-from ..solver import Solver
+from ..regression import FLOOR, Gaussian, Memory, Solver
 
 _CANDIDATES = 4000
 

@@ -6,11 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..chart import FORWARD, HEIGHT, LEFTWARD, WIDTH, YAW_RATE
-from ..method import Memory
-from ..beliefs import Gaussian, fuse
-from ..prior import FLOOR, weights
-from ..segments import Neighbourhood
+from ..neighbours import Neighbourhood
+from ..pose_vector import FORWARD, HEIGHT, LEFTWARD, WIDTH, YAW_RATE
+from ..regression import FLOOR, Gaussian, Memory, fuse, weights
 
 LOOSE = np.zeros(WIDTH)
 """How far the root may leave the local poses' subspace: 2 cm and 2° in a frame, as standard deviations of the columns."""

@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..method import Memory
-from ..beliefs import Gaussian, compact
-from ..prior import FLOOR
+from ..regression import FLOOR, Gaussian, Memory, compact
 from .windows import Samples, window
 
 _CHUNK = 8192

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...body import forward_kinematics
-from ..chart import FORWARD, LEFTWARD, YAW_RATE, decode
 from ..database import Database
-from ..method import Memory
-from ..solver import Solver, on_ground
+from ..pose_vector import FORWARD, LEFTWARD, YAW_RATE, decode
+from ..regression import Memory, Solver, on_ground
 
 LAGS = (0, 2, 4, 8, 16, 30)
 """How many frames before the coming one the points are looked at."""

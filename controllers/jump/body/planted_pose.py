@@ -1,0 +1,181 @@
+"""Postures: a whole body over planted feet, its centre of mass exactly where the plan wants it.
+
+The trunk, the arms and the head are posed by joint rotations, the legs by where the feet stand;
+the pelvis is then moved until the centre of mass is in place.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...body import relative_kernel, two_bone_kernel
+from ...compiled import kernel
+from .dynamics import centre_kernel, place_kernel
+
+STRAIGHT = 0.985
+"""A leg is straight at this share of its length: beyond, the heel rises, and then the jump is over."""
+GAIN = 1.0 / 0.82
+"""How far the pelvis moves for what the centre of mass lacks: part of the legs stays behind."""
+
+
+@kernel
+def bend_kernel(parent, child):
+    """How far [rad] a joint is turned about its parent's x axis, from the orientations (3, 3) of both."""
+    sine, cosine = 0.0, 0.0
+    for i in range(3):
+        sine += child[i, 1] * parent[i, 2]
+        cosine += child[i, 1] * parent[i, 1]
+    return math.atan2(sine, cosine)
+
+
+@kernel
+def foot_kernel(yaw, pitch, out):
+    """Write the orientation (3, 3) of a foot that points along `yaw`, its toes `pitch` down [rad]."""
+    cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    out[0, 0], out[0, 1], out[0, 2] = cy, sy * sp, sy * cp
+    out[1, 0], out[1, 1], out[1, 2] = 0.0, cp, -sp
+    out[2, 0], out[2, 1], out[2, 2] = -sy, cy * sp, cy * cp
+
+
+@kernel
+def ankle_kernel(body, foot, turned, out):
+    """Write where the ankle (3,) is. foot: (6,) ball x, y, z [m], yaw, pitch [rad], heel's freedom."""
+    for i in range(3):
+        out[i] = foot[i]
+        for k in range(3):
+            out[i] -= turned[i, k] * body.toe[k]
+
+
+@kernel
+def leg_kernel(body, side, foot, flex, local, positions, orientations):
+    """Pose one leg so that its foot is where `foot` (6,) says; the hip's placement is known.
+
+    A planted heel (foot[5] > 0) rises where the leg is too short or the ankle would bend beyond
+    `flex` [rad]; foot[4] then becomes the pitch that this needs. Returns how far the ankle is from
+    where it should be [m].
+    """
+    hip = body.hip[side]
+    knee, ankle, ball = hip + 1, hip + 2, hip + 3
+    turned, at, pole = np.empty((3, 3)), np.empty(3), np.empty(3)
+    reach = STRAIGHT * (body.thigh + body.shank)
+    root = positions[hip]
+    pelvis = orientations[0]
+    for attempt in range(4):
+        foot_kernel(foot[3], foot[4], turned)
+        ankle_kernel(body, foot, turned, at)
+        if foot[5] > 0.0 and _apart(root, at) > reach:
+            low, high = foot[4], max(foot[4], 1.25)
+            for _ in range(40):
+                middle = 0.5 * (low + high)
+                foot_kernel(foot[3], middle, turned)
+                ankle_kernel(body, foot, turned, at)
+                if _apart(root, at) > reach:
+                    low = middle
+                else:
+                    high = middle
+            foot[4] = high
+            foot_kernel(foot[3], high, turned)
+            ankle_kernel(body, foot, turned, at)
+        for i in range(3):  # knees point between pelvis and foot
+            pole[i] = pelvis[i, 2] + 1.5 * turned[i, 2] + 0.5 * (positions[hip, i] - positions[0, i])
+        two_bone_kernel(root, body.thigh, body.shank, at, pole, (1.0 - STRAIGHT) * (body.thigh + body.shank),
+                        positions[knee], positions[ankle])
+        _frames(positions[hip], positions[knee], positions[ankle], pole, orientations[hip], orientations[knee])
+        # the ankle's bend about its own x axis: negative with the toes up
+        sine, cosine = 0.0, 0.0
+        for k in range(3):
+            sine += orientations[knee][k, 2] * turned[k, 1]
+            cosine += orientations[knee][k, 1] * turned[k, 1]
+        excess = -flex - math.atan2(sine, cosine)
+        if foot[5] <= 0.0 or excess < 1e-4:
+            break
+        foot[4] = min(foot[4] + 1.05 * excess, 1.25)
+    orientations[ankle] = turned
+    gap = _apart(positions[ankle], at)
+    for i in range(3):
+        positions[ball, i] = positions[ankle, i]
+        for k in range(3):
+            positions[ball, i] += turned[i, k] * body.toe[k]
+    # the toes stay on the floor while the heel is up
+    foot_kernel(foot[3], min(foot[4], 0.0) if foot[5] > 0.0 else foot[4] - min(max(foot[4], 0.0), 0.5), orientations[ball])
+    relative_kernel(pelvis, orientations[hip], local[hip])
+    relative_kernel(orientations[hip], orientations[knee], local[knee])
+    relative_kernel(orientations[knee], turned, local[ankle])
+    relative_kernel(turned, orientations[ball], local[ball])
+    return gap
+
+
+@kernel
+def _apart(a, b):
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+
+
+@kernel
+def _frames(hip, knee, ankle, pole, thigh, shank):
+    """The world orientations of thigh and shank: y up the bone, x the knee's hinge."""
+    dx, dy, dz = ankle[0] - hip[0], ankle[1] - hip[1], ankle[2] - hip[2]
+    hx, hy, hz = pole[1] * dz - pole[2] * dy, pole[2] * dx - pole[0] * dz, pole[0] * dy - pole[1] * dx
+    size = math.sqrt(hx * hx + hy * hy + hz * hz)
+    hx, hy, hz = hx / size, hy / size, hz / size
+    for a, b, out in ((hip, knee, thigh), (knee, ankle, shank)):
+        ux, uy, uz = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+        size = math.sqrt(ux * ux + uy * uy + uz * uz)
+        ux, uy, uz = ux / size, uy / size, uz / size
+        out[0, 0], out[1, 0], out[2, 0] = hx, hy, hz
+        out[0, 1], out[1, 1], out[2, 1] = ux, uy, uz
+        out[0, 2], out[1, 2], out[2, 2] = hy * uz - hz * uy, hz * ux - hx * uz, hx * uy - hy * ux
+
+
+@kernel
+def stand_kernel(body, centre, feet, flex, root, local, positions, orientations):
+    """Move the pelvis `root` (3,) until the body over its feet (2, 6) has its centre of mass at `centre`.
+
+    local: (J, 3, 3) all but the legs given; also those whose foot is free (feet[side, 5] < 0). Returns the worst of the two ankles' gaps and of what
+    the centre of mass still lacks [m].
+    """
+    found, lacks, before, step, gap = np.empty(3), np.empty(3), np.empty(3), np.zeros(3), 0.0
+    started = feet[:, 4].copy()
+    gain = GAIN * np.eye(3)
+    missing = 1.0
+    place_kernel(body, root, local, positions, orientations)
+    for attempt in range(60):
+        feet[:, 4] = started
+        gap = 0.0
+        for side in range(2):
+            if feet[side, 5] >= 0.0:
+                gap = max(gap, leg_kernel(body, side, feet[side], flex, local, positions, orientations))
+        centre_kernel(body, positions, orientations, found)
+        missing = _apart(centre, found)
+        if missing < 1e-9:
+            break
+        for i in range(3):
+            before[i], lacks[i] = lacks[i], centre[i] - found[i]
+        if attempt > 0:
+            _learn(gain, step, before, lacks)
+        for i in range(3):
+            step[i] = gain[i, 0] * lacks[0] + gain[i, 1] * lacks[1] + gain[i, 2] * lacks[2]
+            root[i] += step[i]
+        for j in range(len(positions)):  # all but the legs moves along
+            for i in range(3):
+                positions[j, i] += step[i]
+    else:
+        place_kernel(body, root, local, positions, orientations)
+    return max(gap, missing)
+
+
+@kernel
+def _learn(gain, step, before, lacks):
+    """Broyden's method: mend `gain` (3, 3), by which a `step` (3,) was taken, by what was lacking before and after it (3,)."""
+    row, moved = np.zeros(3), np.zeros(3)  # stepᵀ gain, gain (before − lacks)
+    for i in range(3):
+        for k in range(3):
+            row[k] += step[i] * gain[i, k]
+            moved[i] += gain[i, k] * (before[k] - lacks[k])
+    whole = step[0] * moved[0] + step[1] * moved[1] + step[2] * moved[2]
+    if abs(whole) < 0.1 * (step[0] ** 2 + step[1] ** 2 + step[2] ** 2):
+        return  # a kink, where a heel begins to rise: nothing to learn from
+    for i in range(3):
+        for k in range(3):
+            gain[i, k] += (step[i] - moved[i]) * row[k] / whole

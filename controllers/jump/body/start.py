@@ -1,0 +1,168 @@
+"""How a jumper stands: from where a jump starts, how high its centre of mass is over its feet, and where the feet are."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ...body import HALF_SOLE, yaw
+from . import carriage
+from .balance import HALF_STANCE, STAND_REACH
+from .ballistics import apex_airtime
+from .dynamics import BodyTables, Physique
+from .planted_pose import stand_kernel
+
+FLAT = np.array([1.0, 0.0, 1.0])
+"""What is left of a vector along the floor."""
+HEEL_UP, TOES_DOWN = 0.70, 0.30
+"""How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
+TAKE_OFF_REACH, TOUCH_REACH = 0.955, 0.93
+"""How straight legs are, as shares of their length, as they take off and touch down."""
+FOOT_FADE = 0.07
+"""Half-life with which feet settle flat where they come to stand [s]."""
+MOST_LEAD = 0.60
+"""How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
+LEANS, BACK, FORTH = 0.7, -0.15, 0.45
+"""How much of the angle from the feet to the centre of mass the trunk leans with at take-off; how far back and forth at most [rad]."""
+TRAIL = (0.16, 0.30)
+"""How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
+FOLDS = 0.8
+"""How much farther it leans forward for each metre of that [rad]: who leaps far folds up as the legs reach ahead."""
+_LEAN = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """From where a jump starts.
+
+    root: (3,) [m], rotations: (J, 3, 3) of the pose. rates: (J, 3) [rad/s] how fast the joints turn,
+    each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet, feet_rates:
+    (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
+    or 1 right; None for both.
+    """
+
+    root: np.ndarray
+    rotations: np.ndarray
+    rates: np.ndarray
+    centre: np.ndarray
+    velocity: np.ndarray
+    feet: np.ndarray
+    heading: float
+    feet_rates: np.ndarray = field(default_factory=lambda: np.zeros((2, 5)))
+    single: int | None = None
+
+    def planted(self, floor: float, body: BodyTables) -> np.ndarray:
+        """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""
+        feet = self.feet + self.feet_rates * (FOOT_FADE / (2.0 * np.log(2.0)))
+        feet[:, 1], feet[:, 4] = floor + body.sole, 0.0
+        return feet
+
+
+@dataclass(frozen=True, eq=False)
+class Measures:
+    """Heights [m] of a body's centre of mass over the floor: standing; leaves: (L,) as it takes off so far ahead (L,) [m] of
+    the balls of its feet, leaning with it; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles,
+    folded with it."""
+
+    stand: float
+    leads: np.ndarray
+    leaves: np.ndarray
+    trails: np.ndarray
+    touches: np.ndarray
+
+    def touch(self, trail: float) -> float:
+        """How high it touches down `trail` [m] behind its feet."""
+        return float(np.interp(trail, self.trails, self.touches))
+
+    def leave(self, lead: float, aside: float = 0.0) -> float:
+        """How high it takes off `lead` [m] ahead of the balls of its feet, and so far to a side of them."""
+        return over(float(np.interp(lead, self.leads, self.leaves)), aside)
+
+
+def measures(physique: Physique, low_arms: bool = False) -> Measures:
+    """The heights of the centre of mass of a body over its own feet; found once."""
+    return _measures(physique, low_arms)  # however it is called
+
+
+@lru_cache(maxsize=64)
+def _measures(physique, low_arms):
+    body = physique.tables
+    feet = landing_feet(np.zeros(3), 0.0, body)
+    leave, touch = carriage.TAKE_OFF.copy(), carriage.TOUCH.copy()
+    if low_arms:
+        leave[3], touch[3] = carriage.LOW_ARMS[[0, 2]]
+    leads = np.linspace(-0.2, MOST_LEAD, 9) * (body.thigh + body.shank)
+    ball = feet[:, 2].mean()
+    upright = _height(physique, leave, HEEL_UP, TAKE_OFF_REACH, feet, ball)
+    leaves = [_height(physique, leave + leaning(lead, upright) * _LEAN, HEEL_UP, TAKE_OFF_REACH, feet, ball + lead) for lead in leads]
+    trails = np.linspace(0.0, TRAIL[1], 5) * body.size
+    touches = [_height(physique, touch + folding(trail, body.size) * _LEAN, TOES_DOWN, TOUCH_REACH, feet, -trail) for trail in trails]
+    return Measures(_height(physique, carriage.STAND, 0.0, STAND_REACH, feet), leads, np.array(leaves), trails, np.array(touches))
+
+
+def folding(trail: float, size: float) -> float:
+    """How much farther [rad] a body leans forward at touch-down that is so far behind its feet [m]."""
+    return FOLDS * trail / size
+
+
+def airtime_up(physique: Physique, height: float, gravity: np.ndarray) -> float:
+    """The airtime [s] in which a body that jumps in place rises by `height` [m] after it has left the floor."""
+    heights = measures(physique)
+    leave, touch = heights.leave(0.0), heights.touch(0.0)
+    return apex_airtime([0.0, leave, 0.0], [0.0, touch, 0.0], max(height, touch - leave), gravity)
+
+
+def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray, ahead: float = 0.0) -> float:
+    """The centre of mass's height over two feet, `ahead` [m] of the origin, the legs `share` of their length."""
+    body, skeleton = physique.tables, physique.skeleton
+    local = np.tile(np.eye(3), (len(skeleton), 1, 1))
+    positions, turned = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3))
+    carriage.carry_kernel(angles, carriage.joints_of(skeleton), local)
+    local[0] = Rotation.from_rotvec([angles[0], 0.0, 0.0]).as_matrix()
+    free = np.column_stack([feet[:, :4], [pitch, pitch], [0.0, 0.0]])
+    tilt = np.stack([yaw(f[3]) @ Rotation.from_rotvec([f[4], 0.0, 0.0]).as_matrix() for f in free])
+    ankles = free[:, :3] - tilt @ body.toe
+    leg = body.thigh + body.shank
+    centre = np.array([0.0, body.sole + 1.1 * leg, ahead])
+    root = centre.copy()
+    for _ in range(40):
+        stand_kernel(body, centre, free.copy(), 1.0, root, local, positions, turned)
+        line = positions[body.hip] - ankles
+        short = (np.sqrt(np.maximum((share * leg) ** 2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min()
+        centre[1] += short
+        if abs(short) < 1e-7:
+            break
+    return float(centre[1])
+
+
+def soles(feet: np.ndarray, body: BodyTables) -> np.ndarray:
+    """The corners (4 F, 3) [m] of the soles of flat feet (F, 5): heels and tips."""
+    half = HALF_SOLE * body.size
+    corners = [(side * half, -body.sole, along) for along in (body.heel[2] - body.toe[2], body.tip[2])
+               for side in (-1.0, 1.0)]
+    return np.concatenate([foot[:3] + np.array(corners) @ yaw(foot[3]).T for foot in feet])
+
+
+def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndarray:
+    """Two feet (2, 5) whose soles' middle is at `place` (3,), toes slightly out."""
+    middle = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])
+    feet = np.zeros((2, 5))
+    for side, sign in enumerate((1.0, -1.0)):
+        feet[side, 3] = heading + sign * 0.08
+        ball = np.array([sign * HALF_STANCE * body.size, body.sole, 0.0])
+        feet[side, :3] = place + yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
+    return feet
+
+
+def leaning(lead: float, height: float) -> float:
+    """How far [rad] a body leans forward that leaves the floor so far ahead of its feet [m], at a height [m]."""
+    return min(max(LEANS * math.atan2(lead, height), BACK), FORTH)
+
+
+def over(height: float, aside: float) -> float:
+    """How high a centre of mass stands that leans `aside` from where it would stand `height` [m] high."""
+    return float(np.sqrt(max(height**2 - aside**2, 0.25 * height**2)))

@@ -1,0 +1,124 @@
+"""What a body can't jump, told before it winds up, and the nearest place that it can."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
+from ..contract import Unable
+from ..navigation import gap
+from .body import FLAT, Physique, along, measures, carriage, turns
+from .motion import Path
+from .muscles import strongest
+
+RUNNER = 4.2
+"""What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
+SLIP = 1.0
+"""Soles slip on the floor under a force that leans farther: their friction."""
+ASIDE = 0.5
+"""The force of a runner's push passes by the middle of the foot at most so far [m], at standard height: the foot is half
+of that, limbs that turn account for the rest."""
+STOPS = 6.0, 0.5
+"""What legs give as they stop a fall, in an adult's weights on Earth at strength 1, and over which way [m], at
+standard height."""
+GRAZE = 0.05
+"""So much of its flesh a flying body may graze things with [m]."""
+HANDS = "its hands would hit something"
+"""How the reason begins that lower arms help against."""
+
+
+class Refused(Unable):
+    """A jump that this body can't make. nearest: the place (3,) [m] nearest to the target that it can reach
+    from `here` (3,), if one was found."""
+
+    def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None):
+        if nearest is not None:
+            reason += "; the nearest that it reaches is " + ("" if here is None else f"{np.linalg.norm((nearest - here)[[0, 2]]):.1f} m away, at ")
+            reason += f"({nearest[0]:.2f}, {nearest[1]:.2f}, {nearest[2]:.2f})"
+        super().__init__(reason)
+        self.nearest = nearest
+
+
+def fault(physique: Physique, way: Path, around, floor: float) -> str:
+    """Why a path can't be gone, or nothing. around: boxes and pillars; floor: of the take-off [m]."""
+    if not all(np.isfinite(part).all() for part in (way.low, way.leave, way.land, way.velocity)):
+        return "there is no such arc"
+    if not way.strong:
+        return _weak(physique, way, floor)
+    force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
+    if way.running and force > RUNNER * 9.81 * physique.strength:
+        return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
+                f"where this one has {RUNNER * physique.strength:.1f}")
+    if way.running and not _grips(physique, way, floor):
+        gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.passing * FLAT)
+        return f"too {'far' if gains else 'near'} for this run: no foot {'speeds up' if gains else 'brakes'} so much in one step"
+    if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
+        return "the arc takes no time"
+    size, down = physique.size, -float(way.falling[1])
+    spare = STOPS[0] * 9.81 * physique.strength + float(way.gravity[1])
+    stops = np.sqrt(2.0 * STOPS[1] * size * max(spare, 0.0))
+    if down > stops:
+        return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s"
+    return blocked(physique, way, around)
+
+
+def _grips(physique: Physique, way: Path, floor: float) -> bool:
+    """Whether the ground can give the push: up, without the foot slipping, and from about where it is."""
+    time = np.linspace(0.0, 0.75, 4) * way.push.duration
+    force = way.push.force(time)
+    gone, _ = way.push.moved(time, way.passing)
+    lean = force * FLAT / force[:, 1:2]
+    pressed = (way.low + gone) * FLAT - lean * (way.low + gone - floor)[:, 1:2]
+    return bool(np.linalg.norm(lean, axis=1).max() < SLIP
+                and np.linalg.norm(pressed - way.stance * FLAT, axis=1).max() < ASIDE * physique.size)
+
+
+def _weak(physique: Physique, way: Path, floor: float) -> str:
+    """What is missing where the muscles are too weak."""
+    if strongest(physique, way.leave[1] - floor - measures(physique).stand, way.gravity) <= 0.0:
+        return "this body is too weak to jump here at all"
+    if way.up > 0.05:
+        return f"too {'high' if way.up > 0.35 * way.far else 'far'}: {way.far:.1f} m away and {way.up:.1f} m up"
+    return f"too far: {way.far:.1f} m" if way.far > 0.05 else "too high"
+
+
+def blocked(physique: Physique, way: Path, around) -> str:
+    """What the flying body would hit: "" or "its head would hit something 0.8 m ahead" and the like."""
+    if not len(around):
+        return ""
+    size, time = physique.size, np.linspace(0.0, way.airtime, 25)
+    centre = along(way.leave, way.velocity, time, way.gravity)
+    # legs are tucked in the middle of the flight
+    tucked = np.interp(time / way.airtime, (0.0, 0.3, 0.75, 1.0), (1.0, 0.72, 0.72, 0.96))
+    upward = np.array([0.0, 1.0, 0.0])
+    head, hands = _upper(physique, way, time)
+    # the soles may touch what they leave and where they land
+    for name, offset, radius, inner in (
+            ("head", head, 0.11, slice(1, None)), ("trunk", 0.28 * size * upward, 0.16, slice(1, None)),
+            ("hips", -0.05 * size * upward, 0.16, slice(1, None)),
+            ("legs", -(measures(physique).stand - 0.12 * size) * tucked[:, None] * upward, 0.08, slice(4, -4)),
+            ("hands", hands, 0.10, slice(0, None))):
+        places = (centre + offset)[..., inner, :].reshape(-1, 3)
+        for thing in around:
+            near = gap(places, thing)
+            if near.min() < radius * size - GRAZE:
+                ahead = np.linalg.norm((places[int(near.argmin())] - way.leave)[[0, 2]])
+                return f"its {name} would hit something {ahead:.1f} m ahead"
+    return ""
+
+
+def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the head's middle (N, 3) and fingers, wrists and elbows (6, N, 3) are from the centre of mass, as it is carried."""
+    skeleton = physique.skeleton
+    keys = carriage.shapes(0.0, 1.0, way.lean, way.fold, way.running, way.low_arms)[2:6]
+    angles = carriage.keyed(carriage.flying(way.airtime), keys)(time)
+    local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
+    for one, posed in zip(angles, local):
+        carriage.carry_kernel(one, carriage.joints_of(skeleton), posed)
+    local[:, 0] = yaw(way.heading) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    positions, turned = forward_kinematics(skeleton, np.zeros((len(time), 3)), local)
+    positions -= centre_of_mass(physique.anatomy, positions, turned)[:, None]
+    ends = end_positions(skeleton, positions, turned)
+    head = 0.5 * (positions[:, skeleton.index("Head")] + ends[:, skeleton.end_index["Head"]])
+    return head, np.stack([ends[:, skeleton.end_index[side + "Hand"]] if part == "" else positions[:, skeleton.index(side + part)]
+                           for side in ("Left", "Right") for part in ("", "Hand", "ForeArm")])

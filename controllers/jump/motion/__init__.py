@@ -1,0 +1,16 @@
+"""The motion of a jump: the estimated path of the centre of mass (Ooi 2015, 3.1.1), where and with which push it takes off,
+the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
+"""
+
+from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel
+from .descent import descent
+from .fall import fall, struck
+from .flight import flight_kernel
+from .path import Path, path
+from .plan import Plan
+from .thrust import push
+
+__all__ = [
+    "FADE", "GROUND_RATE", "HEEL", "LOWEST", "SAME", "Airborne", "Path", "Plan", "descent", "faded", "fall",
+    "flight_kernel", "ground_kernel", "path", "push", "struck",
+]

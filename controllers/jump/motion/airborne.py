@@ -1,0 +1,193 @@
+"""A body in the air and on its feet again: what a planned jump and a fall share."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...body import exp_kernel, product_kernel, settle, yaw
+from ...compiled import kernel
+from ..body import (FLEX, TOES_DOWN, Physique, Start, measures, parts_kernel, place_kernel, soles, stand_kernel,
+                    carriage, turns, vectors)
+from .landing import TIME, absorb
+from .path import Path
+
+GROUND_RATE, AIR_RATE = 72.0, 90.0
+"""Poses a second over planted feet, in the air."""
+SHORT = 0.5
+"""Flights that last longer [s] are slower, and need fewer poses a second."""
+PLANT = 0.09
+"""From the toes' landing to the heels' [s]."""
+HEEL = 0.03
+"""A heel that is raised by more has left the floor [rad]."""
+MEET = 0.5, 14.0
+"""How much of the speed that the ground bends them with legs have as they touch down, and at most [rad/s]."""
+FADE = 0.14
+"""Half-life with which the start's pose gives way to the jump's [s]."""
+STEADY = 0.12
+"""Half-life with which the pelvis loses the turn it landed with [s]."""
+LOWEST = 0.28
+"""From touch-down to the lowest point of the landing [s]."""
+SAME = 1e-3
+"""The legs reach for a body turned to within this of how it lands [rad]."""
+
+
+class Airborne:
+    """One motion in the making, from the air to standing.
+
+    start: where it begins. way: its flight. landing: (2, 5) the feet on the floor. leave: when the flight
+    begins [s]. times, keys: (K,) [s], (K, 6) [rad] the carriage until touch-down; the landing's is added; first: as in `carriage.keyed`.
+    """
+
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float,
+                 times, keys: np.ndarray, first: float = 0.0):
+        self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
+        self.landing, self.gravity, self.leave = landing, way.gravity, leave
+        self.joints = carriage.joints_of(physique.skeleton)
+        self.count = len(physique.skeleton)
+        self.flex = FLEX * physique.flexibility
+        self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
+        self.down = leave + way.airtime
+        self.carriage = carriage.keyed(np.append(times, [self.down, self.down + LOWEST, self.down + TIME]), keys, first)
+
+    @staticmethod
+    def absorbing(physique: Physique, way: Path, landing: np.ndarray) -> float:
+        """How far a body folds up as it lands, 1 as in `carriage.ABSORB`: for a fall, or for the squat it lands in."""
+        low = measures(physique).stand - (way.land[1] - landing[0, 1] + physique.tables.sole)
+        return max(float(np.linalg.norm(way.falling)) / 3.2, low / (0.3 * physique.size))
+
+    def _differ(self, angles: np.ndarray) -> None:
+        """What the start's pose differs by from one carried by `angles` (6,): it fades, see `_left_over`."""
+        local = np.tile(np.eye(3), (self.count, 1, 1))
+        carriage.carry_kernel(angles, self.joints, local)
+        self.offset, self.offset_rate = vectors(self.start.rotations @ np.swapaxes(local, -1, -2)), self.start.rates.copy()
+        for part in (self.offset, self.offset_rate):
+            part[0] = part[self.legs] = 0.0
+
+    def _left_over(self, times: np.ndarray) -> np.ndarray:
+        """What is left (N, J, 3) [rad] of the start's pose at times (N,) [s], pelvis and legs apart."""
+        left = faded(self.offset, self.offset_rate, FADE, times)
+        left[np.einsum("njk,njk->nj", left, left) < 1e-12] = 0.0
+        return left
+
+    def _upright(self, lean: np.ndarray) -> np.ndarray:
+        """The pelvis' turns (N, 3, 3), facing where the jumper faces and leaning (N,) [rad]."""
+        return yaw(self.start.heading) @ turns(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
+
+    def _prepare_air(self) -> None:
+        """The flight's times, arc and carriage."""
+        way = self.way
+        count = AIR_RATE * min(way.airtime, math.sqrt(SHORT * way.airtime))
+        self.flying = np.linspace(0.0, way.airtime, 3 * max(math.ceil(count / 3.0), 3) + 1)
+        t = self.flying[:, None]
+        self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
+        self.air_angles = self.carriage(self.leave + self.flying)
+        self.air = np.tile(np.eye(3), (len(t), self.count, 1, 1))
+        for angles, left, local in zip(self.air_angles, self._left_over(self.leave + self.flying), self.air):
+            carry_on_kernel(angles, self.joints, left, local)
+        self.air_roots, self.momentum = np.empty((len(t), 3)), np.empty(3)
+
+    def _miss(self, wanted: np.ndarray, air: np.ndarray) -> np.ndarray:
+        """The rotation vector (3,) [rad] from how a body in these poses (N, J, 3, 3) came down to how it should, somersaults
+        counted."""
+        miss = vectors(wanted @ air[-1, 0].T)
+        across = yaw(self.start.heading)[:, 0]
+        turned = vectors(air[1:, 0] @ np.swapaxes(air[:-1, 0], -1, -2)) @ across
+        meant = vectors(wanted @ air[0, 0].T) @ across
+        return miss + 2.0 * np.pi * np.round((meant - turned.sum() - miss @ across) / (2.0 * np.pi)) * across
+
+    def _parts(self, root: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where (S, 3) the segments of a body are from its centre of mass, and how they are turned (S, 3, 3)."""
+        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
+        place_kernel(self.body, root, local, positions, turned)
+        parts = len(self.body.mass)
+        out = np.empty((parts, 3)), np.empty((parts, 3, 3))
+        parts_kernel(self.body, positions, turned, np.empty(3), *out)
+        return out
+
+    def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The local rotations (J, 3, 3) at touch-down, the body turned `turn` (3, 3), and how fast the legs
+        (8, 3) bend then [rad/s]: they begin to give before the floor makes them."""
+        step, feet = 1.0 / 240.0, np.zeros((2, 6))
+        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
+        posed = np.stack([self.air[-1], self.air[-1]])
+        posed[:, 0] = turn
+        feet[:, :4] = self.landing[:, :4]
+        centre = self.way.land.copy()
+        root = centre - [0.0, 0.05, 0.0]
+        for k, pitch in enumerate(_toes_down([0.0, step])):
+            feet[:, 4] = pitch
+            stand_kernel(self.body, centre, feet, self.flex, root, posed[k], positions, turned)
+            centre += step * self.way.falling
+        bent = vectors(posed[:, self.legs])
+        return posed[0], np.clip(MEET[0] / step * (bent[1] - bent[0]), -MEET[1], MEET[1])
+
+    def _land(self):
+        """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
+        velocity and acceleration; whether the heels (M, 2) stand; when it walks on."""
+        way, body = self.way, self.body
+        after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
+        support = soles(self.landing, body)
+        goal = support.mean(0) + [0.0, measures(self.physique).stand, 0.0]
+        landing = absorb(way.land, way.falling, goal, support, -self.gravity[1])
+        c, v, a = landing.motion(after)
+        angles = self.carriage(self.down + after)
+        feet = np.ones((len(after), 2, 6))
+        feet[..., :5] = self.landing
+        feet[..., 4] = _toes_down(after)[:, None]
+        upright = self._upright(angles[:, 0])
+        rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
+        turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
+        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
+        ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
+                      self.air_roots[-1].copy(), roots, local)
+        return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, max(landing.until(after), PLANT + 0.02)
+
+
+def _toes_down(time):
+    """How far feet point down (...) [rad] so long after the toes touched [s]."""
+    return TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
+
+
+def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
+    """Offsets (N, ...) at times (N,) [s] of one (...) that settles from its rate."""
+    kept, carried = settle(np.array([1.0, 0.0]), np.array([0.0, 1.0]), halflife, times[:, None])[0].T  # of offset, of rate
+    return np.multiply.outer(kept, offset) + np.multiply.outer(carried, rate)
+
+
+@kernel
+def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
+    """Poses over planted feet: angles (N, 6), what is left of the start (N, J, 3), the pelvis' turns
+    (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), whose pitch is written.
+
+    root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
+    """
+    count = local.shape[1]
+    positions, orientations = np.empty((count, 3)), np.empty((count, 3, 3))
+    for n in range(len(centres)):
+        carry_on_kernel(angles[n], joints, offsets[n], local[n])
+        local[n, 0] = turns[n]
+        for i in range(3):  # the pelvis goes on as it went, seen from the centre of mass
+            if n > 1:
+                root[i] = centres[n, i] + 2.0 * (roots[n - 1, i] - centres[n - 1, i]) - (roots[n - 2, i] - centres[n - 2, i])
+            elif n == 1:
+                root[i] += centres[1, i] - centres[0, i]
+        stand_kernel(body, centres[n], feet[n], flex, root, local[n], positions, orientations)
+        roots[n] = root
+
+
+@kernel
+def carry_on_kernel(angles, joints, offsets, local):
+    """Write the local rotations (J, 3, 3) of a body carried by `angles` (6,), what is left of the start (J, 3)
+    added; neither the pelvis nor, where nothing is left, joints that are not carried are touched."""
+    turn, carried = np.empty((3, 3)), np.empty((3, 3))
+    for j in range(1, len(local)):  # poses are made anew, whatever an earlier round left
+        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
+            exp_kernel(0.0, 0.0, 0.0, local[j])
+    carriage.carry_kernel(angles, joints, local)
+    for j in range(1, len(local)):
+        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
+            exp_kernel(offsets[j, 0], offsets[j, 1], offsets[j, 2], turn)
+            carried[:] = local[j]
+            product_kernel(turn, carried, local[j])

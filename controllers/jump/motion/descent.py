@@ -1,0 +1,94 @@
+"""The way down: where the centre of mass goes until the lowest point of a jump.
+
+Down it goes by a polynomial; along the floor a standing body falls as an inverted pendulum whose foot is the centre of
+pressure, so that the ground gives what that takes from under the soles (see `take_off`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import kernel
+from ..body import Start
+from .path import Path
+from .take_off import MEETS
+
+
+def descent(way: Path, start: Start, floor: float, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Place [m], velocity and acceleration (N, 3) of the centre of mass at times (N,) [s], evenly from 0 to the lowest point.
+
+    A runner goes down by a quartic: how hard the ground meets the foot is left open. A standing body does by a quintic,
+    later where `Path.dip` says so. floor: [m].
+    """
+    pushed = way.push.force(0.0) + way.gravity
+    if way.running:
+        down, along = (joined(start.centre, start.velocity, begins, way.low, way.passing, pushed, times)
+                       for begins in (None, np.zeros(3)))
+        for part, flat in zip(down, along):
+            part[:, [0, 2]] = flat[:, [0, 2]]
+        return down
+    half = np.linspace(0.0, times[-1], 2 * len(times) - 1)
+    late = np.maximum(half - max(way.wind_up - way.dip, 0.0), 0.0)
+    pushed[1] = min(pushed[1], -MEETS * way.gravity[1])
+    sinking = start.velocity if way.dip >= way.wind_up else 0.0 * start.velocity
+    c, v, a = joined(start.centre, sinking, np.zeros(3), way.low, way.passing, pushed, late)
+    fallen = fallen_kernel(half, (a[:, 1] + 1e-9 - way.gravity[1]) / (c[:, 1] - floor), start.centre[[0, 2]],
+                           start.velocity[[0, 2]], way.low[[0, 2]], way.passing[[0, 2]], way.stance[[0, 2]])
+    c, v, a = c[::2], v[::2], a[::2]
+    c[:, [0, 2]], v[:, [0, 2]], a[:, [0, 2]] = fallen
+    return c, v, a
+
+
+def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
+    """Place, velocity, acceleration (N, 3) along the quintic with these ends at times[0] = 0 and times[-1], or, without a
+    first acceleration, the quartic."""
+    t = times[-1]
+    powers = np.arange(3, 6) if acceleration is not None else np.arange(2, 5)
+    begins = np.zeros(3) if acceleration is None else acceleration
+    ends = np.stack([t**powers, powers * t ** (powers - 1.0), powers * (powers - 1.0) * t ** (powers - 2.0)])
+    c = np.linalg.solve(ends, np.stack([
+        end - start - velocity * t - 0.5 * begins * t**2, end_velocity - velocity - begins * t, end_acceleration - begins]))
+    s = times[:, None]
+    return (start + velocity * s + 0.5 * begins * s**2 + s**powers @ c,
+            velocity + begins * s + (powers * s ** (powers - 1.0)) @ c,
+            begins + (powers * (powers - 1.0) * s ** (powers - 2.0)) @ c)
+
+
+@kernel
+def fallen_kernel(times, rates, start, velocity, end, end_velocity, pressed):
+    """Along the floor (N, 2) place, velocity and acceleration of a body that falls as an inverted pendulum.
+
+    ẍ = rates (x − p): times, rates: (2 N − 1,) [s], [1/s²], evenly spaced. The centre of pressure p goes from under `start`
+    to `pressed` (2,); two bumps on its way, one early and one late, are chosen so that x ends at `end` with `end_velocity` (2,).
+    """
+    count, step = (len(times) + 1) // 2, times[2] - times[0]
+    place, speed = np.empty((count, 4)), np.empty((count, 4))  # x, z without bumps; what each bump adds
+    foot = np.zeros((len(times), 4))
+    for n in range(len(times)):
+        s = times[n] / times[-1]
+        for k in range(2):
+            foot[n, k] = start[k] + (pressed[k] - start[k]) * s
+        foot[n, 2], foot[n, 3] = (1.0 - s) * (1.0 - (1.0 - s) ** 6), s * (1.0 - s**6)
+    place[0, :2], speed[0, :2] = start, velocity
+    place[0, 2:], speed[0, 2:] = 0.0, 0.0
+    for n in range(count - 1):  # Runge's and Kutta's method
+        i = 2 * n
+        for k in range(4):
+            x, v = place[n, k], speed[n, k]
+            a1 = rates[i] * (x - foot[i, k])
+            v2, a2 = v + 0.5 * step * a1, rates[i + 1] * (x + 0.5 * step * v - foot[i + 1, k])
+            v3, a3 = v + 0.5 * step * a2, rates[i + 1] * (x + 0.5 * step * v2 - foot[i + 1, k])
+            v4, a4 = v + step * a3, rates[i + 2] * (x + step * v3 - foot[i + 2, k])
+            place[n + 1, k] = x + step * (v + 2.0 * v2 + 2.0 * v3 + v4) / 6.0
+            speed[n + 1, k] = v + step * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0
+    found = np.empty((3, count, 2))
+    determinant = place[-1, 2] * speed[-1, 3] - place[-1, 3] * speed[-1, 2]
+    for k in range(2):
+        far, fast = end[k] - place[-1, k], end_velocity[k] - speed[-1, k]
+        early = (far * speed[-1, 3] - fast * place[-1, 3]) / determinant
+        late = (fast * place[-1, 2] - far * speed[-1, 2]) / determinant
+        for n in range(count):
+            found[0, n, k] = place[n, k] + early * place[n, 2] + late * place[n, 3]
+            found[1, n, k] = speed[n, k] + early * speed[n, 2] + late * speed[n, 3]
+            found[2, n, k] = rates[2 * n] * (found[0, n, k] - foot[2 * n, k] - early * foot[2 * n, 2] - late * foot[2 * n, 3])
+    return found

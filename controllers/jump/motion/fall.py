@@ -1,0 +1,175 @@
+"""The fall: something is in the way in the air. The hit takes the velocity into it, and the body gets its
+feet under itself, comes down on whatever floor there is, and stands.
+
+Beyond the thesis; after Faloutsos 2001, whose controllers end in a state that another can take over from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...body import Pose, Skeleton, end_positions, forward_kinematics
+from ...navigation import floor_at, gap
+from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
+                    turns, vectors)
+from .airborne import LOWEST, SAME, Airborne
+from .flight import flight_kernel
+from .path import Path, softened
+from .plan import Plan
+
+BOUNCE, FRICTION = 0.05, 0.4
+"""How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
+CLOSING = 0.4
+"""Slower than this [m/s] a body does not strike what it touches."""
+LEAST, LOW = 0.14, 0.5
+"""Legs need so long to come down [s]; a body lands no lower than this share of how high it touches down."""
+TURNS = 5.0
+"""Nobody turns faster to get upright [rad/s]."""
+REACHES = 0.30
+"""So long after the hit the legs are where they land [s]."""
+ASIDE = ((0.25, 0.17), (1.15, 0.36))
+"""What stands or hangs at a height over the feet [m] is so far from them [m] when they come down."""
+ROUNDS, CLOSE = 5, 0.02
+"""At most so many flights are tried until the body lands this upright [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hit:
+    """What a flying body struck: where (3,) [m], and the way (3,) out of it."""
+
+    place: np.ndarray
+    normal: np.ndarray
+
+    @property
+    def reason(self) -> str:
+        """In words."""
+        x, y, z = self.place
+        return f"it struck something in the air at ({x:.1f}, {y:.1f}, {z:.1f}) m"
+
+    def after(self, velocity: np.ndarray) -> np.ndarray:
+        """The velocity (3,) [m/s] that is left: a little back, and less along it."""
+        into = min(float(velocity @ self.normal), 0.0)
+        along = velocity - into * self.normal
+        pace = float(np.linalg.norm(along))
+        return along * (1.0 - min(FRICTION * -into / max(pace, 1e-9), 1.0)) - BOUNCE * into * self.normal
+
+
+def struck(skeleton: Skeleton, pose: Pose, centre: np.ndarray, velocity: np.ndarray, around: Sequence[Any]) -> Hit | None:
+    """What a body runs into whose centre of mass (3,) flies with `velocity` (3,) [m/s]; its feet may touch
+    what they please. It is sent back as if its middle were in the way, so that nobody hangs on an edge."""
+    positions, turned = forward_kinematics(skeleton, pose.root, pose.rotations)
+    feet = [skeleton.index(side + part) for side in ("Left", "Right") for part in ("Foot", "Toe")]
+    ends = [skeleton.end_index[name] for name in ("Head", "LeftHand", "RightHand")]
+    body = np.concatenate([np.delete(positions, feet, 0), end_positions(skeleton, positions, turned)[ends]])
+    for thing in around:
+        deep = gap(body, thing)
+        place = body[int(deep.argmin())]
+        if deep.min() < 0.0:
+            normal = _out(np.array([centre[0], place[1], centre[2]]), thing)
+            if velocity @ normal < -CLOSING:
+                return Hit(place, normal)
+    return None
+
+
+def _out(place: np.ndarray, thing) -> np.ndarray:
+    """The way (3,) out of a thing from a place (3,)."""
+    step = 1e-4 * np.eye(3)
+    slope = gap(place + step, thing) - gap(place - step, thing)
+    return slope / max(float(np.linalg.norm(slope)), 1e-12)
+
+
+def fall(physique: Physique, start: Start, hit: Hit, around: Sequence[Any], gravity: np.ndarray) -> Plan:
+    """The motion from the moment of a hit to standing. start: the body at that moment."""
+    velocity = hit.after(start.velocity)
+    time, land, place = _down(physique, start.centre, velocity, around, gravity)
+    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre)
+    return _Fall(physique, start, way, landing_feet(place, start.heading, physique.tables)).plan()
+
+
+def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: Sequence[Any],
+          gravity: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """When [s] and where (3,) a falling centre of mass is as the feet touch the floor, and their place (3,) there."""
+    flat, g, touch = velocity * FLAT, -float(gravity[1]), measures(physique).touch(0.0)
+    pace, size = float(np.linalg.norm(flat)), physique.size
+    ahead = flat / max(pace, 1e-9) * min(TRAIL[0] * pace, TRAIL[1] * size)
+
+    def until(height: float) -> float:
+        return (velocity[1] + np.sqrt(max(velocity[1] ** 2 + 2.0 * g * (centre[1] - height), 0.0))) / g
+    time, place, floor = 0.0, centre, centre[1] - touch
+    for _ in range(4):  # the floor tells the time, the time where, and that the floor
+        place = centre + time * flat + ahead
+        for thing in around:
+            for height, aside in ASIDE:
+                near = gap(foot := np.array([[place[0], floor + height * size, place[2]]]), thing)[0]
+                place = place + max(aside * size - near, 0.0) * _out(foot[0], thing) * FLAT
+        floor = floor_at(place[0], place[2], around, centre[1] - LOW * touch)
+        soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), size)
+        time = max(until(floor + touch - soft), min(LEAST, until(floor + LOW * touch)), 0.03)
+    return time, centre + time * velocity + 0.5 * time**2 * gravity, np.array([place[0], floor, place[2]])
+
+
+class _Fall(Airborne):
+    """One fall in the making."""
+
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray):
+        super().__init__(physique, start, way, landing, 0.0, [0.0], carriage.falling(self.absorbing(physique, way, landing)))
+
+    def plan(self) -> Plan:
+        """Everything, in order."""
+        self._differ(self.carriage(0.0))
+        self._prepare_air()
+        self._turn_upright()
+        after, landed, heels, through = self._land()
+        way, flying = self.way, self.flying
+        contacts = np.zeros((len(flying) + len(after), 4), bool)
+        contacts[len(flying):, 1::2], contacts[len(flying):, ::2] = True, heels
+        return Plan(
+            np.append(flying, self.down + after), np.concatenate([self.air_roots, landed[0]]),
+            np.concatenate([self.air, landed[1]]), np.concatenate([self.arc, landed[2]]),
+            np.concatenate([way.velocity + self.gravity * flying[:, None], landed[3]]),
+            self.physique.mass * np.concatenate([np.zeros((len(flying), 3)), landed[4] - self.gravity]),
+            contacts, 0.0, 0.0, self.down, self.down + LOWEST, self.down + through, self.landing, self.momentum.copy(), way)
+
+    def _turn_upright(self) -> None:
+        """Fly with the angular momentum that lands the body upright: arms and hands get it from what they hit."""
+        self.air[0] = self.start.rotations
+        wanted = self._upright(self.air_angles[-1:, 0])[0]
+        inertia = self._inertia()
+        spin = vectors(wanted @ self.air[0, 0].T) / self.way.airtime
+        landed = wanted
+        for _ in range(ROUNDS):
+            spin *= min(1.0, TURNS / max(float(np.linalg.norm(spin)), 1e-9))
+            self._fly(inertia @ spin, landed, 1e-4)
+            landed, miss = self.air[-1, 0].copy(), self._miss(wanted, self.air)
+            if np.abs(miss).max() < CLOSE:
+                break
+            spin = spin + miss / self.way.airtime
+        for _ in range(ROUNDS):  # the legs reach for where this very body comes down
+            landed = self.air[-1, 0].copy()
+            self._fly(self.momentum.copy(), landed, 1e-9)
+            if np.abs(vectors(landed.T @ self.air[-1, 0])).max() < SAME:
+                break
+
+    def _inertia(self) -> np.ndarray:
+        """The body's inertia (3, 3) [kg m²] as it was struck."""
+        placed, inertia = self._parts(self.start.root, self.start.rotations), np.empty((3, 3))
+        momentum_kernel(self.body, *placed, *placed, 1.0, np.empty(3), inertia)
+        return inertia
+
+    def _fly(self, momentum: np.ndarray, landed: np.ndarray, tolerance: float) -> None:
+        """The flight with an angular momentum (3,), the legs reaching as if the body came down turned `landed`."""
+        ids, airtime = self.legs, self.way.airtime
+        now, end = self.start.rotations[ids], vectors(self._touching(landed)[0][ids])
+        step = self.flying[1]
+        before = vectors(turns(-step * self.start.rates[ids]) @ now)
+        now = vectors(now)
+        times = np.array([0.0, min(airtime, REACHES), airtime + 1e-6])
+        curve = hermite(times, np.stack([now, end, end]), np.stack([(now - before) / step, 0 * end, 0 * end]), self.flying)
+        curve[:, [1, 5], 0] = np.maximum(curve[:, [1, 5], 0], np.minimum(now[[1, 5], 0], 0.05))  # knees don't bend back
+        self.air[1:, ids] = turns(curve)[1:]
+        self.momentum[:] = momentum
+        flight_kernel(self.body, self.arc, self.air, np.zeros(3), self.momentum, step, self.air_roots, tolerance)

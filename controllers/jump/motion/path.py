@@ -1,0 +1,116 @@
+"""The path estimate (Ooi 2015, 3.1.1): where the centre of mass goes, from the lowest point of the
+wind-up over take-off to landing, and what stops a body from going there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..body import FLAT, TRAIL, Physique, Start, apex_airtime, folding, least_effort, measures, soles, take_off_velocity
+from .take_off import Running, Standing
+from .thrust import Push, push
+
+SQUAT, DEEPEST_SQUAT = 0.6, 0.30
+"""How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
+SOFT = (0.035, 2.5, 0.10)
+"""How much lower [m] a body touches down for each m/s that it falls faster than the second [m/s], and at most:
+bent legs give way without the knees flying. At standard height and what an adult falls."""
+LEAST_AIRTIME = 0.30
+"""Shorter flights look like stumbling [s]; on Earth, at standard height."""
+FOLDED = 0.64
+"""How low a body touches down at most, as a share of how high it stands."""
+ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
+"""Where a body leaves and how fast follow from each other: they are found in so many rounds at most, to so much [m], by such
+a share at least of what the last round found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at the lowest point
+    and at take-off, the flight's and the wind-up's time [s], the push between, None for a fall.
+
+    stance: (3,) [m] the middle of the soles that push. dip: how long before the lowest point it starts to go down [s]. strong:
+    whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
+    foot. lean, fold: [rad] forward, more than straight up, at take-off and at touch-down. low_arms: the arms stay down.
+    """
+
+    low: np.ndarray
+    leave: np.ndarray
+    land: np.ndarray
+    passing: np.ndarray
+    velocity: np.ndarray
+    airtime: float
+    wind_up: float
+    gravity: np.ndarray
+    push: Push | None
+    stance: np.ndarray
+    dip: float = np.inf
+    strong: bool = True
+    far: float = 0.0
+    up: float = 0.0
+    heading: float = 0.0
+    running: bool = False
+    lean: float = 0.0
+    fold: float = 0.0
+    low_arms: bool = False
+
+    @property
+    def falling(self) -> np.ndarray:
+        """The velocity (3,) [m/s] at landing."""
+        return self.velocity + self.gravity * self.airtime
+
+
+def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray, floor: float,
+         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False) -> Path:
+    """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
+
+    airtime: [s], or None for the least effort. low_arms: with the arms down. The crouch is as deep as the muscles need it (`windup`).
+    """
+    body, heights = physique.tables, measures(physique, low_arms)
+    size, g = body.size, -float(gravity[1])
+    ground = soles(feet, body)
+    middle, goal = ground.mean(0), soles(landing, body).mean(0)
+    flat = (goal - middle) * FLAT
+    far = float(np.linalg.norm(flat))
+    towards = flat / far if far > 1e-6 else np.zeros(3)
+    balls = feet[:, :3].mean(0)
+    if start.single is None:
+        reach = 0.5 * float(body.tip[2] - body.heel[2] + body.toe[2]) - 0.015 * size
+        pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity)
+    else:
+        pushing = Running(physique, start, heights, balls, floor, gravity)
+    # who jumps up lands with folded legs, and need not bring the body as high
+    squat = min(SQUAT * max(float(goal[1]) - floor, 0.0), DEEPEST_SQUAT * size)
+    # where it leaves, how far behind its feet and how much lower it lands
+    guess = np.array([middle[0], floor + heights.leave(0.0), middle[2], 0.0, 0.0])
+    lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
+    for _ in range(ROUNDS):
+        leave, trail, soft = guess[:3], guess[3], guess[4]
+        height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand)
+        land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
+        flight = airtime if airtime is not None else max(
+            least_effort(leave, land, pushing.before, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
+            apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
+        velocity = take_off_velocity(leave, land, flight, gravity)
+        found = pushing.take_off(leave, land, velocity, flight)
+        before, lacks = lacks, np.array([
+            *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
+            softened(g * flight - float(velocity[1]), size)]) - guess
+        if np.abs(lacks).max() < SETTLED:
+            break
+        if before is not None:  # Aitken's relaxation
+            change = lacks - before
+            relaxed = min(max(-relaxed * (before @ change) / max(change @ change, 1e-12), LEAST_STEP), 1.0)
+        guess = guess + relaxed * lacks
+    low, leave, passing, wind_up, dip, lean, strong = found
+    velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
+    return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
+                push(leave - low, passing, velocity, gravity), middle, dip, strong, far, float(goal[1]) - floor,
+                start.heading, start.single is not None, lean, folding(trail, size), low_arms)
+
+
+def softened(fall: float, size: float) -> float:
+    """How much lower [m] a body of this size touches down that falls with `fall` [m/s], see SOFT."""
+    return size * min(SOFT[0] * max(fall / np.sqrt(size) - SOFT[1], 0.0), SOFT[2])

@@ -1,0 +1,246 @@
+"""Where the centre of mass is lowest and where it leaves, so that the ground can give the force that this takes.
+
+The ground pushes from under the soles. Of a mass at height h, where the force leans by l from upright, the centre of
+pressure lies l h behind it: the point for which the force has no moment about the centre of mass. A body that wants to go
+forward lets itself fall ahead first and pushes when it is ahead of its feet; one that was planned to leave over them would
+be pulled by something. Limbs that turn shift that point; how far, `scripts/measure/jump.py` prints.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ...body import yaw
+from ...compiled import kernel
+from ..body import FLAT, Measures, Physique, Start, leaning, over
+from ..muscles import crouch_depth, strength
+from .thrust import MOMENTS, risen, upward
+
+TOES = 0.03
+"""At take-off the ground pushes so far ahead of the balls of the feet [m], at standard height."""
+YIELDS = 0.04
+"""How long a runner's foot gives before it pushes, at least [s]."""
+SHORTEST_PUSH = 0.08
+"""No foot pushes a runner off in less [s]."""
+HURRY, SLOW = 0.8, 0.25
+"""Who walks falls ahead already and winds up in so much less time, for each m/s; who is slower than the second [m/s] may take
+longer."""
+STILL = 0.05
+"""A body that rises or sinks slower stands [m/s]."""
+DROPS, RISES = 7.2, 18.0
+"""A quintic that sinks by d asks for less than gravity if it takes √(DROPS d / g) at least, and does not rise at first if it
+takes √(RISES d / a) at most, where it ends with an acceleration a upward."""
+MEETS = 2.5
+"""With such an acceleration, over gravity, a standing body comes to its lowest point at most, where the push may begin with
+more: a quintic that ends with nearly three times it asks the floor to pull before."""
+STRIDE = 1.022
+"""How much higher a body leaves off one foot, whose heel is higher, than off two."""
+SLACK = 0.03
+"""So much higher a runner may leave, on a straighter leg [m], at standard height."""
+STRIKE = -0.5
+"""How a runner's centre of mass is accelerated as the foot has struck, over gravity: half its weight is carried."""
+LEAST_CROUCH = 0.07
+"""A body crouches at least so deep [m], at standard height."""
+MOST = 2.0
+"""A wind-up that would need more foot than there is takes longer: at most so many times as long, on Earth."""
+SOONER, TIMES = 0.85, 5
+"""How much sooner a runner leaves that could not come up so far ahead of the foot, at most so often."""
+
+
+class TakeOff(NamedTuple):
+    """Lowest point and take-off of the centre of mass (3,) [m], its velocity (3,) [m/s] at the lowest point, the time until
+    there [s] and how much of that it goes down, how far the body leans forward as it leaves [rad], and whether the muscles
+    are strong enough."""
+
+    low: np.ndarray
+    leave: np.ndarray
+    passing: np.ndarray
+    wind_up: float
+    dip: float
+    lean: float
+    strong: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """A body that pushes off both feet: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
+    the soles can press [m]. floor [m], gravity (3,) [m/s²]."""
+
+    physique: Physique
+    start: Start
+    heights: Measures
+    middle: np.ndarray
+    balls: np.ndarray
+    reach: float
+    floor: float
+    gravity: np.ndarray
+
+    before = np.zeros(3)
+
+    @cached_property
+    def facing(self) -> np.ndarray:
+        """Where (3,) it faces."""
+        return yaw(self.start.heading)[:, 2]
+
+    def take_off(self, leave: np.ndarray, land: np.ndarray, velocity: np.ndarray, flight: float) -> TakeOff:
+        """The take-off from about `leave` (3,) [m] with about a velocity (3,) [m/s], to be at `land` (3,) after `flight` [s].
+
+        Until the lowest point the body falls about a pressed point as an inverted pendulum does; over the push
+        the force's lean is linear in time. At the lowest point it comes from the middle of the soles, at take-off from
+        the toes. Along the floor that is linear in both places.
+        """
+        size, g = self.physique.size, -float(self.gravity[1])
+        rise = leave[1] - self.floor - self.heights.stand
+        deep = crouch_depth(self.physique, velocity, rise, self.gravity)
+        strong = deep == deep  # not a number where the muscles can't
+        deep = max(deep, LEAST_CROUCH * size) if strong else float(strength(self.physique).depth[-1])
+        duration, level = upward(max(deep + rise, 0.02 * size), 0.0, float(velocity[1]), g)
+        low_height, start = self.heights.stand - deep, self.start
+        facing = self.facing
+        toes = self.balls + TOES * size * facing
+        early, late = level * duration / low_height, level * duration / (leave[1] - self.floor)
+        sinks = max(float(start.centre[1]) - self.floor - low_height, 0.0)
+        least = math.sqrt(DROPS * sinks / g)  # nobody is pulled down
+        pace = float(np.linalg.norm(start.velocity * FLAT))
+        quick = max((0.34 + 0.9 * math.sqrt(sinks / max(g, 3.0))) / (1.0 + HURRY * pace), least)
+
+        rate = math.sqrt(g / self.heights.stand)
+        fixed = (duration, early, late, rate, start.centre, start.velocity, self.middle, toes, land, flight)
+        found = np.empty((4, 3))
+        longest = quick if pace >= SLOW else MOST * max(math.sqrt(9.81 / g), 1.0) * quick
+        wind_up = waiting_kernel(quick, longest, self.reach, fixed, found)
+        low, ahead, passing, _ = found
+        lead = (ahead - self.balls) * FLAT
+        lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
+        forward, aside = float(lead @ facing), abs(float(lead[2] * facing[0] - lead[0] * facing[2]))
+        height = self.heights.leave(forward, aside)
+        leave = self.balls * FLAT + lead + [0.0, self.floor + height, 0.0]
+        low = low * FLAT + [0.0, self.floor + low_height, 0.0]
+        dip = math.inf
+        if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
+            dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
+        return TakeOff(low, leave, passing, wind_up, dip, leaning(forward, height), strong)
+
+
+@dataclass(frozen=True, eq=False)
+class Running:
+    """A runner who pushes off one foot that has just struck: `ball` (3,) [m] of it. floor [m], gravity (3,) [m/s²]."""
+
+    physique: Physique
+    start: Start
+    heights: Measures
+    ball: np.ndarray
+    floor: float
+    gravity: np.ndarray
+
+    @property
+    def before(self) -> np.ndarray:
+        """The velocity (3,) [m/s] that it has."""
+        return self.start.velocity * FLAT
+
+    def take_off(self, leave: np.ndarray, land: np.ndarray, velocity: np.ndarray, flight: float) -> TakeOff:
+        """The take-off from about `leave` (3,) [m] with about a velocity (3,) [m/s], to be at `land` (3,) after `flight` [s].
+
+        The foot gives while the body passes, then pushes; it pushes as long as the body is about as far behind it
+        at first as ahead of it at last, or farther ahead if it is to become faster.
+        """
+        start, g, most = self.start, -float(self.gravity[1]), float(self.heights.leads[-1])
+        passing, pace = self.before, float(np.linalg.norm(self.before))
+        mean = 0.5 * (passing + velocity * FLAT)
+        along = mean / max(float(np.linalg.norm(mean)), 1e-6)
+        behind = (start.centre - self.ball) @ along
+        speed = max(float(np.linalg.norm(mean)), 0.3)
+        # the force's mean lean brings the velocity about
+        lean = float((velocity - passing) @ along) / max(float(velocity[1]) - float(start.velocity[1]) + g * 0.2, 1.0)
+        lead = min(2.0 * lean * self.heights.stand - behind, most)
+
+        def above(yielding: float, contact: float) -> float:
+            """How much too high [m] the body leaves if the foot gives so long [s]."""
+            pushed = contact - yielding
+            level = (float(velocity[1]) / pushed + g) / MOMENTS[0]
+            sinks = -0.5 * start.velocity[1] * yielding + (level - g - STRIKE * g) * yielding**2 / 12.0
+            return float(start.centre[1]) - sinks + risen(pushed, float(velocity[1]), g) - self._top(contact * speed + behind)
+
+        for _ in range(TIMES):  # who leaves sooner leaves higher
+            contact = max((lead - behind) / speed, YIELDS + SHORTEST_PUSH)
+            least, longest = YIELDS, contact - SHORTEST_PUSH
+            if above(longest, contact) <= SLACK * self.physique.size or longest <= least:
+                break
+            lead = behind + SOONER * (lead - behind)
+        if above(least, contact) <= 0.0:
+            yielding = least
+        elif above(longest, contact) >= 0.0:
+            yielding = longest
+        else:
+            yielding = brentq(above, least, longest, args=(contact,), xtol=1e-4)
+        rise = risen(contact - yielding, float(velocity[1]), g)
+        low = (start.centre + start.velocity * yielding) * FLAT
+        leave = low + mean * (contact - yielding)
+        leave[1] = self._top(contact * speed + behind) + min(above(yielding, contact), SLACK * self.physique.size)
+        low[1] = leave[1] - rise
+        return TakeOff(low, leave, passing, yielding, math.inf, 0.5 * leaning(lead, leave[1] - self.floor), True)
+
+    def _top(self, lead: float) -> float:
+        """How high it leaves so far ahead of its foot [m]."""
+        return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0))
+
+
+@kernel
+def waiting_kernel(quick, longest, reach, fixed, found):
+    """How long [s] a body falls ahead before it pushes: `quick`, or longer, if it would have to press farther than `reach` [m]
+    from the middle of its soles. fixed, found: as `fall_kernel` takes and writes them."""
+    middle = fixed[6]
+    if _short(quick, middle, fixed, found) <= reach or longest <= quick:
+        return quick
+    if _short(longest, middle, fixed, found) > reach:
+        return longest
+    low, high = quick, longest
+    while high - low > 1e-4:
+        wind_up = 0.5 * (low + high)
+        if _short(wind_up, middle, fixed, found) > reach:
+            low = wind_up
+        else:
+            high = wind_up
+    fall_kernel(high, fixed, found)
+    return high
+
+
+@kernel
+def _short(wind_up, middle, fixed, found):
+    """How far [m] from the middle of the soles a body presses that falls so long [s]."""
+    fall_kernel(wind_up, fixed, found)
+    return math.hypot(found[3, 0] - middle[0], found[3, 2] - middle[2])
+
+
+@kernel
+def fall_kernel(wind_up, fixed, found):
+    """The fall of `wind_up` seconds that ends in a push, to be at `land` (3,) after `flight` [s].
+
+    fixed: the push's duration [s]; early, late: [1/s] the speed that it gives for each metre that the body is ahead of what it
+    presses, as it begins and as it ends; rate: [1/s] of a pendulum of that height; centre, velocity: (3,) of the start; middle:
+    (3,) of the soles; toes, land: (3,); flight. found: (4, 3) written: where the body is lowest and where it leaves,
+    the velocity with which it is lowest, and where it presses until then. Heights are not told.
+    """
+    duration, early, late, rate, centre, velocity, middle, toes, land, flight = fixed
+    m0, m1, m2 = MOMENTS
+    falls = rate / math.tanh(0.5 * rate * wind_up)  # a pendulum's speed for each metre that it has fallen
+    swing = rate * wind_up
+    # unknown are the lowest point and the take-off: the speed gained, then the way gone
+    a, b = falls + early * (m0 - m1), late * m1 + 1.0 / flight
+    c = 1.0 + duration * (falls + early * (m0 - 2.0 * m1 + m2))
+    d = duration * late * (m1 - m2) - 1.0
+    for i in range(3):
+        begun = falls * centre[i] + velocity[i]
+        gains = land[i] / flight + begun + early * (m0 - m1) * middle[i] + late * m1 * toes[i]
+        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * middle[i] + late * (m1 - m2) * toes[i])
+        low = (d * gains - b * goes) / (a * d - b * c)
+        fallen = (low - centre[i] - velocity[i] * math.sinh(swing) / rate) / (math.cosh(swing) - 1.0)
+        found[0, i], found[1, i] = low, (a * goes - c * gains) / (a * d - b * c)
+        found[2, i], found[3, i] = falls * (low - centre[i]) - velocity[i], centre[i] - fallen
+    found[2, 1] = 0.0

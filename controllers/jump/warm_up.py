@@ -1,0 +1,24 @@
+"""A jump of nobody: `python -m gambol.controllers.jump.warm_up` compiles the jump's kernels, beside what else compiles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..body import Pose
+from ..contract import CharacterState, Intent, Leap
+from .body import measures
+from .controller import Jump
+
+
+def rehearse(jump: Jump) -> None:
+    """Plan and step a jump off a T-pose, so that what it compiles or loads does not halt a game."""
+    skeleton = jump.skeleton
+    pose = Pose(skeleton.offsets[0].copy(), np.tile(np.eye(3), (len(skeleton), 1, 1)))
+    state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
+    intent = Intent(leap=Leap(np.array([0.0, 0.0, 0.5])))
+    jump.step(jump.enter(state, intent), intent, 1.0 / 60.0)
+    measures(jump.physique, low_arms=True)  # found once a body
+
+
+if __name__ == "__main__":
+    rehearse(Jump())

@@ -1,0 +1,13 @@
+"""Motion databases: takes of many people in one memory-mapped file, built from motion capture or from Gambol's own motion,
+and a store on disk for what was learnt from them.
+"""
+
+from . import default, store
+from .build import build
+from .database import SUFFIX, Database, DatabaseError, Take
+from .default import default_database
+from .store import identity, kept
+
+__all__ = [
+    "SUFFIX", "Database", "DatabaseError", "Take", "build", "default", "default_database", "identity", "kept", "store",
+]

@@ -1,0 +1,9 @@
+"""Where live points come from: recorded performances, trackers over the network, and how their wearer stands in the room."""
+
+from .placing import Standing, placed
+from .sources import Recorded
+from .stream import PORT, Stream, read_map, usual_map
+
+__all__ = [
+    "PORT", "Recorded", "Standing", "Stream", "placed", "read_map", "usual_map",
+]

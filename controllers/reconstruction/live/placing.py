@@ -1,0 +1,96 @@
+"""How a performer stands in the room: told from a second of standing still, so that points fit a standard body.
+
+Trackers know neither where the floor is nor which way one faces nor how tall one is. Whoever stands in T-pose, or
+with the arms down, says all of it at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...body import STATURE, exp, forward_kinematics, yaw
+from ..control_points import Controls
+from ..pose_vector import SKELETON
+
+STILL = 0.05
+"""Nobody who stands still moves a point farther than this [m] …"""
+SECONDS = 1.0
+"""… for so long [s]."""
+SIZES = 0.4, 1.6
+"""A performer's size over the standard body's."""
+LIKE = 0.25
+"""Points are on the average no farther than this [m] from a standing body's, once they are placed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Carries points of a tracker's room into the body's world: turned by heading [rad], scaled, moved by shift (3,) [m]."""
+
+    heading: float = 0.0
+    scale: float = 1.0
+    shift: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    def __call__(self, points: np.ndarray) -> np.ndarray:
+        """The points (..., 3) placed."""
+        return self.scale * points @ yaw(self.heading).T + self.shift
+
+
+@dataclass(frozen=True, eq=False)
+class Standing:
+    """Watches for somebody who stands still. frames: tuple of (time [s], points (n, 3) [m]) of the last second."""
+
+    frames: tuple[tuple[float, np.ndarray], ...] = ()
+
+    def watch(self, time: float, points: np.ndarray) -> Standing:
+        """With one frame more. A point that is lost or moves begins the second anew."""
+        if not np.isfinite(points).all():
+            return Standing()
+        kept = [(t, p) for t, p in self.frames if t >= time - SECONDS - 1e-6]
+        if kept and np.linalg.norm(points - np.mean([p for _, p in kept], 0), axis=-1).max() > STILL:
+            kept = []
+        return Standing((*kept, (time, points)))
+
+    @property
+    def place(self) -> np.ndarray | None:
+        """Where the points are (n, 3) [m] on the average of a second; None until somebody stood still so long."""
+        if not self.frames or self.frames[-1][0] - self.frames[0][0] < 0.9 * SECONDS:
+            return None
+        return np.mean([points for _, points in self.frames], 0)
+
+
+def stances(controls: Controls) -> np.ndarray:
+    """Where a standard body has its points (2, n, 3) [m] that stands at the origin facing +Z: T-pose, arms down."""
+    turns = np.tile(np.eye(3), (2, len(SKELETON), 1, 1))
+    for side, down in (("Left", -1.3), ("Right", 1.3)):
+        turns[1, SKELETON.index(side + "Arm")] = exp(np.array([0.0, 0.0, down]))
+    return controls.on(*forward_kinematics(SKELETON, np.tile(SKELETON.offsets[0], (2, 1)), turns))
+
+
+def placed(seen: np.ndarray, controls: Controls, height: float | None = None) -> Placement:
+    """What carries a standing performer's points (n, 3) [m] onto a standard body that stands at the origin.
+
+    height: the performer's [m]; by default it is told from the points, and needs two of them apart.
+    ValueError if they are no standing body's.
+    """
+    found = [_align(seen, stance, None if height is None else STATURE / height) for stance in stances(controls)]
+    away, placement = min(found, key=lambda one: one[0])
+    size = STATURE / placement.scale
+    if not SIZES[0] <= size / STATURE <= SIZES[1] or away > LIKE:
+        raise ValueError(f"these points are no standing body's: at best of one {size:.2f} m tall, {100 * away:.0f} cm away; "
+                         "stand upright, in T-pose or with the arms down; is each tracker on the point that it is said to be?")
+    return placement
+
+
+def _align(seen, target, scale):
+    """The least mean distance, and the placement that has it: Procrustes about the vertical, in closed form."""
+    middle, goal = seen.mean(0), target.mean(0)
+    a, b = seen - middle, target - goal
+    along = np.sum(a[:, 0] * b[:, 0] + a[:, 2] * b[:, 2])
+    across = np.sum(b[:, 0] * a[:, 2] - b[:, 2] * a[:, 0])
+    heading = float(np.arctan2(across, along))
+    if scale is None:
+        scale = max(float((np.hypot(along, across) + np.sum(a[:, 1] * b[:, 1])) / max(np.sum(a * a), 1e-12)), 1e-3)
+    placement = Placement(heading, scale, goal - scale * yaw(heading) @ middle)
+    return float(np.linalg.norm(placement(seen) - target, axis=-1).mean()), placement

@@ -1,0 +1,10 @@
+"""Our own method: small networks that see the points' last half second, joined with the local regression; what lost points
+very likely are, and filters for noise.
+"""
+
+from . import networks
+from .ours import cells, ours
+
+__all__ = [
+    "cells", "networks", "ours",
+]

@@ -1,0 +1,9 @@
+"""The game as a person plays it: events in, scenes out. It needs no window; a host gives it one."""
+
+from .capture import OUT, Studio, log_file
+from .play import Play
+from .views import filmed, frames
+
+__all__ = [
+    "OUT", "Play", "Studio", "filmed", "frames", "log_file",
+]

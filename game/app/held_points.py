@@ -1,0 +1,202 @@
+"""What pointer and stream do with the points of a study, as actions that a log keeps; and what is learnt meanwhile."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..explain import RADIUS, Row
+from ..scene import Camera, Dot, Figure, Ink
+from ..session import Moment, Study, written
+from ..world import Learning, Methods
+from .point_picking import Grip, nearest
+
+HELD = (0.95, 0.95, 0.92)
+"""The colour round a point that is held or could be."""
+
+
+class Reach:
+    """The pointer over the points of a study, a stream of them, and the methods that are being learnt.
+
+    stream: a `gambol.controllers.reconstruction.live.sources.Source`; its points are held from the first on, beside the player as
+    a study's bodies are.
+    """
+
+    def __init__(self, methods: Methods, stream: Any = None):
+        self.methods, self.stream = methods, stream
+        self.camera: Camera | None = None
+        self.aspect = 1.0
+        self.pointer = (0.0, 0.0)
+        self.grip: Grip | None = None
+        self.sent = ""
+        self.learning: Learning | None = None
+        self.reading: threading.Thread | None = None
+        self.wanted: Study | None = None
+        self.panel: Any = None
+        self._fault = ""
+
+    # --- keys
+
+    def asked(self, action: str, now: Moment) -> tuple[str, str]:
+        """What a key asks of the session, as an action; or why nothing, or not yet, in words."""
+        open_ = now.study
+        if self.wanted is not None:
+            return "", "one thing after the other: it is still learning"
+        if action == "study":
+            return self.open(Study()) if open_ is None else ("study=", "")
+        if open_ is None:
+            return "", "nothing is reconstructed yet"
+        if self.stream is not None and action != "study_ghosts":
+            return "", "the points are the stream's"
+        if action == "study_points":
+            return self.open(open_.more_points())
+        if action == "study_ghosts":
+            return self.open(open_.other_ghosts())
+        if action == "study_hands":
+            self.grip = None
+            return "pins=hold" if open_.pins is None else "pins=", ""
+        number = self._under(now)
+        if number is None:
+            return "", "no point that is held is under the pointer"
+        place = self._places(now)[number] if open_.pins[number] is None else np.full(3, np.nan)
+        return f"pin={number}:{written(place)}", ""
+
+    def open(self, wanted: Study) -> tuple[str, str]:
+        """The action that opens a study, if all of it is ready; else it is learnt first."""
+        missing = [(name, wanted.points) for name in wanted.methods if not self.methods.knows(name, wanted.points)]
+        if not missing:
+            return wanted.action, ""
+        self.wanted, self.learning = wanted, Learning(missing, self.methods.file)
+        return "", f"learning, once, for {wanted.count} points"
+
+    def learnt(self) -> str:
+        """The action that opens what has been learnt by now, or "!" and why it can't be; empty otherwise."""
+        if self.wanted is None or self.learning is not None and not self.learning.done:
+            return ""
+        if self.learning is not None:  # it lies on disk now: read it beside the game
+            fault, self.learning = self.learning.fault, None
+            if fault:
+                self.wanted = None
+                return f"!{fault}"
+            self.reading = threading.Thread(target=self._read, args=(self.wanted,), daemon=True)
+            self.reading.start()
+        if self.reading is not None and self.reading.is_alive():
+            return ""
+        wanted, self.wanted, self.reading = self.wanted, None, None
+        return f"!{self._fault}" if self._fault else wanted.action
+
+    def _read(self, wanted: Study) -> None:
+        try:
+            for name in wanted.methods:
+                self.methods(name, wanted.points)
+        except (ValueError, OSError) as error:
+            self._fault = str(error)
+
+    def status(self, moment: Moment, key: Callable[[str], str]) -> tuple[str, ...]:
+        """What is going on, in lines."""
+        lines = []
+        if self.wanted is not None:
+            said = self.learning.said if self.learning is not None else ""
+            lines.append(f"learning for {self.wanted.count} points" + (f": {said}" if said else ""))
+        if moment.study is not None:
+            if moment.study.pins is None:
+                lines.append(f"from {moment.study.count} points: {key('study_points')} others, "
+                             f"{key('study_ghosts')} ghosts, {key('study_hands')} hold them")
+            elif self.stream is None:
+                lines.append(f"drag the points, wheel or {key('run')} deeper, {key('study_hide')} unseen, "
+                             f"{key('study_hands')} let go")
+        return tuple(lines)
+
+    # --- the pointer
+
+    def look(self, camera: Camera, aspect: float) -> None:
+        """How the points are seen from now on. aspect: width over height of the picture that has them."""
+        self.camera, self.aspect = camera, aspect
+
+    def move(self, x: float, y: float, dx: float, dy: float, deeper: bool) -> bool:
+        """The pointer is at x, y, in heights of the picture; whether it drags a point. deeper: as with Shift."""
+        self.pointer = (x, y)
+        if self.grip is None:
+            return False
+        if deeper:
+            self.grip = self.grip.slid(dx, dy)
+        return True
+
+    def holds(self, now: Moment) -> bool:
+        """Whether hands hold the points."""
+        return self.stream is None and now.study is not None and now.study.pins is not None
+
+    def scroll(self, notches: float) -> bool:
+        """The wheel; whether it pushes a point that is held."""
+        if self.grip is not None:
+            self.grip = self.grip.pushed(notches)
+        return self.grip is not None
+
+    def grab(self, now: Moment) -> bool:
+        """Take hold of the point under the pointer; whether there is one."""
+        number = self._under(now)
+        if number is not None:
+            self.grip, self.sent = Grip.of(self.camera, self.aspect, self._places(now), number, *self.pointer), ""
+        return number is not None
+
+    def let_go(self) -> bool:
+        """Whether a point was held; it stays where it is."""
+        held, self.grip = self.grip is not None, None
+        return held
+
+    def actions(self, now: Moment, time: float) -> list[str]:
+        """What the hands or the stream ask for in this tick. time: [s] of the session."""
+        if now.study is None:
+            return []
+        if self.stream is not None:
+            seen = self.stream.at(time) + np.array(now.study.beside)
+            return ["pins=" + ";".join(written(place) for place in seen)]
+        if self.grip is None or not self.holds(now) or self.camera is None:
+            return []
+        place = written(self.grip.place(self.camera, self.aspect, *self.pointer))
+        if place == self.sent:
+            return []
+        self.sent = place
+        return [f"pin={self.grip.number}:{place}"] if place else []
+
+    def _places(self, now: Moment) -> np.ndarray:
+        """Where the points (n, 3) of the study are, or the body has them."""
+        body = next(one for one in now.after.characters if one.follows is not None)
+        own = body.follows.controls.on(*body.joints)
+        goals = now.study.goals
+        return own if goals is None else np.where(np.isfinite(goals), goals, own)
+
+    def _under(self, now: Moment) -> int | None:
+        if not self.holds(now) or self.camera is None:
+            return None
+        return nearest(self.camera, self.aspect, self._places(now), *self.pointer)
+
+    # --- the picture
+
+    def marked(self, figures: Sequence[Figure], moment: Moment) -> tuple[Figure, ...]:
+        """The figures with a ring round the point that is held, or would be."""
+        number = self.grip.number if self.grip is not None else self._under(moment)
+        if number is None or not self.holds(moment):
+            return tuple(figures)
+        ring = Dot("points", self._places(moment)[number], HELD, 1.7 * RADIUS, through=True, look="ring")
+        return (replace(figures[0], sketches=(*figures[0].sketches, ring)), *figures[1:])
+
+    def legend(self, told: Sequence[Row], size: tuple[int, int], study: Study | None) -> Ink:
+        """The legend over a picture of `size` pixels."""
+        if self.panel is None:
+            from ..hud import Legend  # loads ImGui, for those only who reconstruct
+
+            self.panel = Legend()
+        return self.panel.ink(told, size, "" if study is None else f"from {study.count} points")
+
+    def close(self) -> None:
+        """Give everything back."""
+        if self.learning is not None:
+            self.learning.stop()
+        if self.panel is not None:
+            self.panel.release()
+            self.panel = None

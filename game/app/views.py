@@ -1,0 +1,65 @@
+"""What a moment of a session looks like: one scene for each player, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import zip_longest
+from typing import Any
+
+from ..explain import Preview, broken, explained, pointed, preview
+from ..scene import Camera, Overlays, Scene
+from ..session import Log, Moment, replay, strayed
+from ..world import RATE, figures
+
+
+Previews = tuple[Preview | None, ...]
+
+
+def previews(moment: Moment, before: Previews = ()) -> Previews:
+    """The jumps that players aim at. before: those of a picture earlier."""
+    return tuple(preview(character, player.aim, moment.after.props, old)
+                 for player, character, old in zip_longest(moment.players, moment.after.characters[:len(moment.players)],
+                                                           before[:len(moment.players)]))
+
+
+def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays: Overlays,
+           text: Sequence[tuple[str, ...]] = (), aimed: Previews | None = None) -> tuple[Scene, ...]:
+    """One scene for each camera.
+
+    fraction: how far from `moment.before` to `moment.after` (0 … 1). text: for each camera, the
+    lines in its corner; why a jump that is aimed at can't be made comes after them. aimed: `previews`.
+    """
+    before, after, width = moment.before, moment.after, 1.0 / len(cameras)
+    aimed = previews(moment) if aimed is None else aimed
+    people = explained(figures(before, after, fraction), before, after, fraction, overlays, aimed)
+    people = pointed(people, before, after, fraction, overlays)
+    text = tuple(text) or ((),) * len(cameras)
+    text = tuple((*lines, *broken(f"no jump: {seen.why}")) if seen is not None and seen.fault else lines
+                 for lines, seen in zip(text, aimed, strict=True))
+    return tuple(Scene(camera, people, moment.after.props, overlays, lines, part=(i * width, 0.0, width, 1.0))
+                 for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))
+
+
+def frames(log: Log, fps: int, start: float, end: float) -> int:
+    """How many frames a part of a log has, from `start` to `end` [s]."""
+    return max(int((min(end, log.duration) - start) * fps + 1e-6), 1)
+
+
+def filmed(log: Log, controller: Any, fps: int, start: float, end: float, overlays: Overlays,
+           stray: Callable[[], None] = lambda: None) -> Iterator[tuple[Scene, ...]]:
+    """Every frame of a part of a log, as the players saw it; stray: called once if it goes another way.
+
+    LogError where the log can't be played.
+    """
+    moments, told, aimed = replay(log, controller), False, ()
+    moment, first = next(moments), round(start * RATE)
+    for frame in range(frames(log, fps, start, end)):
+        # in whole numbers, so that no frame rate drifts
+        ticks, rest = divmod(frame * RATE, fps)
+        while moment.number < min(first + ticks + 1, len(log.ticks)):
+            moment = next(moments)
+            if not told and strayed(log, moment):
+                stray()
+                told = True
+        alpha, aimed = rest / fps, previews(moment, aimed)
+        yield scenes(moment, moment.fraction(alpha), [player.view(alpha) for player in moment.players], overlays, aimed=aimed)

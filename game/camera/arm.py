@@ -1,0 +1,190 @@
+"""What cameras that a player holds have in common: being turned, and an arm that props shorten.
+
+Angles: yaw is the heading a camera looks in; pitch is how far its eye stands above what it looks at.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from gambol.controllers.body import damp, wrap
+
+from ..input import Wish
+from ..scene import Camera, Prop
+from .line_of_sight import FLOOR, above_floor, beside, free_way, outside
+
+NEAREST = 0.9
+"""An arm that walls make shorter than this [m] lifts the eye over the character instead."""
+SHORTEN = 0.025
+"""Half-life [s] of an arm that gives way to what is beside it."""
+WHISKER = 0.5
+"""A prop this far beside the arm [rad] begins to shorten it, so that it is short when the prop arrives."""
+MET = 0.01
+"""An eye nearer than this to what it looks at [m] sees nothing that way."""
+_YAWS, _PITCHES = 0.025 * np.arange(1, 11), 0.05 * np.arange(1, 5)
+_FAN = np.concatenate([[(0.0, 0.0)], [(side * a, 0.0) for side in (-1, 1) for a in _YAWS],
+                       [(0.0, side * a) for side in (-1, 1) for a in _PITCHES]])
+
+
+@dataclass(frozen=True)
+class CameraSettings:
+    """How cameras behave: lengths [m], half-lives [s], angles [rad], rates [rad/s], speeds [m/s].
+
+    height: of the point looked at. nearest, farthest: the arm. lowest, highest: the pitch.
+    ahead: how many seconds before a walker it looks. swing: half-life of coming round behind a
+    walker at 1 m/s. rest: seconds the camera stays where the player turned it before it swings again.
+    """
+
+    height: float = 1.0
+    nearest: float = 1.5
+    farthest: float = 12.0
+    lowest: float = -0.35
+    highest: float = 1.35
+    ahead: float = 0.35
+    ahead_halflife: float = 0.35
+    focus_halflife: float = 0.10
+    level_halflife: float = 0.16
+    orbit_halflife: float = 0.06
+    arm_halflife: float = 0.25
+    change_halflife: float = 0.30
+    swing: float = 1.6
+    rest: float = 1.5
+    turn: float = 2.5
+    notch: float = 0.88
+    fly: float = 3.0
+    fly_halflife: float = 0.08
+    fov: float = 0.8
+
+
+def finite(*numbers: float) -> bool:
+    """Whether all of them are numbers to reckon with."""
+    return all(map(math.isfinite, numbers))
+
+
+def forward(yaw: float, pitch: float) -> np.ndarray:
+    """The direction (3,) in which a camera looks."""
+    flat = math.cos(pitch)
+    return np.array([math.sin(yaw) * flat, -math.sin(pitch), math.cos(yaw) * flat])
+
+
+def _forwards(yaw: float, pitch: float) -> np.ndarray:
+    """The directions (W, 3) of the arm and its whiskers."""
+    yaws, pitches = yaw + _FAN[:, 0], pitch + _FAN[:, 1]
+    flat = np.cos(pitches)
+    return np.stack([np.sin(yaws) * flat, -np.sin(pitches), np.cos(yaws) * flat], -1)
+
+
+def angles(way: np.ndarray) -> tuple[float, float, float]:
+    """Yaw, pitch and length of a vector from an eye to what it looks at."""
+    flat = math.hypot(way[0], way[2])
+    return math.atan2(way[0], way[2]), math.atan2(-way[1], flat), math.hypot(flat, way[1])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Turned:
+    """What all cameras have.
+
+    eye: (3,) [m]. yaw, pitch: [rad]; wanted_yaw, wanted_pitch: where the player turned them.
+    """
+
+    eye: np.ndarray
+    yaw: float = 0.0
+    pitch: float = 0.25
+    wanted_yaw: float = 0.0
+    wanted_pitch: float = 0.25
+    settings: CameraSettings = CameraSettings()
+
+    kind: ClassVar[str]
+    flown: ClassVar[bool] = False
+    """Whether the sticks move the camera instead of the character."""
+
+    def turned(self, yaw: float, pitch: float = 0.0):
+        """The player turns the camera by angles [rad]: yaw to the left, pitch upwards."""
+        if not finite(yaw, pitch):
+            return self
+        lowest, highest = self._pitches()
+        return replace(self, wanted_yaw=self.wanted_yaw + yaw,
+                       wanted_pitch=min(max(self.wanted_pitch + pitch, lowest), highest))
+
+    def recentred(self, heading: float):
+        """The player asks for the view along `heading` [rad]; it turns there the shorter way."""
+        return replace(self, wanted_yaw=self.yaw + float(wrap(heading - self.yaw)), wanted_pitch=0.25)
+
+    def aimed(self, heading: float | None, dt: float):
+        """The camera `dt` seconds later for somebody who looks where to jump, along `heading` [rad]; None: nobody does."""
+        return self
+
+    def _pitches(self) -> tuple[float, float]:
+        return self.settings.lowest, self.settings.highest
+
+    def _told(self, wish: Wish, dt: float):
+        """The camera after what the hands did to it."""
+        rate = self.settings.turn * dt
+        yaw, pitch = wish.drag[0] + rate * wish.orbit[0], wish.drag[1] + rate * wish.orbit[1]
+        told = self.turned(yaw, pitch) if yaw or pitch else self
+        if wish.zoom and math.isfinite(wish.zoom):
+            told = told.zoomed(self.settings.notch ** min(max(wish.zoom, -10.0), 10.0))
+        return told
+
+    def _swung(self, dt: float) -> dict:
+        s = self.settings
+        return {"yaw": float(damp(self.yaw, self.wanted_yaw, s.orbit_halflife, dt)),
+                "pitch": float(damp(self.pitch, self.wanted_pitch, s.orbit_halflife, dt))}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Armed(Turned):
+    """What cameras on an arm have. target: (3,) [m] the point looked at. distance: the arm that
+    was asked for; arm: what props leave of it [m]."""
+
+    target: np.ndarray
+    distance: float = 4.0
+    arm: float = 4.0
+
+    def zoomed(self, factor: float):
+        """The arm times `factor`, within its limits."""
+        s = self.settings
+        return replace(self, distance=min(max(self.distance * factor, s.nearest), s.farthest))
+
+    def view(self) -> Camera:
+        """What to draw with: along the arm, too, where props have pushed the eye onto what it looks at."""
+        met = np.linalg.norm(self.target - self.eye) < MET
+        target = self.eye + forward(*self._looks()) if met else self.target
+        return Camera(self.eye, target, fov=self.settings.fov)
+
+    def _looks(self) -> tuple[float, float]:
+        """Yaw and pitch of the arm."""
+        return self.yaw, self.pitch
+
+    def placed(self, ground, props: Sequence[Prop]):
+        """The camera at rest, as far from its target as props let it; ground: (3,) of whom it spares."""
+        return self._reached(ground, math.inf, props, clear=False)
+
+    def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool):
+        """The camera with its eye at the end of its arm. clear: whether the arm may meet nobody."""
+        props = tuple(props)
+        root = outside(self.target, props)
+        # the eye slides along the floor instead of going under it
+        longest = max(self.arm, damp(self.arm, self.distance, self.settings.arm_halflife, dt))
+        yaw, pitch = self._looks()
+        pitch = max(pitch, -math.asin(min(max((root[1] - FLOOR) / longest, -1.0), 1.0)))
+        back = -_forwards(yaw, pitch)
+        free = free_way(root, back, props)
+        slope = self.distance / WHISKER
+        soft = min(float((free + slope * np.abs(_FAN).sum(-1)).min()), self.distance)
+        s = self.settings
+        arm = damp(self.arm, soft, SHORTEN if soft < self.arm else s.arm_halflife, dt)
+        # whatever comes between shortens the arm at once: nothing hides the character
+        arm = float(min(arm, free[0]))
+        eye = root + arm * back[0]
+        if arm < NEAREST:
+            up = np.array([[0.0, 1.0, 0.0]])
+            eye = eye + min(NEAREST * (1.0 - (arm / NEAREST) ** 2), free_way(eye, up, props)[0]) * up[0]
+        if not clear or arm < NEAREST or eye[1] < FLOOR:
+            eye = outside(beside(above_floor(eye), ground), props)
+        return replace(self, eye=eye, arm=arm)

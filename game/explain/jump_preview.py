@@ -1,0 +1,180 @@
+"""A jump that is aimed at: its arc and where it lands, whether the body can make it, where it could land if not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gambol.controllers.contract import CharacterState, Leap
+from gambol.controllers.jump import FRESH, RUNNING, Jump, Physique
+from gambol.controllers.jump.body import Start, along
+from gambol.controllers.jump.motion import Path, Plan
+from gambol.controllers.navigation import floor_at
+
+from ..input import Aim
+from ..scene import Dot, Goal, Line, Patch, Prop, Sketch
+from ..world import Character, jump_of
+
+CAN, CANNOT, SEEN = (0.02, 0.52, 0.16), (0.80, 0.05, 0.02), (0.02, 0.24, 0.80)
+"""Colours of a jump that can be made, of one that can't, of one that is being made."""
+PALE = (0.92, 0.92, 0.88)
+LIFT = 0.012
+"""How high over a floor things lie [m]."""
+RING = 0.26
+"""Where somebody lands [m]: its radius."""
+BEAT = 0.1
+"""From one bead of an arc to the next [s]."""
+FADE = 0.5
+"""So long after landing the arc is gone [s]."""
+STRIKES = 0.2
+"""So far ahead of its centre of mass a runner's foot strikes [m], at standard height."""
+ALIKE = 0.03
+"""A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places."""
+
+
+@dataclass(frozen=True, eq=False)
+class Preview:
+    """A jump that is aimed at.
+
+    stand, place: (3,) [m] the middle of the feet, and where it is to land. arc, beads: (N, 3), (M, 3) [m] where the centre
+    of mass goes, and where it is on every beat. fault: why it can't be made; empty if it can. nearest: (3,) [m] the place
+    nearest to it that can be reached; None where there is none.
+    """
+
+    stand: np.ndarray
+    place: np.ndarray
+    arc: np.ndarray
+    beads: np.ndarray
+    fault: str
+    nearest: np.ndarray | None = None
+
+    @property
+    def why(self) -> str:
+        """Why it can't be made, as somebody who plays is told."""
+        if not self.fault or self.nearest is None:
+            return self.fault
+        beyond, reach = (float(np.linalg.norm(way[[0, 2]])) for way in (self.place - self.nearest, self.nearest - self.stand))
+        if self.fault.startswith("too far:") and beyond > 0.05:
+            return f"{beyond:.1f} m farther than this body can jump"
+        return f"{self.fault}; it can jump {reach:.1f} m that way"
+
+
+def plan_of(character: Character) -> tuple[Plan, float] | None:
+    """The jump that somebody makes and how far it is [s]; None while they don't."""
+    if jump_of(character.controller) is None or character.state.memory.active != "jump":
+        return None
+    jumping = character.state.memory.memory
+    return jumping.plan, jumping.time
+
+
+def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Preview | None = None) -> Preview | None:
+    """The jump that would be made if the button were let go now; None while nobody aims or one jumps.
+
+    before: what was seen a moment ago, whose nearest place is kept as long as it is one.
+    """
+    jump = jump_of(character.controller)
+    if jump is None or plan_of(character) is not None:
+        return None
+    leap = aim.target(character.state, props, -float(jump.gravity[1]))
+    if leap is None:
+        return None
+    solid, state = [prop for prop in props if not isinstance(prop, Goal)], character.controller.active(character.state)[1]
+    seen = previewed(jump, state, leap, solid)
+    if not seen.fault or aim.moving or leap.place is None:
+        return seen
+    kept = before is not None and _same_way(before, seen)
+    return replace(seen, nearest=before.nearest if kept else jump.nearest(
+        _pushing(jump, jump.start_of(state)), seen.place, float(state.floor), leap.airtime, solid))
+
+
+def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
+    """A jump as it would be made from a state, among solid props."""
+    start, floor = _pushing(jump, jump.start_of(state)), float(state.floor)
+    stand = jump.middle(start, floor)
+    place = stand if leap.place is None else np.asarray(leap.place, float)
+    way, why = jump.survey(start, place, floor, leap.airtime, solid)
+    return Preview(stand, place, *_flight(way), why)
+
+
+def _pushing(jump: Jump, start: Start) -> Start:
+    """A runner who can't push off yet, as its next foot strikes: the arc stays what it is in every step."""
+    flat = start.velocity * [1.0, 0.0, 1.0]
+    pace = float(np.linalg.norm(flat))
+    if pace < RUNNING:
+        return start
+    ahead = (start.feet[:, :3] - start.centre) @ flat / pace
+    if start.single is not None and -ahead[start.single] < FRESH:
+        return start
+    foot, feet, rates = int(np.argmax(ahead)), start.feet.copy(), start.feet_rates.copy()
+    feet[foot, :3] += (STRIKES * jump.physique.height / Physique.height - ahead[foot]) * flat / pace
+    rates[foot] = 0.0
+    return replace(start, single=foot, feet=feet, feet_rates=rates)
+
+
+def _same_way(before: Preview, now: Preview) -> bool:
+    """Whether what can be reached on the way to a place is what it was a moment ago."""
+    if not before.fault or abs(before.place[1] - now.place[1]) > ALIKE or np.linalg.norm(before.stand - now.stand) > ALIKE:
+        return False
+    old, new = ((one.place - one.stand)[[0, 2]] for one in (before, now))
+    if before.nearest is None:
+        return float(np.linalg.norm(old - new)) < ALIKE
+    reach = float(np.linalg.norm((before.nearest - before.stand)[[0, 2]]))
+    aside = np.linalg.norm(old / np.linalg.norm(old) - new / np.linalg.norm(new))
+    return bool(aside < ALIKE and np.linalg.norm(new) > reach)
+
+
+def _flight(way: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Points (33, 3) of an arc, and one for every beat."""
+    times, beats = np.linspace(0.0, way.airtime, 33), np.arange(BEAT, way.airtime, BEAT)
+    arc, beads = (along(way.leave, way.velocity, t, way.gravity) for t in (times, beats))
+    return arc, beads
+
+
+def aimed(seen: Preview, props: Sequence[Prop]) -> list[Sketch]:
+    """The arc that would be flown, its shadow and the ring where it lands, and another where it could; who aims hides
+    neither."""
+    tint = CANNOT if seen.fault else CAN
+    drawn = [*ring(seen.place, tint), *_arc(seen.arc, seen.beads, tint, 1.0)]
+    if seen.nearest is not None:
+        drawn += ring(seen.nearest, CAN)
+    return [*_shadow(seen, props, tint), *(replace(sketch, through=True) for sketch in drawn)]
+
+
+def _shadow(seen: Preview, props: Sequence[Prop], tint) -> list[Sketch]:
+    """A line on the floor below an arc, from the feet to the ring."""
+    way = seen.stand + np.linspace(0.0, 1.0, 25)[:, None] * (seen.place - seen.stand)
+    if not np.isfinite(seen.arc).all() or np.linalg.norm(seen.place - seen.stand) < RING:
+        return []
+    high = np.linspace(seen.stand[1], seen.place[1], 25) + 0.5
+    way[:, 1] = [floor_at(x, z, props, below) + LIFT for (x, _, z), below in zip(way, high)]
+    return [Line("jump", way, tint, 0.035, (0.5, 0.9), flat=True)]
+
+
+def flown(plan: Plan, time: float) -> list[Sketch]:
+    """The arc of a jump that is made, fading once it has landed."""
+    left = 1.0 - max(time - plan.touch_down, 0.0) / FADE
+    if left <= 0.0:
+        return []
+    place = plan.feet[:, :3].mean(0)
+    place[1] = plan.feet[:, 1].min() - 0.02
+    return _arc(*_flight(plan.path), SEEN, left) + (ring(place, SEEN) if left == 1.0 else [])
+
+
+def _arc(arc: np.ndarray, beads: np.ndarray, tint, opacity: float) -> list[Sketch]:
+    if not np.isfinite(arc).all():
+        return []
+    return [Line("jump", arc, tint, 0.036, (0.8 * opacity, opacity)),
+            *(Dot("jump", bead, PALE, 0.030 * opacity) for bead in beads)]
+
+
+def ring(place: np.ndarray, tint, radius: float = RING) -> list[Sketch]:
+    """Two circles on the floor."""
+    angle = np.linspace(0.0, math.tau, 49)
+    circle = np.stack([np.sin(angle), np.zeros(49), np.cos(angle)], 1)
+    middle = place + [0.0, LIFT, 0.0]
+    return [Patch("jump", middle + radius * circle[:-1], tint, 0.3),
+            Line("jump", middle + radius * circle, tint, 0.045, flat=True),
+            Line("jump", middle + [0.0, 0.001, 0.0] + 0.3 * radius * circle, tint, 0.035, flat=True)]

@@ -1,0 +1,8 @@
+"""What all that users write and name have in common: TOML files, misspelt names, and paths that results go to."""
+
+from . import toml
+from .paths import OutputError, named, output_file, output_folder, whole
+
+__all__ = [
+    "OutputError", "named", "output_file", "output_folder", "toml", "whole",
+]

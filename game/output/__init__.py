@@ -1,0 +1,12 @@
+"""What leaves the program: films and pictures, motion for other programs, strips of poses, and a gallery of all scenarios."""
+
+from . import export, gallery
+from .export import Take, checked, sampled, takes, write
+from .gallery import PAGE, make, plan, write_page
+from .recorder import recorder
+from .strip import strip
+
+__all__ = [
+    "PAGE", "Take", "checked", "export", "gallery", "make", "plan", "recorder", "sampled", "strip", "takes", "write",
+    "write_page",
+]

@@ -1,0 +1,124 @@
+"""Motion out: what characters did, as BVH (a file each) or as one animated GLB that wears their bodies.
+
+Both are metres-true, Y up, +Z ahead, at rest in T-pose, with the standard human's joint names; BVH
+counts in centimetres, as its readers expect. Contacts go along in the GLB as custom data.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.body import Pose, Skeleton, forward_kinematics
+
+from .. import character as glb
+from ..files import OutputError, output_file
+from ..render import Body, mannequin, scale_of, skin, worn
+from ..scene import TINT
+from ..world import RATE, World, pose_between
+from .recorder import motion_clip, write_motion
+
+SUFFIXES = (".bvh", ".glb")
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """What one character did. poses: one a frame. contacts: (T, 4) bool, left heel, left ball, right
+    heel, right ball. tint: linear RGB. body: what it wore, None for the mannequin."""
+
+    name: str
+    skeleton: Skeleton
+    poses: tuple[Pose, ...]
+    contacts: np.ndarray
+    tint: Sequence[float] = TINT
+    body: Body | None = None
+
+
+def takes(frames: Iterable[tuple[World, World, float]]) -> list[Take]:
+    """What every character did in frames, each `alpha` (0 … 1) of the way between two worlds.
+
+    Who joins later, or leaves, stands still until then, or from then on.
+    """
+    names: dict[str, Any] = {}
+    poses: dict[str, list[Pose]] = {}
+    contacts: dict[str, list[np.ndarray]] = {}
+    count = 0
+    for count, (before, after, alpha) in enumerate(frames, 1):
+        earlier = {character.name: character.state for character in before.characters}
+        for who in after.characters:
+            start = earlier.get(who.name, who.state)
+            pose = pose_between(start.pose, who.state.pose, alpha)
+            names[who.name] = who
+            _fill(poses.setdefault(who.name, []), count, pose)
+            _fill(contacts.setdefault(who.name, []), count, (start if alpha < 0.5 else who.state).contacts)
+    for name in names:
+        _fill(poses[name], count, poses[name][-1])
+        _fill(contacts[name], count, contacts[name][-1])
+    return [Take(name, who.controller.skeleton, tuple(poses[name]), np.stack(contacts[name]), who.tint,
+                 getattr(who.controller, "body", None)) for name, who in names.items()]
+
+
+def _fill(kept: list, count: int, value: Any) -> None:
+    kept.extend([value] * (count - len(kept)))
+
+
+def sampled(moments: Iterable[Any], fps: float) -> Iterable[tuple[World, World, float]]:
+    """Frames at `fps` a second of a session's moments (`gambol.game.session.state.Moment`), which are RATE a second."""
+    number = 0
+    for tick, moment in enumerate(moments):
+        while (due := number * RATE / fps) <= tick + 1e-9:
+            yield moment.before, moment.after, moment.fraction(min(max(due - tick + 1.0, 0.0), 1.0))
+            number += 1
+
+
+def checked(path: str | Path, names: Sequence[str] = ()) -> list[Path]:
+    """The files that the motion of characters of these names goes into: all in one .glb, a .bvh each.
+
+    OutputError, saying what would be right, where one can't be written.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise OutputError(f"{path}: motion goes into a file that ends in {' or '.join(SUFFIXES)}")
+    if suffix == ".glb" or len(names) < 2:
+        return [output_file(path, suffix)]
+    return [output_file(path.with_name(f"{path.stem}-{name}{path.suffix}"), suffix) for name in names]
+
+
+def write(path: str | Path, takes: Sequence[Take], fps: float = RATE) -> list[Path]:
+    """Write takes at `fps` frames a second; the files that were written.
+
+    .glb: all in one file. .bvh: one file each, NAME-CHARACTER.bvh where there are several.
+    OutputError where nothing can be written, or where nothing was played.
+    """
+    paths = checked(path, [take.name for take in takes])
+    if not takes or not len(takes[0].poses):
+        raise OutputError(f"{path}: nothing was played yet that could be written")
+    if paths[0].suffix.lower() == ".glb":
+        return [glb.write(paths[0], [_actor(take) for take in takes], fps)]
+    for take, own in zip(takes, paths):
+        write_motion(motion_clip(take.name, take.skeleton, take.poses, fps), own)
+    return paths
+
+
+def _actor(take: Take) -> glb.Actor:
+    root = np.stack([pose.root for pose in take.poses]).astype(float)
+    rotations = np.stack([pose.rotations for pose in take.poses]).astype(float)
+    at, turned = forward_kinematics(take.skeleton, root, rotations)
+    if take.body is None:
+        rest, _ = forward_kinematics(take.skeleton, take.skeleton.offsets[0],
+                                     np.broadcast_to(np.eye(3), (len(take.skeleton), 3, 3)))
+        body, scale, joints = mannequin(), float(scale_of(rest, skin.REST, skin.STANDARD.parents)), rest[skin.AT]
+    else:
+        body = take.body
+        at, turned, sizes = worn(body, at, turned)
+        scale = float(sizes[0])
+        joints = glb.joints_of(body, scale)
+    world = skin.turns(turned)
+    local = world.copy()
+    local[:, 1:] = skin.multiply(skin.conjugate(world[:, skin.PARENTS[1:]]), world[:, 1:])
+    return glb.Actor(take.name, body, joints, scale, take.tint, glb.Motion(at[:, 0], local, take.contacts))

@@ -1,0 +1,281 @@
+"""A scenario as it runs: the worlds between which each frame lies, and the scenes that film it.
+
+Time is frame / fps; simulation and cameras keep the simulation's own rate, so another frame rate
+films the same motion from the same places.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from gambol.controllers.body import damp
+from gambol.controllers.jump import GRAVITY
+from gambol.controllers.navigation import floor_at, in_world
+from gambol.controllers.person import built
+
+from ..camera import CameraSettings, Follow, Orbit, between, dolly, fixed
+from ..explain import broken, explained, pointed, rows
+from ..input import Script, Wish
+from ..scene import Camera, Caption, Overlays, Scene
+from ..session import GHOST
+from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods
+from .actors import ActorTable
+from .scenario import Scenario
+from .shots import CameraTable, ShotTable, overlays, parts
+
+TITLE = (0.4, 3.4)
+CAPTION = (0.4, 4.4)
+"""When a title or caption comes and when it is gone again [s], counted from the start or the cut."""
+FADE = 0.5
+"""How long coming and going take [s]."""
+LOOK_HALFLIFE = 0.15
+REFUSED = 4.0
+"""How long is said why a jump was not made [s]."""
+EARTH = float(GRAVITY[1])
+HANDS_OFF = Wish()
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One frame of a run: it shows the moment `alpha` (0 … 1) of the way from `before` to `after`.
+
+    refused: the jumps that were not made so far, and why.
+    """
+
+    number: int
+    time: float
+    before: World
+    after: World
+    alpha: float
+    refused: tuple[str, ...] = ()
+
+
+def opening(scenario: Scenario, controller: Any) -> World:
+    """The world before the first step, every actor under the same controller, each in its own body.
+
+    Who plays a clip stands behind the actors. Followers' methods are learnt if they were not yet.
+    """
+    props, cast = scenario.stage(), {}
+    for actor in scenario.actors:
+        if actor.follows is None:
+            someone, jumper = controller, actor.jumper(scenario.gravity)
+            if actor.body is not None or jumper.gravity[1] != EARTH:
+                someone = built(controller, jumper.physique, jumper.gravity)
+            x, z, heading = actor.start
+            state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
+            cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor))
+    clips = {table.performer: table.clip for _, table in scenario.followers if table.clip is not None}
+    for name, clip in clips.items():
+        someone = Recorded.load(clip, controller)
+        cast[name] = Character(name, someone, state=someone.start())
+    for actor, table in scenario.followers:
+        performer, follows = cast[table.performer], table.follows()
+        someone = follower_of(performer.controller, table.method, table.points, methods(scenario.database))
+        state = beginning(someone, performer.state, follows.beside)
+        cast[actor.name] = Character(actor.name, someone, tint=actor.colour, state=state, follows=follows, opacity=_opacity(actor))
+    order = [actor.name for actor in scenario.actors] + list(clips)
+    return World(tuple(cast[name] for name in order), props)
+
+
+def _opacity(actor: ActorTable) -> float:
+    return GHOST if actor.ghost else 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Act:
+    """A world of a run, and where every actor is in its script."""
+
+    world: World
+    scripts: tuple[Script, ...]
+
+    @property
+    def refused(self) -> tuple[str, ...]:
+        """The jumps that were not made so far, and why: a line for each."""
+        return tuple(f"{character.name}: {why}" for character, script in zip(self.world.characters, self.scripts)
+                     for why in script.refused)
+
+
+def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
+    """The run before the first step and after every one, without end."""
+    world, props = opening(scenario, controller), scenario.stage()
+    scripts = tuple(actor.script(actor.jumper(scenario.gravity), props) for actor in scenario.actors)
+    scripts += (Script(()),) * (len(world.characters) - len(scripts))
+    while True:
+        yield Act(world, scripts)
+        moves = [script.step(character.state, DT) for script, character in zip(scripts, world.characters)]
+        scripts = tuple(script for script, _ in moves)
+        world = world.step([intent for _, intent in moves])
+
+
+def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:
+    """The world before the first step and after every one, without end."""
+    return (act.world for act in acts(scenario, controller))
+
+
+def run(scenario: Scenario, controller: Any) -> Iterator[Frame]:
+    """Every frame of a scenario, in order."""
+    for number, before, after, alpha in _sampled(acts(scenario, controller), scenario):
+        yield Frame(number, number / scenario.fps, before.world, after.world, alpha, before.refused)
+
+
+def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
+           ) -> Iterator[tuple[Frame, tuple[Scene, ...]]]:
+    """Every frame with the scenes that film it, one for each view.
+
+    shown: replaces the overlays of the scenario and all its shots.
+    """
+    told: dict[str, float] = {}
+    legend: Any = None
+    for number, (first, old), (second, new), alpha in _sampled(takes(scenario, controller), scenario):
+        before, after = first.world, second.world
+        frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused)
+        for line in first.refused:
+            told.setdefault(line, frame.time)
+        why = tuple(part for line, since in told.items() if frame.time < since + REFUSED for part in broken(line))
+        held = new.crew if new.shot is old.shot else old.crew  # nothing lies between two shots
+        cameras = [between(a, b, alpha) for a, b in zip(old.crew, held)]
+        drawn = figures(before, after, alpha)
+        caption, made = _caption(scenario, old.shot, frame.time), []
+        places = parts(len(cameras), scenario.size)
+        lowest = max(top for _, top, _, _ in places)
+        for table, camera, part in zip(old.shot.cameras, cameras, places):
+            names = next(o for o in (table.overlays, old.shot.overlays, scenario.overlays) if o is not None)
+            corner = part[0] == 0.0 and part[1] == lowest
+            title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
+            text = ((title,) if title else ()) + (why if not made else ())
+            people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
+            made.append(Scene(camera, people, after.props, over, text, caption=caption if corner else None, part=part))
+        if any(scene.overlays.errors for scene in made) and (lines := rows(before)):
+            if legend is None:
+                from ..hud import Legend  # loads ImGui, for those only who show errors
+
+                legend = Legend()
+            made[0] = replace(made[0], ink=legend.ink(lines, scenario.size))
+        yield frame, tuple(made)
+    if legend is not None:
+        legend.release()
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """A shot being made, and who holds its cameras."""
+
+    shot: ShotTable
+    crew: tuple[Operator, ...]
+
+
+def takes(scenario: Scenario, controller: Any) -> Iterator[tuple[Act, Take]]:
+    """Every act of a scenario with the take that films it, without end."""
+    take = None
+    cuts = [round(shot.at * RATE) for shot in scenario.shots]
+    ends = [shot.at for shot in scenario.shots[1:]] + [scenario.duration]
+    for act in acts(scenario, controller):
+        world = act.world
+        i = [i for i, cut in enumerate(cuts) if cut <= world.number][-1]
+        shot = scenario.shots[i]
+        if take is None or take.shot is not shot:
+            take = Take(shot, tuple(Operator.ready(table, world, ends[i]) for table in shot.cameras))
+        else:
+            take = replace(take, crew=tuple(operator.step(world) for operator in take.crew))
+        yield act, take
+
+
+@dataclass(frozen=True, eq=False)
+class Operator:
+    """Who holds a camera during one shot, at one tick.
+
+    watched: the numbers of the actors that it is about; held: a camera on an arm, else the target
+    (3,) [m] that it looks at. start, end: of the shot [s]; time: now.
+    """
+
+    table: CameraTable
+    watched: tuple[int, ...]
+    start: float
+    end: float
+    time: float
+    held: Follow | Orbit | None = None
+    target: np.ndarray | None = None
+
+    @staticmethod
+    def ready(table: CameraTable, world: World, end: float) -> Operator:
+        """At the cut; the shot lasts until `end` [s]."""
+        watched = tuple(world.index(name) for name in table.names) or (0,)
+        operator = Operator(table, watched, world.time, end, world.time)
+        if table.kind in ("fixed", "dolly"):
+            return replace(operator, target=_middle(world, watched, table.height) if table.target is None else np.array(table.target))
+        ground, level = world.characters[watched[0]].state.ground, world.characters[watched[0]].level
+        yaw, above = math.radians(table.around), math.radians(table.above)
+        settings = CameraSettings(height=table.height, fov=math.radians(table.fov), nearest=0.5, highest=1.45,
+                                  rest=0.0 if table.swing else math.inf)
+        if table.target is None:
+            held = Follow.behind(ground, settings, float(ground[2]) + yaw, above, table.distance, level)
+            if table.kind == "follow":
+                return replace(operator, held=held.placed(ground, world.props))
+            target, yaw = held.target, held.yaw
+        else:
+            target = np.array(table.target)
+        held = Orbit.round(target, settings, yaw, above, table.distance, tracks=table.target is None)
+        return replace(operator, held=held.placed(ground, world.props))
+
+    def step(self, world: World) -> Operator:
+        """One tick on."""
+        moved = replace(self, time=world.time)
+        first = world.characters[self.watched[0]]
+        state = first.state
+        if self.held is None:
+            if self.table.target is not None:
+                return moved
+            return replace(moved, target=damp(self.target, _middle(world, self.watched, self.table.height), LOOK_HALFLIFE, DT))
+        held, velocity = self.held, in_world(state.ground, state.velocity)
+        if self.table.kind == "orbit":
+            held = held.turned(math.radians(self.table.turn) * DT / max(self.end - self.start, DT))
+        return replace(moved, held=held.step(state.ground, velocity, HANDS_OFF, DT, world.props, first.level))
+
+    def view(self) -> Camera:
+        """The camera."""
+        if self.held is not None:
+            return self.held.view()
+        fov = math.radians(self.table.fov)
+        if self.table.kind == "dolly":
+            return dolly(self.table.path, self.target, (self.time - self.start) / (self.end - self.start), fov)
+        return fixed(self.table.eye, self.target, fov)
+
+
+def _sampled(ticks: Iterator[T], scenario: Scenario) -> Iterator[tuple[int, T, T, float]]:
+    """Number, the ticks before and after, and the way between them of every frame of a film."""
+    before, after, reached = next(ticks), next(ticks), 0
+    for number in range(scenario.frames):
+        # in whole numbers, so that no frame rate drifts
+        wanted, rest = divmod(number * RATE, scenario.fps)
+        while reached < wanted:
+            before, after, reached = after, next(ticks), reached + 1
+        yield number, before, after, rest / scenario.fps
+
+
+def _middle(world: World, watched: tuple[int, ...], height: float) -> np.ndarray:
+    """The middle (3,) [m] of some actors, `height` over what they stand on."""
+    people = [world.characters[i] for i in watched]
+    ground = np.mean([character.state.ground[:2] for character in people], axis=0)
+    return np.array([ground[0], height + np.mean([character.level for character in people]), ground[1]])
+
+
+def _caption(scenario: Scenario, shot: ShotTable, time: float) -> Caption | None:
+    """The title while it is there, else the shot's caption."""
+    opening = Caption(scenario.title, scenario.under, _fade(time, *TITLE))
+    if opening.opacity > 0.0:
+        return opening
+    start = max(shot.at, TITLE[1] - CAPTION[0])
+    following = min([s.at for s in scenario.shots if s.at > shot.at], default=scenario.duration)
+    opacity = _fade(time, start + CAPTION[0], min(start + CAPTION[1], following))
+    return Caption(shot.caption, shot.under, opacity) if shot.caption and opacity > 0.0 else None
+
+
+def _fade(time: float, comes: float, goes: float) -> float:
+    return min(max(min(time - comes, goes - time) / FADE, 0.0), 1.0)

@@ -1,0 +1,190 @@
+"""Scenarios: scripted runs from TOML, checked field by field, the same to the bit every time."""
+
+from __future__ import annotations
+
+from pathlib import Path as File
+from typing import Annotated, Literal, get_args
+
+from pydantic import AfterValidator, Field, ValidationError, model_validator
+
+from gambol.assets import path as asset
+
+from ..camera import blocked, on_rail
+from ..files import toml
+from ..scene import Prop
+from ..world import STAGES
+from .actors import PROPS, ActorTable, FollowsTable, PropTable, beside_the_file
+from .fields import Gravity, Moment, Seconds, Table, short
+from .shots import ShotTable, Shown
+
+
+class ScenarioError(ValueError):
+    """A scenario that cannot be used; the message names file and field, one line for each fault."""
+
+
+class Scenario(Table):
+    """A scripted run, and the short film of it.
+
+    title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
+    pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. stage: what
+    stands there beside its own props. poster: the moment [s] that stands for the film. database: what the methods of
+    those who follow points learn from; Gambol's own motion by default.
+    """
+
+    title: str
+    under: str = ""
+    duration: Seconds
+    fps: Annotated[int, Field(ge=1, le=240)] = 60
+    size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
+    overlays: Shown = ("mesh",)
+    gravity: Gravity = 9.81
+    stage_name: Literal[tuple(STAGES)] | None = Field(None, alias="stage")
+    poster: Moment | None = None
+    database: Annotated[str, AfterValidator(beside_the_file)] | None = None
+    shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
+    props: tuple[PropTable, ...] = ()
+    actors: Annotated[tuple[ActorTable, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _consistent(self):
+        names = [actor.name for actor in self.actors]
+        if len({name.casefold() for name in names}) < len(names):  # some disks know no capitals
+            raise ValueError(f"actors need different names, in more than capitals; got {', '.join(names)}")
+        times = [shot.at for shot in self.shots]
+        if times[0] != 0.0 or times != sorted(set(times)):
+            raise ValueError(f"shots must begin at = 0 and then rise; got {', '.join(f'{t:g}' for t in times)}")
+        if self.poster is not None and self.poster >= self.duration:
+            raise ValueError(f"poster is a moment of the film, before its end at {self.duration:g} s; got {self.poster:g}")
+        _check_followers(self.actors)
+        names += dict.fromkeys(table.performer for _, table in self.followers if table.clip is not None)
+        solid = self.stage()
+        for i, shot in enumerate(self.shots):
+            for j, camera in enumerate(shot.cameras):
+                where = f"shots[{i}]" if shot.views is None else f"shots[{i}].views[{j}]"
+                for name in camera.names:
+                    if name not in names:
+                        raise ValueError(f"{where}: no actor is called {name!r}; there are {', '.join(names)}")
+                _check_rail(where, camera, solid, len(solid) - len(self.props))
+        return self
+
+    def stage(self) -> tuple[Prop, ...]:
+        """Everything that stands there, in SI units."""
+        return STAGES.get(self.stage_name or "", ()) + tuple(prop.prop() for prop in self.props)
+
+    @property
+    def followers(self) -> tuple[tuple[ActorTable, FollowsTable], ...]:
+        """Those who follow points, and whose."""
+        return tuple((actor, actor.follows) for actor in self.actors if actor.follows is not None)
+
+    @property
+    def wanted(self) -> tuple[tuple[str, str], ...]:
+        """The methods, name and points, that its followers need, so that they can be learnt before."""
+        return tuple(dict.fromkeys((table.method, table.points) for _, table in self.followers))
+
+    @property
+    def frames(self) -> int:
+        """How many frames the film has."""
+        return max(round(self.duration * self.fps), 1)
+
+    def at_fps(self, fps: int) -> Scenario:
+        """The same run filmed at another frame rate; the motion stays as it is."""
+        return self.model_copy(update={"fps": fps})
+
+    def at_size(self, size: tuple[int, int]) -> Scenario:
+        """The same run filmed in pictures of `size` pixels."""
+        return self.model_copy(update={"size": size})
+
+
+def _check_followers(actors: tuple[ActorTable, ...]) -> None:
+    """Whom one follows has a will."""
+    wills = [actor.name for actor in actors if actor.follows is None]
+    for i, actor in enumerate(actors):
+        table = actor.follows
+        if table is not None and table.actor is not None and table.actor not in wills:
+            raise ValueError(f"actors[{i}].follows.actor: nobody with moves is called {table.actor!r}; "
+                             f"there {'are ' + ', '.join(wills) if wills else 'is nobody'}")
+        if table is not None and table.clip is not None and any(table.performer.casefold() == a.name.casefold() for a in actors):
+            raise ValueError(f"actors[{i}].follows.clip: its performer is called {table.performer!r}, as an actor is; rename that one")
+
+
+def _check_rail(where: str, camera, props: tuple[Prop, ...], given: int) -> None:
+    """A camera that stands or goes where a prop is would show its inside. given: how many of them the stage has."""
+    rail = {"fixed": (camera.eye,), "dolly": camera.path}.get(camera.kind, ())
+    for part in [k / 64 for k in range(65)] if len(rail) > 1 else [0.0] * len(rail):
+        at = blocked(on_rail(rail, part), props)
+        if at is not None:
+            name = "eye" if camera.kind == "fixed" else "path"
+            what = f"props[{at - given}]" if at >= given else "what stands on its stage"
+            raise ValueError(f"{where}.{name}: the camera would be inside of {what}; lead it round or over it")
+
+
+def shipped() -> tuple[str, ...]:
+    """The names of the scenarios that come with Gambol."""
+    return tuple(sorted(file.stem for file in asset("scenarios").glob("*.toml")))
+
+
+def locate(name: str | File) -> File:
+    """The file of a scenario: that of a shipped one, or `name` itself. ScenarioError if there is neither."""
+    file = File(name)
+    if file.suffix == ".toml" or file.is_file():  # a folder of that name shadows nothing
+        return file
+    if str(name) not in shipped():
+        raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}"
+                            + toml.did_you_mean(str(name), shipped()))
+    return asset("scenarios", f"{name}.toml")
+
+
+def load(name: str | File) -> Scenario:
+    """A scenario by the name of a shipped one, or from a file. ScenarioError says what is wrong."""
+    file = locate(name)
+    tables = toml.read(file, ScenarioError)
+    try:
+        return Scenario.model_validate(tables, context={"folder": file.parent})
+    except ValidationError as error:
+        raise ScenarioError("\n".join(_fault(file, fault) for fault in _told(error.errors()))) from None
+
+
+def _told(faults: list[dict]) -> list[dict]:
+    """The faults without those that only follow from others."""
+    misspelt = {(*fault["loc"][:-1], name) for fault in faults if fault["type"] == "extra_forbidden"
+                for name in toml.meant(fault["loc"][-1], _fields(fault["loc"]))}
+    return [fault for fault in faults if not (
+        # a list whose items are faulty also counts as too short
+        fault["type"] == "too_short" and any(f["loc"][:len(fault["loc"])] == fault["loc"] and f is not fault for f in faults)
+        or fault["type"] == "missing" and fault["loc"] in misspelt)]
+
+
+def _fields(loc: tuple[str | int, ...]) -> set[str]:
+    """The fields that there could be where a fault is."""
+    tables = [Scenario]
+    for part in loc[:-1]:
+        inner = [one for table in tables for name, field in table.model_fields.items() if (field.alias or name) == part
+                 for one in _tables(field.annotation)]
+        tables = inner or tables  # a list's number leads nowhere else
+    return {field.alias or name for table in tables for name, field in table.model_fields.items()}
+
+
+def _tables(annotation: object) -> list[type[Table]]:
+    """The tables that a field may hold."""
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return [annotation]
+    return [one for part in get_args(annotation) for one in _tables(part)]
+
+
+def _fault(file: File, fault: dict) -> str:
+    """One line about one fault: file, field, what would be right."""
+    where = ""
+    for i, part in enumerate(fault["loc"]):
+        if part in PROPS and fault["loc"][i - 2:i - 1] == ("props",):
+            continue  # which kind of prop it is: no field of the file
+        where += f"[{part}]" if isinstance(part, int) else f"{'.' if where else ''}{part}"
+    kind, text = fault["type"], fault["msg"].removeprefix("Value error, ")
+    if kind == "extra_forbidden":
+        text = "there is no such field" + toml.did_you_mean(fault["loc"][-1], _fields(fault["loc"]))
+    elif kind == "missing":
+        text = "is missing, and needed"
+    elif kind == "union_tag_invalid":
+        text = f"kind should be one of {', '.join(PROPS)}, got {short(fault['ctx']['tag'])}"
+    elif kind not in ("value_error",):
+        text = f"{text[0].lower()}{text[1:]}, got {short(fault['input'])}".replace("tuple", "list", 1)
+    return f"{file}: {where + ': ' if where else ''}{text}"

@@ -1,0 +1,118 @@
+"""What pressing something does to a moment: pause, reset, a second player, settings, studies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ..camera import Follow, cycled
+from ..input import Aim, Pilot
+from ..world import Character, World
+from . import comparison as study, settings
+from .comparison import Study
+from .state import TINTS, Moment, Player, newcomer, owners
+
+SLOWER = (1, 2, 4, 10)
+"""Slow motion: how many ticks one step of the world takes."""
+ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"))
+"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", and `study.ACTIONS`."""
+
+
+def done(moment: Moment, who: int, action: str) -> Moment:
+    """The moment once `action` is done; what means nothing here changes nothing."""
+    name, equals, _ = action.partition("=")
+    player = moment.players[who]
+    if name in study.ACTIONS:
+        return _studied(moment, action)
+    if equals and name != "back":
+        return _tuned(moment, who, action)
+    if name == "pause":
+        return replace(moment, paused=not moment.paused, phase=moment.slow - 1)
+    if name == "slowmo":
+        slow = SLOWER[(SLOWER.index(moment.slow) + 1) % len(SLOWER)]
+        return replace(moment, slow=slow, phase=slow - 1)
+    if name == "reset":
+        return _reset(moment)
+    if name == "join":
+        return _joined(moment)
+    if name == "strafe_lock":
+        return _with(moment, who, replace(player, pilot=player.pilot.toggled()))
+    character = moment.after.characters[who]
+    ground = character.state.ground
+    if name == "recentre":
+        return _with(moment, who, replace(player, camera=player.camera.recentred(float(ground[2]))))
+    if name == "camera_mode":
+        return _with(moment, who, replace(player, camera=cycled(player.camera, ground, character.level)))
+    return moment
+
+
+def _with(moment: Moment, who: int, player: Player) -> Moment:
+    return replace(moment, players=moment.players[:who] + (player,) + moment.players[who + 1:])
+
+
+def _reset(moment: Moment) -> Moment:
+    """The opening again; what was tuned stays so."""
+    world = replace(moment.opening, characters=tuple(
+        replace(first, controller=now.controller)
+        for first, now in zip(moment.opening.characters, moment.after.characters)))
+    players = []
+    for old, character in zip(moment.players, world.characters):
+        camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
+        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim()))
+    return _studying(replace(moment, before=world, after=world, players=tuple(players), phase=0),
+                     None if moment.study is None else replace(moment.study, pins=None))
+
+
+def _studied(moment: Moment, action: str) -> Moment:
+    """The moment with a study opened or closed, or its points held otherwise. SettingError for what can't be."""
+    if action.startswith("study="):
+        wanted, now = study.opened(action), moment.study
+        if wanted is not None and now is not None:
+            wanted = replace(wanted, beside=now.beside, pins=now.pins if wanted.points == now.points else None)
+        return _studying(moment, wanted, {one.name: one for one in moment.after.characters if one.follows is not None})
+    if moment.study is None:
+        raise settings.SettingError(f"{action}: no study is open")
+    now, after = study.pinned(moment.study, action, moment.after)
+    return replace(moment, study=now, after=after)
+
+
+def _studying(moment: Moment, wanted: Study | None, kept: Mapping[str, Character] = {}) -> Moment:
+    """The moment with another study, or none. Followers that were not `kept` begin as the first player stands and moves."""
+    followers: tuple[Character, ...] = ()
+    if wanted is not None:
+        wanted, followers = study.joined(wanted, moment.after.characters[0], moment.methods, kept)
+    def among(world: World) -> World:
+        return replace(world, characters=tuple(c for c in world.characters if c.follows is None) + followers)
+    return replace(moment, before=among(moment.before), after=among(moment.after), study=wanted)
+
+
+def _joined(moment: Moment) -> Moment:
+    """One player more, beside the first; no more than there are tints."""
+    count, controller = len(moment.players), moment.after.characters[0].controller
+    if count >= len(TINTS):
+        return moment
+    def add(world: World) -> World:
+        late = newcomer(controller, count, world.characters[0].state.ground)
+        return replace(world, characters=world.characters[:count] + (late,) + world.characters[count:])
+    after = add(moment.after)
+    late = after.characters[count]
+    before = replace(moment.before, characters=moment.before.characters[:count] + (late,)
+                     + moment.before.characters[count:])
+    return replace(moment, before=before, after=after, opening=add(moment.opening),
+                   players=(*moment.players, Player.behind(late)))
+
+
+def _tuned(moment: Moment, who: int, action: str) -> Moment:
+    """The moment under another setting of one player."""
+    owner, new = settings.changed(owners(moment, who), action)
+    player, people = moment.players[who], moment.after.characters
+    if owner == "locomotion":
+        if new is None:
+            return moment
+        person = replace(people[who], controller=people[who].controller.tuned(new))
+        return replace(moment, after=replace(moment.after, characters=people[:who] + (person,) + people[who + 1:]))
+    if owner == "steering":
+        return _with(moment, who, replace(player, steering=new))
+    if owner == "pace":
+        return _with(moment, who, replace(player, pilot=replace(player.pilot, pace=new)))
+    return _with(moment, who, replace(player, camera=replace(player.camera, settings=new)))

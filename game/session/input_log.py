@@ -1,0 +1,250 @@
+"""The input log: what the hands did in every tick, in a file of a few kilobytes a minute.
+
+The first line says what it was played with. Every other line holds about a second: a checksum and
+its packed wishes, with line ends escaped. Lines are appended as one plays, so that whatever kills the program leaves a
+log that plays; a last line that was torn off is left out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..files import named
+from ..input import STEPS, Wish
+from ..world import RATE, Recorded, methods
+from .comparison import wanted
+from .settings import SettingError
+from .state import Moment, opening
+from .tick import Timeline
+
+FORMAT = 1
+SUFFIX = ".gambol"
+_ESCAPES = ((b"\x1b", b"\x1be"), (b"\n", b"\x1bn"))
+
+
+class LogError(ValueError):
+    """A log that can't be played; the message names the file, and the line where there is one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """What was played. players: at the beginning. ticks: for each, one wish for each player.
+
+    library: the `digest` of what it was played with. character: the name of the body that was worn,
+    if any. prints: tick number → `fingerprint`. clip, database: the files of the recording that the first player was, and
+    of what the methods of reconstruction learn from; empty where there was none but Gambol's own.
+    """
+
+    players: int
+    library: str
+    character: str
+    ticks: tuple[tuple[Wish, ...], ...]
+    prints: dict[int, int] = field(default_factory=dict)
+    path: Path = Path("log")
+    clip: str = ""
+    database: str = ""
+
+    @property
+    def duration(self) -> float:
+        """How long it is [s]."""
+        return len(self.ticks) / RATE
+
+
+def digest(controller: Any) -> str:
+    """What tells the motion of one controller from that of another."""
+    kind = getattr(controller, "kind", type(controller).__name__)
+    library, hashed = getattr(controller, "library", None), hashlib.sha256(kind.encode())
+    if library is not None:
+        for array in (library.velocities, library.coefficients, library.reference):
+            hashed.update(np.ascontiguousarray(array))
+    return hashed.hexdigest()[:16]
+
+
+def fingerprint(moment: Moment) -> int:
+    """A checksum of where everybody is, to notice where a replay goes another way."""
+    print_ = 0
+    for character in moment.after.characters:
+        for array in (character.state.ground, character.state.pose.root, character.state.pose.rotations):
+            print_ = zlib.crc32(np.ascontiguousarray(array), print_)
+    return print_
+
+
+class LogWriter:
+    """Keeps a log as it is played; the file begins with the first `flush` that has something to write.
+
+    clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
+    where it can't be written.
+    """
+
+    def __init__(self, path: Path, controller: Any, players: int, clip: str | Path | None = None,
+                 database: str | Path | None = None):
+        self.path, self._file = Path(path), None
+        needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file}
+        self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
+                      "library": digest(controller), "character": getattr(getattr(controller, "body", None), "name", ""), **needs}
+        self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
+
+    @property
+    def begun(self) -> bool:
+        """Whether there is a file."""
+        return self._file is not None
+
+    def add(self, wishes: Sequence[Wish]) -> None:
+        """One tick more; the wishes must be `rounded`."""
+        if self._waiting and len(self._waiting[0]) != len(wishes):  # somebody has joined
+            self.flush()
+        self._waiting.append(tuple(wishes))
+
+    def flush(self, moment: Moment | None = None) -> None:
+        """Write what was added since the last time. moment: what it led to."""
+        if not self._waiting:
+            return
+        block = _packed(self._waiting, None if moment is None else fingerprint(moment))
+        data = self._packer.compress(block) + self._packer.flush(zlib.Z_SYNC_FLUSH)
+        with named(self.path):
+            if self._file is None:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                self._file = open(self.path, "xb", buffering=0)
+                self._file.write(json.dumps(self._head).encode() + b"\n")
+            self._file.write(b"%08x %s\n" % (zlib.crc32(data), _escaped(data)))
+        self._waiting = []
+
+    def close(self) -> None:
+        """Let the file go; what was not flushed is not in it."""
+        if self._file is not None:
+            self._file.close()
+
+
+def read(path: str | Path) -> Log:
+    """A log from its file. LogError says what is wrong with it."""
+    path = Path(path)
+    try:
+        first, *lines = path.read_bytes().split(b"\n")
+    except OSError as error:
+        raise LogError(f"{path}: {error.strerror or error}") from None
+    head = _head(path, first)
+    ticks, prints, unpacker = [], {}, zlib.decompressobj()
+    for number, line in enumerate(lines[:-1], 2):  # what follows the last line's end was torn off
+        try:
+            crc, _, text = line.partition(b" ")
+            data = _plain(text)
+            if zlib.crc32(data) != int(crc, 16):
+                raise ValueError("checksum")
+            more, print_ = _unpacked(unpacker.decompress(data))
+        except (ValueError, zlib.error, LookupError, TypeError):
+            if number == len(lines):  # nothing whole comes after it: a power cut, say
+                break
+            raise LogError(f"{path}: line {number} is damaged, {len(ticks) / RATE:.0f} s into the log; "
+                           f"delete it and what follows to keep what comes before") from None
+        ticks += more
+        if print_ is not None:
+            prints[len(ticks)] = print_
+    if not ticks:
+        raise LogError(f"{path}: nothing was played yet")
+    return Log(head["players"], head["library"], head["character"], tuple(ticks), prints, path, head.get("clip", ""),
+               head.get("database", ""))
+
+
+def _head(path: Path, line: bytes) -> dict:
+    try:
+        head = json.loads(line)
+        if head["gambol"] != "input log":
+            raise ValueError
+        if head["format"] != FORMAT:
+            raise LogError(f"{path}: line 1: a log of format {head['format']}; this Gambol reads format {FORMAT}")
+        names = head["library"], head["character"], head.get("clip", ""), head.get("database", "")
+        if head["players"] not in (1, 2) or not all(isinstance(name, str) for name in names):
+            raise ValueError
+    except LogError:
+        raise
+    except (ValueError, LookupError, TypeError):
+        raise LogError(f"{path}: line 1: not an input log of Gambol, as `gambol play` keeps") from None
+    return head
+
+
+def _escaped(data: bytes) -> bytes:
+    for plain, escape in _ESCAPES:
+        data = data.replace(plain, escape)
+    return data
+
+
+def _plain(data: bytes) -> bytes:
+    for plain, escape in reversed(_ESCAPES):
+        data = data.replace(escape, plain)
+    return data
+
+
+def _packed(ticks: Sequence[tuple[Wish, ...]], print_: int | None) -> bytes:
+    """A line of JSON, then every control's changes from tick to tick, bytes of equal weight together."""
+    pressed = [[t, who, list(wish.pressed)] for t, wishes in enumerate(ticks)
+               for who, wish in enumerate(wishes) if wish.pressed]
+    numbers = np.array([[wish.numbers() for wish in wishes] for wishes in ticks], "<i2")
+    numbers = numbers.reshape(len(ticks), -1)
+    changes = np.diff(numbers, axis=0, prepend=np.zeros_like(numbers[:1]))  # may wrap round; so does the sum
+    planes = np.ascontiguousarray(changes.T).view(np.uint8).reshape(-1, 2).T
+    return json.dumps([len(ticks), len(ticks[0]), print_, pressed]).encode() + b"\n" + planes.tobytes()
+
+
+def _unpacked(block: bytes) -> tuple[list[tuple[Wish, ...]], int | None]:
+    """What `_packed` packed. ValueError, LookupError or TypeError where it can't have."""
+    line, _, data = block.partition(b"\n")
+    count, players, print_, pressed = json.loads(line)
+    planes = np.frombuffer(data, np.uint8).reshape(2, -1)
+    changes = np.ascontiguousarray(planes.T).view("<i2").reshape(players * len(STEPS), count).T
+    numbers = np.cumsum(changes, axis=0, dtype="<i2").reshape(count, players, len(STEPS))
+    actions = {(t, who): tuple(names) for t, who, names in pressed}
+    return [tuple(Wish.of(row, actions.get((t, who), ())) for who, row in enumerate(rows))
+            for t, rows in enumerate(numbers.tolist())], print_
+
+
+def performer_of(log: Log, controller: Any) -> Any:
+    """Who moved in a log: a controller, or the recording that the log names.
+
+    LogError where a file that it needs is not there.
+    """
+    for what, file, needed in (("clip", log.clip, True), ("motion database", log.database, bool(wanted(log.ticks)))):
+        if file and needed and not Path(file).is_file():
+            raise LogError(f"{log.path}: was played with the {what} {file}, which is not there: put it back")
+    return Recorded.load(log.clip, controller) if log.clip else controller
+
+
+def of_library(log: Log, controller: Any) -> Log:
+    """The log, if it was played with a library and a body that move like this controller's; else LogError."""
+    if log.library != digest(controller):
+        if log.clip:
+            raise LogError(f"{log.path}: was played with another clip than {log.clip} holds now")
+        wearing = f"the character {log.character!r}" if log.character else "the mannequin"
+        raise LogError(f"{log.path}: was played as {wearing}, and with another gait library or in another size: "
+                       "name them with --library and --character")
+    return log
+
+
+def replay(log: Log, controller: Any) -> Iterator[Moment]:
+    """The opening and the moment after every tick, to the bit as they were played.
+
+    LogError for what can't be played.
+    """
+    timeline = Timeline(opening(controller, log.players, methods(log.database or None)))
+    yield timeline.now
+    for number, wishes in enumerate(log.ticks):
+        try:
+            if len(wishes) != len(timeline.now.players):
+                raise SettingError(f"{len(wishes)} players instead of {len(timeline.now.players)}")
+            timeline.advance(wishes)
+        except SettingError as error:
+            raise LogError(f"{log.path}: {number / RATE:.1f} s into the log: {error}") from None
+        yield timeline.now
+
+
+def strayed(log: Log, moment: Moment) -> bool:
+    """Whether a replay is elsewhere than the player was: another version of Gambol walks another way."""
+    return log.prints.get(moment.number, fingerprint(moment)) != fingerprint(moment)

@@ -1,0 +1,107 @@
+"""What is played, as a value: a moment of a session, and the first one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.navigation import Steering
+
+from ..camera import Follow, PlayerCamera, between
+from ..input import STEERING, Aim, Pilot
+from ..scene import TINT, Camera, Figure
+from ..world import COURSE, Character, Methods, World, figures, methods
+from . import settings
+from .comparison import Study
+
+APART = 1.2
+"""How far from one another players start [m]."""
+TINTS = (TINT, (0.20, 0.46, 0.72))
+"""What tells the players apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Player:
+    """One pair of hands: its pilot, how it steers, where it aims, its camera now and (`last`) a tick ago."""
+
+    pilot: Pilot
+    camera: PlayerCamera
+    last: PlayerCamera
+    steering: Steering = STEERING
+    aim: Aim = Aim()
+
+    @staticmethod
+    def behind(character: Character) -> Player:
+        """Fresh hands, and a camera at rest behind a character."""
+        camera = Follow.behind(character.state.ground, level=character.level)
+        return Player(Pilot(), camera, camera)
+
+    def view(self, alpha: float) -> Camera:
+        """The camera to draw with, `alpha` (0 … 1) of the way through the last tick."""
+        return between(self.last, self.camera, alpha)
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """All of a session after a tick.
+
+    before, after: the worlds that the last step of the simulation led from and to; player i moves
+    character i. opening: the world that a reset returns to. number: ticks since the session began,
+    whatever became of the world meanwhile. slow: ticks that a step of the world takes. phase: those
+    made since the last step. study: what is reconstructed of the first player, by characters that come last in the
+    worlds; methods: where what they need is learnt.
+    """
+
+    before: World
+    after: World
+    players: tuple[Player, ...]
+    opening: World
+    number: int = 0
+    paused: bool = False
+    slow: int = 1
+    phase: int = 0
+    study: Study | None = None
+    methods: Methods = field(default_factory=methods)
+
+    def fraction(self, alpha: float) -> float:
+        """How far from `before` to `after` the world is, `alpha` of the way through the last tick."""
+        return 1.0 if self.paused else min((self.phase + alpha) / self.slow, 1.0)
+
+    def figures(self, alpha: float) -> tuple[Figure, ...]:
+        """What to draw of the characters."""
+        return figures(self.before, self.after, self.fraction(alpha))
+
+    def setting(self, name: str, player: int = 0) -> float | None:
+        """What a player's setting stands at; None where the controller has no such thing."""
+        return settings.value(owners(self, player), name)
+
+
+def opening(controller: Any, players: int = 1, learnt: Methods | None = None) -> Moment:
+    """The first moment: so many players side by side, with a course to jump on to their left.
+
+    learnt: the methods of its studies; those over Gambol's own motion by default.
+    """
+    return begin(World(tuple(newcomer(controller, n, np.zeros(3)) for n in range(players)), COURSE), players, learnt)
+
+
+def begin(world: World, players: int = 1, learnt: Methods | None = None) -> Moment:
+    """The first moment in a world, whose first characters the players move."""
+    return Moment(world, world, tuple(Player.behind(c) for c in world.characters[:players]), world,
+                  methods=methods() if learnt is None else learnt)
+
+
+def newcomer(controller: Any, number: int, ground: np.ndarray) -> Character:
+    """Player `number`, to the right of the first, who stands at `ground`."""
+    x, z, heading = (float(v) for v in ground)
+    side = APART * number
+    return Character(f"Player {number + 1}", controller, tint=TINTS[number], state=controller.start(
+        ground=(x - side * np.cos(heading), z + side * np.sin(heading), heading)))
+
+
+def owners(moment: Moment, who: int) -> dict[str, Any]:
+    """Whose settings player `who` tunes, by the owner's name; None where there is no such owner."""
+    player = moment.players[who]
+    return {"locomotion": getattr(moment.after.characters[who].controller, "settings", None),
+            "steering": player.steering, "pace": player.pilot.pace, "camera": player.camera.settings}

@@ -1,0 +1,139 @@
+"""A session: the one function that takes what is played a tick further, and the moments that were.
+
+A `gambol.game.session.state.Moment` is all there is sixty times a second: worlds, and for each player pilot and camera.
+`advance` gives the next one from what the hands wish. It knows no clock and no window, so the
+window, a film of a log and the tests play the same game, to the bit.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from gambol.controllers.contract import Intent
+from gambol.controllers.navigation import in_world, slide
+
+from ..explain import preview
+from ..input import Aim, Wish, jumping
+from ..world import DT, RATE, ground_between, jump_of
+from . import settings
+from .actions import done
+from .state import Moment, Player
+
+KEPT = 30 * RATE
+"""How many steps of the world one can go back."""
+
+
+def advance(moment: Moment, wishes: Sequence[Wish], past: Sequence[Moment] = ()) -> Moment:
+    """The moment a sixtieth of a second later; one wish for each player, in order.
+
+    First what was pressed is done, then the world moves, then the cameras. Everything stays as it
+    was while it is paused, but for the cameras. past: earlier moments, the newest last, for "back=N".
+    SettingError for a setting or a value that there is not.
+    """
+    if len(wishes) != len(moment.players):
+        raise ValueError(f"{len(moment.players)} players need as many wishes, got {len(wishes)}")
+    number, stepped, back = moment.number + 1, False, backward(wishes, past)
+    if back:  # the world starts from there at once, however slowly it goes
+        moment = replace(past[-back], paused=False, slow=moment.slow, phase=moment.slow - 1)
+    for who, wish in enumerate(wishes[:len(moment.players)]):
+        for action in wish.pressed:
+            moment = done(moment, who, action)
+            stepped = stepped or action == "step"
+    wishes = tuple(wishes) + (Wish(),) * (len(moment.players) - len(wishes))  # for one who has just joined
+    moment = replace(moment, number=number,
+                     players=tuple(replace(player, last=player.camera) for player in moment.players))
+    if moment.paused:
+        moment = _stepped(moment, wishes) if stepped else moment
+    elif moment.phase + 1 < moment.slow:
+        moment = replace(moment, phase=moment.phase + 1)
+    else:
+        moment = _stepped(moment, wishes)
+    return replace(moment, players=tuple(_filmed(moment, who, wish, stepped) for who, wish in zip(
+        range(len(moment.players)), wishes)))
+
+
+def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
+    """One step of the world."""
+    players, intents = [], []
+    for player, character, wish in zip(moment.players, moment.after.characters, wishes):
+        state = character.state
+        if player.camera.flown:  # the sticks fly the camera
+            wish = Wish()
+        jump = jump_of(character.controller)
+        aim = player.aim.step(wish, player.camera.yaw, state, jumping(state) is not None, DT) if jump is not None else player.aim
+        if aim.stands:
+            wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
+        pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
+        camera = player.camera.turned(command.swing * DT) if command.swing else player.camera
+        players.append(replace(player, pilot=pilot, camera=camera, aim=aim))
+        props = moment.after.props
+        command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
+            slide(state.ground[:2], command.velocity, float(state.floor), props)))
+        leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
+        intents.append(replace(command.intent(state, player.steering), leap=leap))
+    held = None if moment.study is None else moment.study.goals
+    intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
+    return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
+
+
+def refused(before: Moment, after: Moment) -> tuple[str, ...]:
+    """Why jumps that players had asked for were given up in the last step: a line for each."""
+    lines = []
+    for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
+        if old.aim.waiting > 0.0 and new.aim == Aim() and jumping(now.state) is None and now is not was:
+            seen = preview(was, old.aim, before.after.props)
+            why = seen.why if seen is not None else ""
+            lines.append(f"no jump: {why or getattr(was.state.memory, 'refused', '') or 'no foot stood ready'}")
+    return tuple(lines)
+
+
+def _filmed(moment: Moment, who: int, wish: Wish, stepped: bool) -> Player:
+    """A player whose camera is a tick further, after the character."""
+    first, second = moment.before.characters[who], moment.after.characters[who]
+    old, new, part = first.state, second.state, moment.fraction(1.0)
+    still = moment.paused and not stepped
+    velocity = np.zeros(2) if still else in_world(new.ground, new.velocity) / moment.slow
+    player = moment.players[who]
+    return replace(player, camera=player.camera.aimed(player.aim.looked, DT).step(
+        ground_between(old, new, part), velocity, wish, DT, moment.after.props,
+        first.level + part * (second.level - first.level)))
+
+
+@dataclass(eq=False)
+class Timeline:
+    """The present moment and those of the last half minute, one for each step of the world.
+
+    past: earlier moments, the newest last. Ticks in which the world stood still only change the
+    present, so that a long pause doesn't push out what one would go back to.
+    """
+
+    now: Moment
+    past: deque[Moment] = field(default_factory=lambda: deque(maxlen=KEPT))
+
+    def advance(self, wishes: Sequence[Wish]) -> None:
+        """One tick on. A "back=N" forgets what came after the moment that it returns to."""
+        moment = advance(self.now, wishes, self.past)
+        back = backward(wishes, self.past)
+        for _ in range(back - 1):
+            self.past.pop()
+        if not back and moment.after.characters[0].state is not self.now.after.characters[0].state:
+            self.past.append(self.now)
+        self.now = moment
+
+
+def backward(wishes: Sequence[Wish], past: Sequence[Moment]) -> int:
+    """How many steps of the world the wishes of a tick go back, at most to the oldest of `past`.
+
+    SettingError for a "back=" without a whole number from 1.
+    """
+    back = 0
+    for action in (action for wish in wishes for action in wish.pressed if action.startswith("back=")):
+        text = action.removeprefix("back=")
+        if not text.isdecimal() or int(text) < 1:
+            raise settings.SettingError(f"{action}: needs a whole number of steps, from 1")
+        back = int(text)
+    return min(back, len(past))

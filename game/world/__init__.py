@@ -1,0 +1,17 @@
+"""The world: characters and their controllers, stepped at a fixed rate; performers that play a clip, followers that know a
+few points of somebody, and the course that the game opens on.
+"""
+
+from .centre_of_mass import jump_of, physique_of
+from .course import COURSE, STAGES
+from .embodied import Embodied
+from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
+from .methods import METHODS, NAMES, TINTS, Learning, Methods, methods
+from .recorded import Recorded
+from .world import DT, RATE, Character, FixedStep, World, figures, ground_between, pose_between
+
+__all__ = [
+    "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "STAGES", "TINTS", "Character", "Embodied", "Errors",
+    "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "World", "beginning", "figures", "follower_of",
+    "ground_between", "jump_of", "lately", "methods", "physique_of", "pose_between",
+]

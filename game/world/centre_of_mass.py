@@ -1,0 +1,55 @@
+"""How a body's centre of mass is borne: its acceleration, calmed, and whose body it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.body import centre_of_mass, settle
+from gambol.controllers.jump import Jump, Physique
+
+HALFLIFE = 0.06
+"""Of what follows the centre of mass [s]: corrections of feet are shorter, steps are longer."""
+
+ADULT = Physique()
+"""Whose body moves where nothing is said of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sway:
+    """A critically damped follower of a centre of mass: place, velocity, acceleration, (3,) each [m, s].
+
+    Its acceleration is the centre's without what trembles.
+    """
+
+    place: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+    @staticmethod
+    def begun(centre: np.ndarray, velocity: np.ndarray) -> Sway:
+        """At a centre (3,) [m] that moves with a velocity (3,) [m/s]."""
+        return Sway(centre, velocity, np.zeros(3))
+
+    def step(self, centre: np.ndarray, dt: float) -> Sway:
+        """`dt` seconds later, the centre at a new place (3,) [m]."""
+        offset, velocity = settle(self.place - centre, self.velocity, HALFLIFE, dt)
+        return Sway(centre + offset, velocity, (velocity - self.velocity) / dt)
+
+
+def jump_of(controller: Any) -> Jump | None:
+    """The jumps of a controller; None for one that can't jump."""
+    return getattr(controller, "controllers", {}).get("jump")
+
+
+def physique_of(controller: Any) -> Physique:
+    """Whose body a controller moves; an adult's where it says nothing."""
+    jump = jump_of(controller)
+    return ADULT if jump is None else jump.physique
+
+
+def centre_of(controller: Any, joints: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """The centre of mass (3,) [m] of a controller's body, its joints' positions (J, 3) and orientations (J, 3, 3) known."""
+    return centre_of_mass(physique_of(controller).anatomy, *joints)

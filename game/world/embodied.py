@@ -1,0 +1,42 @@
+"""A controller in somebody's body: it moves as before, in that body's size, and is drawn in it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gambol.controllers.body import STATURE
+from gambol.controllers.jump import Jump, Physique
+from gambol.controllers.scaled import Scaled
+from gambol.controllers.supervisor import Supervisor
+
+from ..render import Body, leg_length, skin
+
+SMALLEST, LARGEST = 0.4, 1.6
+"""Legs shorter or longer than this share of the standard's are taken for another unit, and fitted."""
+ADULT = 73.0
+"""What a body of standard height weighs [kg]; others by the cube of their size."""
+
+
+class Embodied(Supervisor):
+    """Controllers in a body's size. body: what they move. factor: its leg length over the standard human's."""
+
+    def __init__(self, controllers, body: Body, factor: float = 1.0):
+        super().__init__(controllers)
+        self.body, self.factor = body, factor
+
+    @staticmethod
+    def of(controller: Any, body: Body) -> Embodied:
+        """A person, or one controller alone, in a body; one of unlikely size is fitted to the standard human's."""
+        factor = float(leg_length(body.joints) / leg_length(skin.REST))
+        factor = factor if SMALLEST <= factor <= LARGEST else 1.0
+        controllers = getattr(controller, "controllers", {"locomotion": controller})
+        return Embodied({name: sized(one, factor) for name, one in controllers.items()}, body, factor)
+
+
+def sized(controller: Any, factor: float) -> Any:
+    """A controller in a body `factor` times as long as the standard human's."""
+    if factor == 1.0:
+        return controller
+    if isinstance(controller, Jump):
+        return Jump(Physique(max(ADULT * factor**3, 5.0), STATURE * factor), controller.gravity)
+    return Scaled(controller, factor)

@@ -1,0 +1,180 @@
+"""The methods that reconstruct, by name: each learnt from a database the first time that it is asked for.
+
+What takes long lies on disk afterwards. A program that must not wait has it learnt by another one (`Learning`).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.reconstruction import SKELETON, Controls, encode, parse
+from gambol.controllers.reconstruction.database import Database
+from gambol.controllers.reconstruction.following import Starts
+
+METHODS = ("ours", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
+"""Ours; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
+ridge regression; SGPLVM (Grochow 2004)."""
+TINTS = {"ours": (0.03, 0.36, 0.33), "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02),
+         "mousas": (0.28, 0.20, 0.70), "nearest": (0.40, 0.42, 0.08), "network": (0.06, 0.30, 0.72),
+         "ridge": (0.60, 0.18, 0.10), "gplvm": (0.55, 0.36, 0.24)}
+"""The colour of each, linear RGB: of its body, its ghost and its line in the legend."""
+NAMES = {"ours": "ours", "lpcr": "local PCR", "lpca": "local PCA", "mousas": "Mousas mended", "nearest": "nearest",
+         "network": "network", "ridge": "ridge", "gplvm": "SGPLVM"}
+"""What each is called in the picture."""
+PROGRESS = re.compile(r"(.+): (\d+) of (\d+)")
+
+Progress = Callable[[str, int, int], None]
+"""Called with what is being done, how much of it is, and of how much."""
+
+
+class Methods:
+    """The methods over one database; Gambol's own motion where no file is named.
+
+    DatabaseError for a file that is no database, once it is needed.
+    """
+
+    def __init__(self, file: str | Path | None = None):
+        self.file = None if file is None else Path(file)
+        self._known: dict[tuple[str, str], Any] = {}
+        self._starts: dict[str, Starts] = {}
+        self._database: Database | None = None
+
+    def knows(self, name: str, points: str) -> bool:
+        """Whether a method for some points is ready at once."""
+        return (name, points) in self._known
+
+    def __call__(self, name: str, points: str, progress: Progress | None = None) -> tuple[Any, Controls]:
+        """A method of `METHODS` and the points that it follows, as `controls.parse` has them.
+
+        ValueError, saying what there is, for others.
+        """
+        if name not in METHODS:
+            raise ValueError(f"no method {name!r}: there are {', '.join(METHODS)}")
+        controls = parse(points, SKELETON)
+        if not self.knows(name, points):
+            self.starts(points)
+            self._known[name, points] = learnt(name, self.database(progress), controls, progress)
+        return self._known[name, points], controls
+
+    def starts(self, points: str) -> Starts:
+        """Where one begins from such points alone."""
+        if points not in self._starts:
+            self._starts[points] = Starts.of(self.database(), parse(points, SKELETON))
+        return self._starts[points]
+
+    def database(self, progress: Progress | None = None) -> Database:
+        """What they learn from."""
+        from gambol.controllers.reconstruction.database import default_database
+
+        if self._database is None:
+            told = progress or _silent
+            told("the database", 0, 1)
+            self._database = default_database() if self.file is None else Database.open(self.file)
+            told("the database", 1, 1)
+        return self._database
+
+
+@lru_cache
+def methods(file: str | Path | None = None) -> Methods:
+    """The methods over a database, the same ones for the same file."""
+    return Methods(file)
+
+
+def learnt(name: str, database: Database, controls: Controls, progress: Progress | None = None) -> Any:
+    """A method of `METHODS`, ready: nothing of it is compiled or read later. Rivals as they are best on recorded takes."""
+    from gambol.controllers.reconstruction.ours import ours
+    from gambol.controllers.reconstruction.evaluation import rival
+
+    method = ours(database, controls, progress=progress) if name == "ours" else rival(name, database, controls)
+    rehearse(method, controls)
+    return method
+
+
+def _silent(what: str, done: int, total: int) -> None:
+    pass
+
+
+def rehearse(method: Any, controls: Controls) -> None:
+    """Two frames of nobody, so that what they compile or load halts no game."""
+    still = np.broadcast_to(np.eye(3), (1, len(SKELETON), 3, 3))
+    memory = method.begin(*encode(SKELETON.offsets[:1], still, 1 / 60))
+    for _ in range(2):
+        memory, _ = method.step(memory, np.full((len(controls), 3), np.nan))
+
+
+class Learning:
+    """Another program that learns methods, (name, points) each, so that this one finds them on disk.
+
+    said: how far it is, in words.
+    """
+
+    def __init__(self, wanted: Sequence[tuple[str, str]], file: Path | None = None, progress: Progress | None = None):
+        arguments = [f"{name}@{points}" for name, points in wanted]
+        command = [sys.executable, "-P", "-m", "gambol.game.world.methods", str(file or ""), *arguments]
+        self.said, self._told = "", progress or _silent
+        # small matrices are learnt many times faster on one thread, and the game keeps the other cores
+        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                         stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
+                                         env=os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
+                                                           "PYTHONIOENCODING": "utf-8"})
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        for line in self._process.stdout:
+            if found := PROGRESS.fullmatch(line.strip()):
+                done, total = int(found[2]), int(found[3])
+                self.said = f"{found[1]} {100 * done // max(total, 1)} %"
+                self._told(found[1], done, total)
+
+    @property
+    def done(self) -> bool:
+        """Whether it has ended."""
+        return self._process.poll() is not None
+
+    @property
+    def fault(self) -> str:
+        """Why it ended without having learnt everything; empty if it has."""
+        if not self._process.returncode:
+            return ""
+        lines = self._process.stderr.read().strip().splitlines()
+        return lines[-1] if lines else f"learning ended with code {self._process.returncode}"
+
+    def wait(self) -> None:
+        """Until it has ended."""
+        self._process.wait()
+
+    def stop(self) -> None:
+        """End it early."""
+        self._process.terminate()
+        self._process.wait()
+
+
+def main(file: str, *wanted: str) -> None:
+    """Learn "NAME@POINTS" each, and print how far it is."""
+    told = {}
+
+    def progress(what: str, done: int, total: int) -> None:
+        share = 100 * done // max(total, 1)
+        if told.get(what) != share:
+            told[what] = share
+            print(f"{what}: {done} of {total}", flush=True)
+    for one in wanted:
+        name, _, points = one.partition("@")
+        methods(file or None)(name, points, progress)
+
+
+if __name__ == "__main__":
+    try:
+        main(*sys.argv[1:])
+    except (ValueError, OSError) as error:  # whoever began it reads the line
+        sys.exit(str(error))

@@ -1,0 +1,202 @@
+"""The world: characters and their controllers, stepped at a fixed rate.
+
+A world is a value. Stepping it gives the next one and leaves the old as it was, so pausing,
+rewinding, replaying and drawing in between need nothing more than keeping worlds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from gambol.controllers.body import Pose, forward_kinematics, wrap
+from gambol.controllers.contract import CharacterState, Intent
+from gambol.controllers.navigation import drift
+from gambol.controllers.reconstruction import towards
+
+from ..scene import TINT, Figure, Prop
+from .centre_of_mass import Sway, centre_of
+from .followers import KEPT, Follows, carried, errors
+
+RATE = 60
+"""Simulation steps a second, whatever the display does."""
+DT = 1.0 / RATE
+TRAIL_EVERY = 6
+TRAIL_LENGTH = 150
+FLOOR_LIFT = 0.01
+"""How high trails and paths are drawn above the floor [m]."""
+
+RISE, CROUCH = 0.08, 0.45
+"""A pelvis no further than this above or below where it stands [m] lifts and lowers no camera."""
+
+
+@dataclass(frozen=True, eq=False)
+class Character:
+    """Somebody in the world.
+
+    controller: keeps `gambol.controllers.contract.Controller` and has the `skeleton` that it moves; one with a
+    `body` (`gambol.game.render.mesh.Body`) is drawn in it.
+    intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
+    follows: whose points it follows, None for somebody with a will. told: (N, 4) its `follow.errors`, oldest first.
+    opacity: 1 for a body, less for a ghost. sway: how its centre of mass is borne; None before its first step.
+    """
+
+    name: str
+    controller: Any
+    state: CharacterState
+    tint: tuple[float, float, float] = TINT
+    intent: Intent = field(default_factory=Intent)
+    trail: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    follows: Follows | None = None
+    told: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    opacity: float = 1.0
+    sway: Sway | None = None
+
+    @property
+    def joints(self) -> tuple[np.ndarray, np.ndarray]:
+        """World positions (J, 3) [m] and orientations (J, 3, 3) of its body."""
+        pose = self.state.pose
+        return forward_kinematics(self.controller.skeleton, pose.root, np.asarray(pose.rotations, float))
+
+    @property
+    def level(self) -> float:
+        """How high the floor seems to lie [m] that carries it, for whoever looks: in the air it goes along."""
+        floor, root = float(self.state.floor), float(self.state.pose.root[1])
+        over = root - floor - float(self.controller.skeleton.offsets[0, 1])
+        return floor + max(over - RISE, 0.0) + min(over + CROUCH, 0.0)
+
+    def step(self, intent: Intent, number: int) -> Character:
+        """One step on; `number` is that of the step that ends."""
+        state, _ = self.controller.step(self.state, intent, DT)
+        trail = self.trail
+        if number % TRAIL_EVERY == 0:
+            here = np.array([[state.ground[0], float(state.floor) + FLOOR_LIFT, state.ground[1]]])
+            trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
+        made = replace(self, state=state, intent=intent, trail=trail)
+        centre = centre_of(made.controller, made.joints)
+        sway = self.sway or Sway.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
+        return replace(made, sway=sway.step(centre, DT))
+
+    def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
+        """One step on of a follower, whose performer has made that step."""
+        old, seen, truth = self, intent.points, None
+        if performer is not None:
+            there = performer.joints
+            seen, truth = self.follows.seen(*there, number / RATE), there[0]
+            old = replace(self, state=carried(self.follows, self.state, truth, intent.around))
+        if seen is None:
+            return self.step(intent, number)
+        made = old.step(replace(intent, velocity=towards(self.state, seen), points=seen), number)
+        told = errors(self.follows, made.joints, truth, seen)
+        return replace(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """All that is simulated at one moment. number: steps made since the start."""
+
+    characters: tuple[Character, ...] = ()
+    props: tuple[Prop, ...] = ()
+    number: int = 0
+
+    @property
+    def time(self) -> float:
+        """Seconds of simulation since the start: exact, as it is counted, not summed."""
+        return self.number / RATE
+
+    def step(self, intents: Sequence[Intent]) -> World:
+        """The world one sixtieth of a second later; one intent for each character, in order.
+
+        Followers come last: they see where their performer is now.
+        """
+        if len(intents) != len(self.characters):
+            raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
+        number = self.number + 1
+        intents = [replace(intent, around=self.props) for intent in intents]
+        made = [None if one.follows else one.step(intent, number) for one, intent in zip(self.characters, intents)]
+        performers = {one.name: one for one in made if one is not None}
+        return replace(self, number=number, characters=tuple(
+            new or old.after(performers.get(old.follows.performer), intent, number)
+            for new, old, intent in zip(made, self.characters, intents)))
+
+    def index(self, name: str) -> int:
+        """The number of a character. KeyError, naming it, if there is none."""
+        for i, character in enumerate(self.characters):
+            if character.name == name:
+                return i
+        raise KeyError(name)
+
+
+@dataclass(frozen=True)
+class FixedStep:
+    """Turns the display's uneven frames into whole steps.
+
+    cap: the most steps that one frame may ask for; what a late frame owes beyond is dropped,
+    so that a slow machine runs slower instead of falling ever further behind.
+    owed: seconds not yet simulated, less than one step. dropped: seconds given up so far. Steps,
+    owed and dropped time are together exactly the time that has passed.
+    """
+
+    cap: int = 12
+    owed: float = 0.0
+    dropped: float = 0.0
+
+    def add(self, seconds: float) -> tuple[int, FixedStep]:
+        """How many steps to make now that `seconds` have passed, and what is owed afterwards.
+
+        Negative, infinite and undefined times count as none.
+        """
+        owed = self.owed + (seconds if 0.0 <= seconds < np.inf else 0.0)
+        # a hair of slack, so that frames of exactly one step never skip a beat by rounding
+        steps = int(owed / DT + 1e-6)
+        if steps > self.cap:
+            return self.cap, replace(self, owed=0.0, dropped=self.dropped + owed - self.cap * DT)
+        return steps, replace(self, owed=owed - steps * DT)
+
+    @property
+    def alpha(self) -> float:
+        """How far the moment to draw lies between the last step but one and the last, 0 … 1."""
+        return min(max(self.owed / DT, 0.0), 1.0)
+
+
+def ground_between(before: CharacterState, after: CharacterState, alpha: float) -> np.ndarray:
+    """The ground frame (..., 3) between two states, the heading by the shorter way round."""
+    change = after.ground - before.ground
+    change = np.concatenate([change[..., :2], wrap(change[..., 2:])], -1)
+    return before.ground + alpha * change
+
+
+def pose_between(before: Pose, after: Pose, alpha: float) -> Pose:
+    """The pose between two: the root on a line, each joint by the shortest rotation."""
+    if alpha <= 0.0:
+        return before
+    if alpha >= 1.0:
+        return after
+    turn = Rotation.from_matrix(np.swapaxes(before.rotations, -1, -2) @ after.rotations).as_rotvec()
+    return Pose(before.root + alpha * (after.root - before.root),
+                before.rotations @ Rotation.from_rotvec(alpha * turn).as_matrix())
+
+
+def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> tuple[Figure, ...]:
+    """What to draw of the characters between two worlds.
+
+    predict: seconds of the path ahead, if each character keeps the velocity it was asked for.
+    """
+    drawn = []
+    for old, new in zip(before.characters, after.characters):
+        pose = pose_between(old.state.pose, new.state.pose, alpha)
+        positions, orientations = forward_kinematics(new.controller.skeleton, pose.root, pose.rotations)
+        ground = ground_between(old.state, new.state, alpha)
+        ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16))
+        lift = float(new.state.floor) + FLOOR_LIFT
+        here = np.array([[ground[0], lift, ground[1]]])
+        contacts = (old if alpha < 0.5 else new).state.contacts
+        drawn.append(Figure(positions, orientations, new.tint, contacts,
+                            np.concatenate([old.trail, here]),
+                            np.stack([ahead[:, 0], np.full(len(ahead), lift), ahead[:, 1]], -1),
+                            getattr(new.controller, "body", None), opacity=new.opacity))
+    return tuple(drawn)
