@@ -11,10 +11,10 @@ from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
 from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
 from gambol.controllers.reconstruction.regression.method import Local, LocalRegression, Method  # noqa: E402
 from gambol.controllers.reconstruction.neighbours.cells import Cells  # noqa: E402
-from gambol.controllers.reconstruction.ours.ours import LISTENED  # noqa: E402
+from gambol.controllers.reconstruction.ours.combined import LISTENED  # noqa: E402
 from gambol.controllers.reconstruction.neighbours.segments import Segments  # noqa: E402
 from gambol.controllers.reconstruction.regression.map_solver import Solver  # noqa: E402
-from gambol.game.world.methods import rehearse  # noqa: E402
+from gambol.game.world.learnt_methods import rehearse  # noqa: E402
 
 if __name__ == "__main__":
     with TemporaryDirectory() as folder:

@@ -68,35 +68,141 @@ def test_imports_run_one_way():
                 assert not any(n.split(".")[0] in ("game", "moderngl", "glfw") for n in names), path
 
 
-def imported(path):
-    """Those of our modules that a module imports, whenever it does."""
+def taken(path):
+    """What of ours a module takes, whenever it does: the module that it names, and the name that it takes from there."""
     own, names = dotted(path), {dotted(p) for p in MODULES}
     room = own if path.name == "__init__.py" else own.rpartition(".")[0]
     for node in ast.walk(parsed(path)):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name in names)
+            yield from ((alias.name, "") for alias in node.names if alias.name in names)
         elif isinstance(node, ast.ImportFrom):
             above = room.split(".")[:len(room.split(".")) + 1 - node.level] if node.level else []
             source = ".".join([*above, node.module] if node.module else above)
-            yield from (name for alias in node.names
-                        if (name := f"{source}.{alias.name}" if f"{source}.{alias.name}" in names else source) in names)
+            yield from ((source, alias.name) for alias in node.names if f"{source}.{alias.name}" in names or source in names)
+
+
+def imported(path):
+    """Those of our modules that a module imports."""
+    names = {dotted(p) for p in MODULES}
+    yield from (f"{source}.{name}" if f"{source}.{name}" in names else source for source, name in taken(path))
+
+
+PACKAGES = {dotted(p) for p in MODULES if p.name == "__init__.py"}
+PLAN = {
+    "controllers": {
+        "compiled": "",
+        "body": "compiled",
+        "contract": "body",
+        "jump.body": "compiled body",
+        "mocap": "compiled body",
+        "reconstruction.live": "body",
+        "navigation": "body contract",
+        "reconstruction": "body contract",
+        "scaled": "body contract",
+        "supervisor": "body contract",
+        "jump.muscles": "compiled jump.body",
+        "locomotion": "compiled body contract mocap",
+        "jump": "body contract navigation",
+        "jump.motion": "compiled body jump.body navigation jump.muscles",
+        "person": "contract scaled supervisor locomotion jump",
+        "reconstruction.database": "compiled body contract mocap supervisor locomotion jump",
+        "reconstruction.neighbours": "compiled reconstruction.database",
+        "reconstruction.regression": "compiled body reconstruction.neighbours",
+        "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",
+        "reconstruction.following": "body reconstruction.database reconstruction.regression",
+        "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
+                                "reconstruction.baselines"),
+        "reconstruction.evaluation": ("body reconstruction.database reconstruction.regression reconstruction.baselines "
+                                      "reconstruction.ours"),
+    },
+    "game": {
+        "scene": "",
+        "files": "",
+        "render": "scene",
+        "character": "scene files render",
+        "input": "scene files",
+        "camera": "scene input",
+        "hosts": "scene render input",
+        "world": "scene render",
+        "explain": "scene input world",
+        "session": "scene files input camera world explain",
+        "hud": "scene hosts world explain session",
+        "scenario": "scene files input camera world explain session hud",
+        "output": "scene files render character input world explain session scenario",
+        "app": "scene files render input hosts world explain session hud output",
+        "cli": "scene files character input hosts world session scenario output app",
+    },
+}
+"""The house plan: which room may use which others of its wing; the game may use every room of the controllers.
+
+A room is a folder with a door, its `__init__`, or a single file that stands beside such folders. Files within a
+room, and within the rooms in it, use each other freely.
+"""
+BESIDE = 5
+"""At most so many files stand beside folders."""
 
 
 def room_of(name):
-    """The folder within a wing that a module is in; itself where it stands in the wing."""
-    parts = name.split(".")
-    return ".".join(parts[:2])
+    """The innermost folder that a module is in; itself where it stands beside the rooms of a wing."""
+    folder = name if name in PACKAGES else name.rpartition(".")[0]
+    return name if folder.count(".") == 1 else folder
 
 
-@pytest.mark.parametrize("level", [str, room_of])
-def test_nothing_imports_what_imports_it(level):
-    """No ring of modules, nor of rooms, however late they import each other."""
-    needs = {}
+def within(inner, outer):
+    return inner == outer or inner.startswith(outer + ".")
+
+
+def test_rooms_use_what_the_plan_says():
+    """No more, so that what a room stands on stays small, and no less, so that the plan is true."""
+    found = {wing: {} for wing in PLAN}
     for path in MODULES:
-        here = level(dotted(path))
-        needs.setdefault(here, set()).update({level(name) for name in imported(path)} - {here, *WINGS})
-    assert "gambol.controllers.body" in needs["gambol.controllers.supervisor"] and "gambol.game.session.tick" in needs["gambol.game.app.play"]
-    tuple(TopologicalSorter(needs).static_order())  # raises CycleError, which names the ring
+        wing, here = path.relative_to(ROOT).parts[0], room_of(dotted(path))
+        if here == f"gambol.{wing}":
+            continue
+        used = {room_of(name) for name in imported(path) if name not in (f"gambol.{w}" for w in WINGS)}
+        found[wing].setdefault(here, set()).update(
+            room for room in used if within(room, f"gambol.{wing}") and not within(room, here) and not within(here, room))
+    short = {wing: {room.removeprefix(f"gambol.{wing}."): {u.removeprefix(f"gambol.{wing}.") for u in used}
+                    for room, used in rooms.items()} for wing, rooms in found.items()}
+    assert short == {wing: {room: set(used.split()) for room, used in rooms.items()} for wing, rooms in PLAN.items()}
+
+
+def test_the_plan_has_no_circle():
+    for rooms in PLAN.values():
+        tuple(TopologicalSorter({room: used.split() for room, used in rooms.items()}).static_order())  # or CycleError
+
+
+OUTSIDE = [p for p in SOURCES if p.relative_to(ROOT).parts[0] != "tests"]
+
+
+@pytest.mark.parametrize("path", OUTSIDE, ids=lambda p: str(p.relative_to(ROOT)))
+def test_nothing_reaches_past_a_door(path):
+    """What is outside a room takes what it needs from the room's door; tests alone may look into it."""
+    here = dotted(path)
+    assert not [source for source, _ in taken(path) if source != room_of(source) and not within(here, room_of(source))]
+
+
+def test_few_files_stand_beside_folders():
+    for folder in {path.parent for path in SOURCES if "tests" not in path.relative_to(ROOT).parts}:
+        rooms = [p for p in folder.iterdir() if p.is_dir() and any(p.glob("*.py"))]
+        files = [p.name for p in folder.glob("*.py") if p.name != "__init__.py"]
+        assert not rooms or len(files) <= BESIDE, f"{folder.relative_to(ROOT)}: {files}"
+
+
+def test_no_two_files_are_called_the_same_in_a_wing():
+    """But for what every method has."""
+    for wing in WINGS:
+        names = [path.stem for path in MODULES if path.relative_to(ROOT).parts[0] == wing and path.name not in ("__init__.py", "__main__.py")]
+        twice = {name for name in names if names.count(name) > 1}
+        assert twice <= {"controller"}
+
+
+def test_nothing_imports_what_imports_it():
+    """No ring of modules, however late they import each other."""
+    wings = {f"gambol.{wing}" for wing in WINGS}
+    needs = {dotted(path): set(imported(path)) - {dotted(path)} - wings for path in MODULES if path.name != "__init__.py"}
+    assert "gambol.controllers.body" in needs["gambol.controllers.supervisor"]
+    tuple(TopologicalSorter({m: {n for n in used if n in needs} for m, used in needs.items()}).static_order())  # or CycleError
 
 
 ABSOLUTE = re.compile(r"""["'\s(=](/(?:home|work|Users|root|tmp|mnt|opt|srv|data|var)/|[A-Z]:\\\\)""")

@@ -2,7 +2,7 @@
 
 from . import fourier
 from .blend import Blender
-from .build import build_library, collect, read_recipe
+from .build_library import build_library, collect, read_recipe
 from .control_space import SCALE, ControlSpace, thin
 from .controller import DEFAULT_LIBRARY, Locomotion
 from .coverage import picture, report

@@ -5,9 +5,9 @@ from .acclaim_motion import read_amc
 from .bvh import read_bvh, write_bvh
 from .calibration import Calibration, calibrate, zero_positions
 from .detect import Detected, detect, load, read, standardise
-from .names import Roles, plain, roles
+from .joint_names import Roles, plain, roles
+from .parsing import MotionFileError
 from .retarget import retarget
-from .text import MotionFileError
 
 __all__ = [
     "AcclaimSkeleton", "Calibration", "Detected", "MotionFileError", "Roles", "calibrate", "detect", "load", "plain",

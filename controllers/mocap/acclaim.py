@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body import Skeleton
-from .text import decode, fail, number, numbers, read_bytes
+from .parsing import decode, fail, number, numbers, read_bytes
 
 _DOFS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
 

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from ..body import Clip
 from ..compiled import kernel
 from .acclaim import AcclaimSkeleton, angle_unit, read_asf
-from .text import fail, is_space, line_at, parse_number, read_bytes, token_at, turns
+from .parsing import fail, is_space, line_at, parse_number, read_bytes, token_at, turns
 
 _OK, _NO_FRAME, _OTHER_BONE, _BAD_NUMBER, _BAD_COUNT, _CUT = range(6)
 

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from ..body import Clip, Skeleton
 from .bvh_header import Joint, read_header
-from .text import fail, read_bytes, table, turns
+from .parsing import fail, read_bytes, table, turns
 
 
 def read_bvh(path) -> Clip:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .text import decode, fail, number, numbers, whole
+from .parsing import decode, fail, number, numbers, whole
 
 CHANNELS = {f"{axis}{kind}": (kind, i) for kind in ("rotation", "position") for i, axis in enumerate("xyz")}
 _LAST_LINE = re.compile(rb"^[ \t]*frame[ \t]+time\b[^\n]*\n?", re.IGNORECASE | re.MULTILINE)

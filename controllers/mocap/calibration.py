@@ -17,7 +17,7 @@ import numpy as np
 
 from ..body import Clip, Skeleton, between, exp, forward_kinematics, heading_of, human, mean, yaw
 from .flat_stance import flat_stance
-from .names import Roles, roles
+from .joint_names import Roles, roles
 
 LIMBS = {"UpLeg": "Leg", "Leg": "Foot", "Arm": "ForeArm", "ForeArm": "Hand"}
 """The bones of the limbs: from a joint to the next, by our names without the side."""

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from ..body import Clip, Skeleton, between
 from .acclaim_motion import read_amc
 from .bvh import read_bvh
-from .text import MotionFileError, fail
+from .parsing import MotionFileError, fail
 
 UNITS = (1.0, 0.1, 0.01, 0.001, 0.3048, 0.0254, 0.0254 / 0.45)
 """Metres in one unit: m, dm, cm, mm, foot, inch, and the 1/0.45 inch of CMU's recordings."""

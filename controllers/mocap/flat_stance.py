@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..body import Clip, Skeleton, heading_of, mean, yaw
-from .names import Roles
+from .joint_names import Roles
 
 _FLAT_SPEED = 0.2  # m/s, ankle and ball of a foot that stands flat
 _FLAT_RISE = 0.02  # m, of the ankle above its 10th percentile among slow frames

@@ -1,7 +1,7 @@
 """Getting somewhere: from a wish in the world to an intent, along a path, past what stands about."""
 
 from .obstacles import floor_at, gap, slide
-from .path import Path, follow
+from .path_following import Path, follow
 from .steering import Reach, Steering, drift, in_world, steer, turn_towards
 
 __all__ = [

@@ -1,7 +1,7 @@
 """The game as a person plays it: events in, scenes out. It needs no window; a host gives it one."""
 
+from .app import Play
 from .capture import OUT, Studio, log_file
-from .play import Play
 from .views import filmed, frames
 
 __all__ = [

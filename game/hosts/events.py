@@ -1,7 +1,7 @@
 """What a host tells the app it hosts. Plain data: an app is tested without a window.
 
 Keys are named as GLFW names them without KEY_ (W, LEFT_SHIFT, F1, ESCAPE); mouse buttons are keys
-too: LEFT_BUTTON, RIGHT_BUTTON, MIDDLE_BUTTON. `gambol.game.input.names` lists them all, and a pad's buttons.
+too: LEFT_BUTTON, RIGHT_BUTTON, MIDDLE_BUTTON. `gambol.game.input.key_names` lists them all, and a pad's buttons.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .bindings import JOINING, REWOUND, Bindings, Sticks
-from .names import TRIGGERS
+from .key_names import TRIGGERS
 from .wish import Wish, unit_disc
 
 PLAYERS = 2

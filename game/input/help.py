@@ -10,7 +10,7 @@ from typing import Any
 from ..scene import Bar, Dial, Lamp, Pad, Row, Sheet
 from .bindings import Binding, Bindings
 from .devices import Keyboard, buttons_down, drivers, mode_of, pad_wish, player_of, pulls
-from .names import button_label, key_label
+from .key_names import button_label, key_label
 
 LEFT = 2
 """How many sections stand on the left."""

@@ -17,7 +17,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from ..files import toml
 from .bindings import DEFAULT, Binding, Bindings, Mouse, Sticks
-from .names import BUTTONS, KEYS
+from .key_names import BUTTONS, KEYS
 
 FILE = "bindings.toml"
 KINDS = {"keys": KEYS, "buttons": BUTTONS}

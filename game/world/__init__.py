@@ -2,16 +2,17 @@
 few points of somebody, and the course that the game opens on.
 """
 
+from . import learnt_methods
 from .centre_of_mass import jump_of, physique_of
 from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
-from .methods import METHODS, NAMES, TINTS, Learning, Methods, methods
+from .learnt_methods import METHODS, NAMES, TINTS, Learning, Methods, methods
 from .recorded import Recorded
 from .world import DT, RATE, Character, FixedStep, World, figures, ground_between, pose_between
 
 __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "STAGES", "TINTS", "Character", "Embodied", "Errors",
     "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "World", "beginning", "figures", "follower_of",
-    "ground_between", "jump_of", "lately", "methods", "physique_of", "pose_between",
+    "ground_between", "jump_of", "lately", "learnt_methods", "methods", "physique_of", "pose_between",
 ]

@@ -21,7 +21,7 @@ from gambol.controllers.reconstruction.evaluation import position_error
 from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
-from .methods import Methods
+from .learnt_methods import Methods
 
 KEPT = 240
 """How many steps of errors are remembered."""

@@ -111,7 +111,7 @@ def installed(name: str, folder: Path) -> Path | None:
 
 def rival(name: str, python: Path, scene: Path) -> tuple[list[float], float] | None:
     """Milliseconds of each frame and processor time a frame, or None, having said why."""
-    script = Path(__file__).parent / "renderers" / f"{name}_frames.py"
+    script = Path(__file__).parents[1] / "renderers" / f"{name}_frames.py"
     run = subprocess.run([python, script, scene, scene.with_name(f"{name}.png")], capture_output=True, text=True)
     if run.returncode:
         print(f"{name} can't draw here: {(run.stderr.strip().splitlines() or ['it gave no reason'])[-1]}")

@@ -26,7 +26,7 @@ def after(what): done[what] = time.time() - began, time.process_time()
 after("interpreter")
 from gambol.game.cli.base import person_of
 from gambol.game.hosts import Offscreen
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 after("imports")
 controller = person_of(None)
 play = Play(controller)

@@ -73,7 +73,6 @@ RIVALS = {
         "network", "", ("baselines/regressors.py", "baselines/windows.py"),
         {"hidden": ((384, 384), (768, 768)), "rate": (2e-3, 4e-3), "loosening": (1.0, 10.0, 100.0)}),
     OURS: Rival(lambda database, controls: ours(database, controls), "",
-                ("ours.py", "moments.py", "learning.py", "filters.py", "method.py", "beliefs.py", "prior.py", "solver*.py",
-                 "frame_kernel.py", "baselines/regressors.py")),
+                ("ours/*.py", "regression/*.py", "baselines/regressors.py")),
 }
 """By name, in the order of the tables."""

@@ -2,7 +2,7 @@
 
 import pytest
 
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.hosts.events import KeyEvent, PadState
 from stand_in import Glide
 

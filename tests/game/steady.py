@@ -9,7 +9,7 @@ from gambol.controllers.reconstruction.regression.beliefs import Gaussian
 from gambol.controllers.reconstruction.regression.map_solver import Solver
 from gambol.controllers.reconstruction.regression.method import Method
 from gambol.controllers.supervisor import Supervisor
-from gambol.game.world import methods as learning
+from gambol.game.world import learnt_methods as learning
 
 
 class Steady:

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from gambol.game.cli import app
 from gambol.game.hosts.events import PadState
-from gambol.game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, names
+from gambol.game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, key_names
 from gambol.game.input.remap import BindingsError, as_toml, clashes, load, remapped, user_file
 
 
@@ -23,10 +23,10 @@ def read(tmp_path, text):
 
 def test_keys_and_buttons_are_those_of_glfw():
     keys = {name[4:] for name in dir(glfw) if name.startswith("KEY_")} - {"UNKNOWN", "LAST"}
-    assert names.KEYS == keys | names.MOUSE
+    assert key_names.KEYS == keys | key_names.MOUSE
     order = {"LEFT_BUMPER": "LB", "RIGHT_BUMPER": "RB", "LEFT_THUMB": "LS", "RIGHT_THUMB": "RS", "DPAD_UP": "UP",
              "DPAD_RIGHT": "RIGHT", "DPAD_DOWN": "DOWN", "DPAD_LEFT": "LEFT"}
-    for number, button in enumerate(names.PAD_BUTTONS):
+    for number, button in enumerate(key_names.PAD_BUTTONS):
         theirs = next((k for k, v in order.items() if v == button), button)
         assert getattr(glfw, f"GAMEPAD_BUTTON_{theirs}") == number
 
@@ -35,7 +35,7 @@ def test_the_shipped_table_is_sound():
     actions = [row.action for row in DEFAULT]
     assert len(set(actions)) == len(actions)
     for row in DEFAULT:
-        assert set(row.keys) <= names.KEYS and set(row.buttons) <= names.BUTTONS
+        assert set(row.keys) <= key_names.KEYS and set(row.buttons) <= key_names.BUTTONS
         assert row.mode in ("", HOLDING, JOINING, REWOUND) and DEFAULT.row(row.action) is row
     assert not clashes(DEFAULT, "keys") and not clashes(DEFAULT, "buttons")
     assert DEFAULT.pressed_by("P") == ("pause",) and DEFAULT.pressed_by("W") == () and DEFAULT.pressed_by("NOTHING") == ()
@@ -93,7 +93,7 @@ def test_what_lasts_may_share_a_key_and_so_may_two_modes(tmp_path):
     assert read(tmp_path, 'keys.resume = "P"').pressed_by("P", mode=REWOUND) == ("resume",)
 
 
-some = st.lists(st.sampled_from(sorted(names.KEYS)), max_size=3, unique=True).map(tuple)
+some = st.lists(st.sampled_from(sorted(key_names.KEYS)), max_size=3, unique=True).map(tuple)
 
 
 @given(st.dictionaries(st.sampled_from([row.action for row in DEFAULT if row.can_have("keys")]), some, max_size=4),
@@ -165,6 +165,6 @@ def test_the_sheet_shows_every_pad_as_it_reads():
     assert shown.caption == "Stick: player 2" and shown.dials[0].at == (0.5, -1.0) and shown.dials[1].at == (0.0, 0.0)
     assert [bar.filled for bar in shown.bars] == [1.0, 0.0]
     assert {lamp.label for row in shown.lamps for lamp in row if lamp.lit} == {"A", "↑"}
-    assert sum(map(len, shown.lamps)) == len(names.PAD_BUTTONS)
+    assert sum(map(len, shown.lamps)) == len(key_names.PAD_BUTTONS)
     assert "no pad" in help_sheet(DEFAULT, pads=(None,)).note
     assert "player 2 waits" in help_sheet(DEFAULT, players=2).note

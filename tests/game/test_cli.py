@@ -120,7 +120,7 @@ def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monk
     """A folder is in the way of each; whoever would simulate, draw or build fails loudly."""
     def never(*args, **kwargs):
         raise AssertionError("worked in vain")
-    for work in ("gambol.game.scenario.film.run", "gambol.controllers.locomotion.build.build_library", "gambol.controllers.locomotion.coverage.report"):
+    for work in ("gambol.game.scenario.film.run", "gambol.controllers.locomotion.build_library.build_library", "gambol.controllers.locomotion.coverage.report"):
         monkeypatch.setattr(work, never)
     monkeypatch.setattr(hosts, "Offscreen", never)
     short.write_text(SHORT + '[[actors]]\nname = "B"\n')

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from gambol.game import hosts
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.hosts import DisplayError
 from gambol.game.hosts.events import KeyEvent
 from gambol.game.session.input_log import LogWriter, fingerprint, read, replay

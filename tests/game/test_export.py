@@ -147,7 +147,7 @@ def test_what_cannot_be_written_is_said(tmp_path):
 def test_the_key_keeps_what_was_played_since_the_last_reset(tmp_path):
     from stand_in import Glide
 
-    from gambol.game.app.play import Play
+    from gambol.game.app.app import Play
     from gambol.game.app.capture import Studio
 
     game = Play(Glide(), studio=Studio(tmp_path))

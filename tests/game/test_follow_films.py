@@ -14,7 +14,7 @@ from gambol.game.output.recorder import motion_clip
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load, shipped
 from gambol.game.scene.scene import Dot, Overlays
-from gambol.game.world import methods as learning
+from gambol.game.world import learnt_methods as learning
 from gambol.game.world.followers import Follows, errors, lately
 from gambol.game.world.world import DT, figures
 from scenarios import tells, written

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body.rotations import yaw
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.person import person
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.character import Build, tailored
 from gambol.game.hosts.events import Focus, KeyEvent, MouseMove, Scroll
 from gambol.game.hud import Hud, reason
@@ -87,7 +87,7 @@ def walked(controller, seconds, *wishes):
 
 
 def test_who_opens_no_panel_never_loads_imgui():
-    done = subprocess.run([sys.executable, "-c", "import gambol.game.app.play, gambol.game.hosts.window, gambol.game.render, sys\n"
+    done = subprocess.run([sys.executable, "-c", "import gambol.game.app.app, gambol.game.hosts.window, gambol.game.render, sys\n"
                            "print('imgui_bundle' in sys.modules)"], cwd=Path(__file__).parents[2],
                           capture_output=True, text=True, timeout=120)
     assert done.stdout.split() == ["False"], done.stderr

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from gambol.game.hosts.events import PadState
 from gambol.game.input import (DEFAULT, JOINING, REWOUND, Keyboard, Pilot, Sticks, Wish, devices, drivers, mode_of,
                                player_of, wheel_wish)
-from gambol.game.input.names import PAD_BUTTONS
+from gambol.game.input.key_names import PAD_BUTTONS
 from gambol.game.input.remap import remapped
 from stand_in import Glide
 

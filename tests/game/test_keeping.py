@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from gambol.game.app.capture import Film, Studio, log_file
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.files.paths import OutputError
 from gambol.game.session.input_log import LogWriter, fingerprint, read, replay
 from hands import FRAME, at, game, press, tap, text, wait, walked  # noqa: F401, the fixture
@@ -49,7 +49,7 @@ def test_a_screenshot_is_clean_has_a_name_of_its_own_and_is_said(tmp_path):
 
 def test_what_a_film_made_beside_the_game_says_is_heard(tmp_path, monkeypatch):
     """Whatever lies where the game was started, and whatever letters are said."""
-    (tmp_path / "game.py").write_text("raise RuntimeError('not ours')")
+    (tmp_path / "gambol.py").write_text("raise RuntimeError('not ours')")
     monkeypatch.chdir(tmp_path)
     film = Film(tmp_path / "a.mp4", ["“☃”"])
     film.wait()

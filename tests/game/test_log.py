@@ -179,7 +179,7 @@ sys.path.insert(0, "tests/game")
 from stand_in import Glide
 from gambol.game.hosts.events import KeyEvent
 from gambol.game.session.input_log import LogWriter
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 game = Play(Glide(), log=LogWriter(sys.argv[1], Glide(), 1))
 game.handle(KeyEvent("W", True))
 while True:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.person import person
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.hosts.events import Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 from hands import FRAME, at, camera, game, pad, press, release, tap, text, wait, wanted  # noqa: F401, the fixture
 from stand_in import Glide

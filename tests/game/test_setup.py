@@ -133,7 +133,7 @@ def test_both_commands_know_what_is_handed_on():
 
 
 def test_it_starts_from_any_folder_and_takes_nothing_there_for_its_own(tmp_path, monkeypatch, capfd):
-    (tmp_path / "game.py").write_text("raise RuntimeError('not ours')")
+    (tmp_path / "gambol.py").write_text("raise RuntimeError('not ours')")
     (tmp_path / "mine.npz").write_text("found, but no library")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(_setup, "ready", lambda: None)

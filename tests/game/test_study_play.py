@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.mocap import write_bvh
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.app.point_picking import project
 from gambol.game.explain.points import rows
 from gambol.game.hosts.events import KeyEvent, MouseMove, Scroll
@@ -19,7 +19,7 @@ from gambol.game.session.input_log import LogError, LogWriter, of_library, perfo
 from gambol.game.session.settings import SettingError
 from gambol.game.session.state import opening
 from gambol.game.session.tick import Timeline
-from gambol.game.world import methods as learning
+from gambol.game.world import learnt_methods as learning
 from gambol.game.world.recorded import Recorded
 from gambol.game.world.world import DT
 from steady import no_database, walker  # noqa: F401, fixtures

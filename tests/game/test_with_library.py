@@ -7,14 +7,14 @@ import pytest
 
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.reconstruction.database import store
-from gambol.controllers.reconstruction.ours import ours
+from gambol.controllers.reconstruction.ours import combined
 from gambol.controllers.reconstruction.ours.networks import learn
-from gambol.game.app.play import Play
+from gambol.game.app.app import Play
 from gambol.game.hosts.events import KeyEvent
 from gambol.game.scenario.film import run
 from gambol.game.scenario.scenario import load, shipped
 from gambol.game.session.input_log import LogWriter, fingerprint, of_library, read, replay
-from gambol.game.world.methods import methods
+from gambol.game.world.learnt_methods import methods
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def locomotion():
 def hasty(tmp_path_factory):
     """Networks learn for a moment only, and lie apart from those that serve."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ours, "learn", lambda samples, progress, **_: learn(samples, 1, 300, (64,), progress))
+        patch.setattr(combined, "learn", lambda samples, progress, **_: learn(samples, 1, 300, (64,), progress))
         patch.setattr(store, "cache_folder", lambda: tmp_path_factory.getbasetemp() / "hasty" / "kernels")
         methods.cache_clear()
         yield

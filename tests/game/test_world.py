@@ -121,6 +121,6 @@ def test_importing_the_game_opens_nothing():
     """No window, no GL: importing any of this must be safe on a machine without a display."""
     import subprocess
     import sys
-    code = "import sys, gambol.game.world.world, gambol.game.scenario.film, gambol.game.app.play, gambol.game.cli, gambol.game.render, gambol.game.hosts; print([m for m in sys.modules if m in ('glfw', 'moderngl', 'av')])"
+    code = "import sys, gambol.game.world.world, gambol.game.scenario.film, gambol.game.app.app, gambol.game.cli, gambol.game.render, gambol.game.hosts; print([m for m in sys.modules if m in ('glfw', 'moderngl', 'av')])"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert re.sub(r"\s", "", out.stdout) == "[]"

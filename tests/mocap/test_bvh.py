@@ -13,7 +13,7 @@ from pymotion.ops.skeleton import fk
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import read_bvh, write_bvh
-from gambol.controllers.mocap.text import parse_number
+from gambol.controllers.mocap.parsing import parse_number
 
 ORDERS = ["".join(order) for order in itertools.permutations("XYZ")]
 

@@ -13,7 +13,7 @@ from gambol.controllers.body.rotations import exp
 from gambol.controllers.mocap import load
 from gambol.controllers.mocap.calibration import calibrate
 from gambol.controllers.mocap.flat_stance import flat_frames
-from gambol.controllers.mocap.names import plain, roles
+from gambol.controllers.mocap.joint_names import plain, roles
 from gambol.controllers.mocap.retarget import retarget
 
 FPS = 60.0

@@ -13,7 +13,7 @@ from gambol.controllers.body.rotations import exp, yaw
 from gambol.controllers.mocap import write_bvh
 from gambol.controllers.reconstruction import pose_vector as chart
 from gambol.controllers.reconstruction.database import default as database_default
-from gambol.controllers.reconstruction.database.build import build, sound
+from gambol.controllers.reconstruction.database.build_database import build, sound
 from gambol.controllers.reconstruction.database.database import HEAD, SUFFIX, Database, DatabaseError, Writer
 from trajectories import clip, database, frames
 

@@ -24,7 +24,7 @@ def test_it_is_made_again_only_when_its_sources_change(tmp_path, monkeypatch):
     first = module.default_database()
     again = module.default_database()
     assert len(made) == 1 and np.array_equal(first.frames, again.frames)
-    (sources / "reconstruction" / "ours.py").write_text("# no motion comes of this\n")
+    (sources / "reconstruction" / "ours" / "combined.py").write_text("# no motion comes of this\n")
     module.default_database()
     assert len(made) == 1
     (sources / "locomotion" / "step.py").write_text("# but all of it of this\n")

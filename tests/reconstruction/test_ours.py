@@ -16,11 +16,11 @@ from gambol.controllers.reconstruction.database.database import Database, Databa
 from gambol.controllers.reconstruction.evaluation import metrics
 from gambol.controllers.reconstruction.neighbours.cells import Cells
 from gambol.controllers.reconstruction.neighbours.segments import Segments
-from gambol.controllers.reconstruction.ours import networks as learning, ours as module
+from gambol.controllers.reconstruction.ours import combined, networks
 from gambol.controllers.reconstruction.ours.lost_points import Moments
 from gambol.controllers.reconstruction.ours.networks import (
     LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view)
-from gambol.controllers.reconstruction.ours.ours import (FADING, HEARD, KEPT, LASTING, LISTENED, NARROW, NEAR, NEARER,
+from gambol.controllers.reconstruction.ours.combined import (FADING, HEARD, KEPT, LASTING, LISTENED, NARROW, NEAR, NEARER,
                                                          Expectation, Ours, Torn, cells, ours)
 from gambol.controllers.reconstruction.pose_vector import (FORWARD, HEIGHT, JOINTS, LEFTWARD, SKELETON, WIDTH, YAW_RATE,
                                                            advance, decode)
@@ -84,7 +84,7 @@ def test_grounds_are_left_and_reached_again(one, other, seed):
 @settings(max_examples=30, deadline=None)
 def test_what_is_compiled_for_one_pose_is_the_plain_form(one, other, seed):
     pose = np.random.default_rng(seed).normal(size=WIDTH)
-    off = module._seen_from(one, pose, other) - seen_from(one, pose, other)
+    off = combined._seen_from(one, pose, other) - seen_from(one, pose, other)
     off[YAW_RATE] = np.sin(off[YAW_RATE])  # ±π is the same heading
     np.testing.assert_allclose(off, 0.0, atol=1e-9)
     root, rotations = decode(pose, one)
@@ -103,7 +103,7 @@ def test_one_input_is_seen_as_many_are(world):
 def test_what_is_seen_depends_neither_on_place_nor_heading(ground, seed):
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(len(LAGS), 4, 3))
-    moved = learning.in_world(points, np.broadcast_to(ground, (len(LAGS), 3)))
+    moved = networks.in_world(points, np.broadcast_to(ground, (len(LAGS), 3)))
     assert np.allclose(view(points, np.float64(0.3))[0], view(moved, 0.3 + ground[2])[0])
 
 
@@ -126,8 +126,8 @@ def test_the_misfit_is_derived_rightly(world):
     assert np.allclose(told, slopes.ravel(), atol=1e-5)
     assert misfit(truth, truth)[0] == 0.0 and not misfit(truth, truth)[1].any()
     places = [forward_kinematics(SKELETON, *decode(p, p[:, [LEFTWARD, FORWARD, YAW_RATE]]))[0][:, JOINTS] for p in (found, truth)]
-    apart = np.sum((places[0] - places[1]) ** 2) / learning.DISTANCE ** 2
-    turned = np.sum((np.delete(found - truth, [HEIGHT, YAW_RATE, FORWARD, LEFTWARD], 1) / learning.ANGLE) ** 2)
+    apart = np.sum((places[0] - places[1]) ** 2) / networks.DISTANCE ** 2
+    turned = np.sum((np.delete(found - truth, [HEIGHT, YAW_RATE, FORWARD, LEFTWARD], 1) / networks.ANGLE) ** 2)
     assert np.isclose(loss, 0.5 * (apart + turned) / (3 * len(JOINTS)))
 
 
@@ -281,9 +281,9 @@ def test_few_known_frames_are_enough(method, performance):
 @pytest.fixture
 def disk(tmp_path, monkeypatch):
     """Networks are learnt in three batches and kept in a folder of the test's own; the list of what was learnt."""
-    learnt, learn_ = [], module.learn
+    learnt, learn_ = [], combined.learn
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "kernels")
-    monkeypatch.setattr(module, "learn", lambda samples, progress, **how: learnt.append(how) or learn_(samples, 1, 3, (8,), progress))
+    monkeypatch.setattr(combined, "learn", lambda samples, progress, **how: learnt.append(how) or learn_(samples, 1, 3, (8,), progress))
     return learnt
 
 
@@ -305,7 +305,7 @@ def test_what_was_learnt_is_kept_for_the_same_takes_and_points_alone(world, disk
 
 def test_networks_of_few_poses_are_narrow_and_apart_from_wide_ones(world, disk, monkeypatch):
     for plenty in (len(world[0]) + 1, len(world[0])):
-        monkeypatch.setattr(module, "PLENTY", plenty)
+        monkeypatch.setattr(combined, "PLENTY", plenty)
         for _ in range(2):
             ours(world[0], parse("4", SKELETON))
     assert disk == [NARROW, {}]
@@ -329,7 +329,7 @@ def test_a_full_disk_is_no_harm(world, disk, monkeypatch):
 def test_cells_from_disk_find_the_same(world, disk, monkeypatch):
     database, solver, _ = world
     made = cells(database, solver.controls)
-    monkeypatch.setattr(module, "Cells", type("Never", (), {"save": None, "load": module.Cells.load}))
+    monkeypatch.setattr(combined, "Cells", type("Never", (), {"save": None, "load": combined.Cells.load}))
     again = cells(database, solver.controls)
     for feature in made.segments.features(np.array([3, 400, 900])):
         for one, two in zip(made.query(feature, 20), again.query(feature, 20), strict=True):

@@ -6,7 +6,7 @@ from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, gr
 from .descent import descent
 from .fall import fall, struck
 from .flight import flight_kernel
-from .path import Path, path
+from .path_estimate import Path, path
 from .plan import Plan
 from .thrust import push
 

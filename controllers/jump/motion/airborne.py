@@ -11,7 +11,7 @@ from ...compiled import kernel
 from ..body import (FLEX, TOES_DOWN, Physique, Start, measures, parts_kernel, place_kernel, soles, stand_kernel,
                     carriage, turns, vectors)
 from .landing import TIME, absorb
-from .path import Path
+from .path_estimate import Path
 
 GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""

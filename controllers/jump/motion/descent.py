@@ -10,7 +10,7 @@ import numpy as np
 
 from ...compiled import kernel
 from ..body import Start
-from .path import Path
+from .path_estimate import Path
 from .take_off import MEETS
 
 

@@ -18,7 +18,7 @@ from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measure
                     turns, vectors)
 from .airborne import LOWEST, SAME, Airborne
 from .flight import flight_kernel
-from .path import Path, softened
+from .path_estimate import Path, softened
 from .plan import Plan
 
 BOUNCE, FRICTION = 0.05, 0.4

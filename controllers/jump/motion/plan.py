@@ -8,7 +8,7 @@ import numpy as np
 
 from ...body import Pose, exp_kernel, log_kernel, product_kernel, relative_kernel
 from ...compiled import kernel
-from .path import Path
+from .path_estimate import Path
 
 
 @dataclass(frozen=True, eq=False)

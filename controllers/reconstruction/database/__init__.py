@@ -3,7 +3,7 @@ and a store on disk for what was learnt from them.
 """
 
 from . import default, store
-from .build import build
+from .build_database import build
 from .database import SUFFIX, Database, DatabaseError, Take
 from .default import default_database
 from .store import identity, kept

@@ -20,13 +20,13 @@ from ...jump import Jump, Physique
 from ...locomotion import DEFAULT_LIBRARY, Locomotion
 from ...supervisor import Supervisor
 from ..pose_vector import encode
-from .build import sound
+from .build_database import sound
 from .database import FPS, SUFFIX, Database, Writer
 from .store import folder
 
-_CONTROLLERS = Path(__file__).parent.parent
-_SOURCES = ("contract.py", "supervisor.py", "body/*.py", "locomotion/*.py", "jump/*.py", "reconstruction/chart.py",
-            "reconstruction/database*.py")
+_CONTROLLERS = Path(__file__).parents[2]
+_SOURCES = ("contract.py", "supervisor.py", "body/*.py", "locomotion/*.py", "jump/**/*.py", "reconstruction/pose_vector.py",
+            "reconstruction/database/*.py")
 
 # seconds, then forward [m/s], yaw [rad/s] and leftward velocity [m/s]
 _WALKS = {

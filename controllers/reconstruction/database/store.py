@@ -21,7 +21,7 @@ from .database import Database
 
 _PROBES = 4096  # frames that tell one database's motion from another's
 _UNUSED = 60 * DAY
-_HERE = Path(__file__).parent
+_HERE = Path(__file__).parents[1]
 
 T = TypeVar("T")
 
@@ -45,7 +45,7 @@ def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], sa
     """What `make` makes of a database, made only if it does not lie on disk already.
 
     settings: all else that it depends on, of a telling repr. save, load: write it to a path and read it. sources:
-    modules of this folder whose change makes it stale. What nobody wanted for two months is removed.
+    files of `reconstruction` whose change makes it stale. What nobody wanted for two months is removed.
     """
     name = hashlib.sha1(f"{identity(database)} {settings!r} {_stamp(sources)}".encode()).hexdigest()[:16]
     home = folder()

@@ -90,7 +90,7 @@ def _network(database, controls, hidden, rate, batches, loosening):
     solver = _solver(database, controls)
     layers = kept("network", database, (controls.joints.tolist(), controls.offsets.tolist(), hidden, rate, batches),
                   lambda: network(Samples.of(database, solver), hidden, batches, rate=rate), Layers.save, Layers.load,
-                  ("chart.py", "baselines/regressors.py", "baselines/windows.py"))
+                  ("pose_vector.py", "baselines/regressors.py", "baselines/windows.py"))
     return Method(replace(layers, loosening=loosening), solver)
 
 

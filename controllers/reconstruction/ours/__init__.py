@@ -2,9 +2,9 @@
 very likely are, and filters for noise.
 """
 
-from . import networks
-from .ours import cells, ours
+from . import combined, networks
+from .combined import cells, ours
 
 __all__ = [
-    "cells", "networks", "ours",
+    "cells", "combined", "networks", "ours",
 ]

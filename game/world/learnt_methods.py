@@ -120,7 +120,7 @@ class Learning:
 
     def __init__(self, wanted: Sequence[tuple[str, str]], file: Path | None = None, progress: Progress | None = None):
         arguments = [f"{name}@{points}" for name, points in wanted]
-        command = [sys.executable, "-P", "-m", "gambol.game.world.methods", str(file or ""), *arguments]
+        command = [sys.executable, "-P", "-m", "gambol.game.world.learnt_methods", str(file or ""), *arguments]
         self.said, self._told = "", progress or _silent
         # small matrices are learnt many times faster on one thread, and the game keeps the other cores
         self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

@@ -66,7 +66,7 @@ ROUGH = 0.003
 """How unsteady poses are even where the points are not [m, rad]."""
 _RECENT = 15  # frames that tell the noise
 _JUMP = 1.0  # rad or m, beyond which the chart has jumped, as it does upside down: nothing to be smoothed
-_SOURCES = ("chart.py", "learning.py", "solver_kernel.py", "baselines/regressors.py", "baselines/windows.py")
+_SOURCES = ("pose_vector.py", "ours/networks.py", "regression/solver_kernel.py", "baselines/regressors.py", "baselines/windows.py")
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +220,7 @@ def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETO
     points = controls.joints.tolist(), controls.offsets.tolist()
     networks = kept("networks", database, (*points, *how.items()), make, Networks.save, Networks.load, _SOURCES)
     moments = kept("moments", database, points, lambda: Moments.of(Samples.of(database, plain)), Moments.save,
-                   Moments.load, (*_SOURCES, "moments.py"))
+                   Moments.load, (*_SOURCES, "ours/lost_points.py"))
     search = cells(database, controls)
     whole, torn = (Local(LocalRegression(how, reach), search, NEIGHBOURS) for how, reach in ((LISTENED, NEAR), (HEARD, NEARER)))
     prior = Fused((Expectation(networks, moments, 1 / database.fps), Torn(whole, torn)))
@@ -232,4 +232,4 @@ def cells(database: Database, controls: Controls, m: int = 3, stride: int = 4) -
     segments = Segments.of(database, m, stride, controls.joints)
     return kept("cells", database, (m, stride, segments.joints), lambda: Cells(segments), Cells.save,
                 lambda path: Cells.load(path, segments),
-                ("chart.py", "segments.py", "features.py", "neighbours.py", "neighbours_cells.py"))
+                ("pose_vector.py", "neighbours/segments.py", "neighbours/features.py", "neighbours/search.py", "neighbours/cells.py"))
