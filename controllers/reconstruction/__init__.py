@@ -1,13 +1,14 @@
 """Whole bodies from a few points: motion databases, local regression and the pose that explains the points best (Mousas 2014)."""
 
 from . import control_points, pose_vector
-from .control_points import NAMES, SETS, Controls, parse
+from .control_points import NAMES, SETS, ControlPoints, parse
 from .controller import Reconstruction, towards
 from .database import Database, DatabaseError, build
 from .neighbours import Neighbourhood, Segments, Weights
 from .pose_vector import HEIGHT, JOINTS, SKELETON, WIDTH, encode
 
 __all__ = [
-    "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "Controls", "Database", "DatabaseError", "Neighbourhood",
-    "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse", "pose_vector", "towards",
+    "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "ControlPoints", "Database", "DatabaseError",
+    "Neighbourhood", "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse",
+    "pose_vector", "towards",
 ]

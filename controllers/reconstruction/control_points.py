@@ -32,7 +32,7 @@ SETS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Controls:
+class ControlPoints:
     """n points fixed to joints. names: n. joints: (n,) joint numbers. offsets: (n, 3) [m] in the joints' frames."""
 
     names: tuple[str, ...]
@@ -58,7 +58,7 @@ class Controls:
         return self.on(*clip.kinematics())
 
 
-def parse(text: str, skeleton: Skeleton) -> Controls:
+def parse(text: str, skeleton: Skeleton) -> ControlPoints:
     """The points that a text names: "4" for the paper's set of four, or "lwrist,rankle,Head+0/0.12/0.05".
 
     Points are divided by commas. A point is a name in `NAMES` or a joint's own, small and capital letters alike,
@@ -75,7 +75,7 @@ def parse(text: str, skeleton: Skeleton) -> Controls:
                 raise ValueError(f"control point '{name}' is given twice" if name == other else
                                  f"control points '{other}' and '{name}' are one place")
     names, joints, offsets = zip(*points, strict=True)
-    return Controls(names, joints, offsets)
+    return ControlPoints(names, joints, offsets)
 
 
 def _point(word: str, skeleton: Skeleton) -> tuple[str, int, np.ndarray]:

@@ -13,10 +13,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, Skeleton, contact_height, contact_points, damp,
+from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, contact_height, contact_points, damp,
                     forward_kinematics, heading_of, human, settle, wrap)
 from ..contract import CharacterState, Intent, Status, Unable
-from .control_points import Controls
+from .control_points import ControlPoints
 from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved
 from .pose_vector import SKELETON, decode
 
@@ -85,7 +85,7 @@ class Reconstruction:
     Characters come singly.
     """
 
-    def __init__(self, method: Reconstructor, controls: Controls, height: float = STATURE, dt: float = 1 / 60,
+    def __init__(self, method: Reconstructor, controls: ControlPoints, height: float = STATURE, dt: float = 1 / 60,
                  starts: Starts | None = None):
         self.method, self.controls, self.starts, self.dt = method, controls, starts, dt
         self.factor, self.skeleton = height / STATURE, human(height)

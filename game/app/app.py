@@ -19,12 +19,12 @@ from ..hosts import PADS, Event, KeyEvent, MouseMove, PadState, Scroll
 from ..input import (DEFAULT, HOLDING, Bindings, Keyboard, Wish, drivers, help_sheet, jumping, key_label, mode_of,
                      mouse_wish, pad_held, pad_pressed, player_of, wheel_wish, wishes)
 from ..scene import OVERLAYS, PANELS, Camera, Overlays, Scene
-from ..session import (ACTIONS, Log, LogWriter, Look, Moment, Timeline, begin, comparison as study, opening, refused,
+from ..session import (ACTIONS, Log, LogWriter, Look, SessionState, Timeline, begin, comparison, opening, refused,
                        settings, strayed)
 from ..world import DT, FixedStep, Methods, World
-from .capture import Studio
-from .held_points import Reach
-from .recordings import Keeper
+from .capture import Capture
+from .held_points import HeldPoints
+from .recordings import Recordings
 from .views import Previews, previews, scenes
 
 SHOWS = {"show_jump" if name == "jump" else name: name for name in OVERLAYS}
@@ -41,17 +41,17 @@ class Play:
     moment: the one that is shown, present or past; history: the last half minute up to it.
     look: how one looks back; None while one plays. panels: what is shown of `PANELS`. kept: what
     is kept of it all. tape: a log that is watched, until somebody walks. clock, held: the time that was
-    dropped, and spent in help, past or halt [s]. reach: what pointer and stream do with the points of a study.
+    dropped, and spent in help, past or halt [s]. held_points: what pointer and stream do with the points of a comparison.
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
-                 log: LogWriter | None = None, studio: Studio | None = None, tape: Log | None = None,
+                 log: LogWriter | None = None, capture: Capture | None = None, tape: Log | None = None,
                  learnt: Methods | None = None, stream: Any = None):
         self.timeline = Timeline(opening(controller, players, learnt) if world is None else
                                  begin(world, players, learnt))
-        self.bindings, self.kept, self.tape = bindings, Keeper(log, studio), tape
+        self.bindings, self.kept, self.tape = bindings, Recordings(log, capture), tape
         self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
-        self.reach = Reach(self.now.methods, stream)
+        self.held_points = HeldPoints(self.now.methods, stream)
         self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
@@ -64,17 +64,17 @@ class Play:
     # --- what is shown
 
     @property
-    def now(self) -> Moment:
+    def now(self) -> SessionState:
         """The present moment."""
         return self.timeline.now
 
     @property
-    def moment(self) -> Moment:
+    def moment(self) -> SessionState:
         """The moment that is shown."""
         return self._back(self.look.behind if self.look else 0)
 
     @property
-    def history(self) -> tuple[Moment, ...]:
+    def history(self) -> tuple[SessionState, ...]:
         """The moments of the last half minute, one for each step of the world, up to the one shown."""
         past, behind = self.timeline.past, self.look.behind if self.look else 0
         return (*islice(past, len(past) - behind), self._back(behind))
@@ -89,7 +89,7 @@ class Play:
         """Whether the mouse steers a flying camera, and nothing needs a pointer."""
         return self.now.players[0].camera.flown and not (self.look or self.helping or self.panels)
 
-    def _back(self, steps: int) -> Moment:
+    def _back(self, steps: int) -> SessionState:
         return self.timeline.past[-steps] if steps else self.now
 
     # --- what happens
@@ -121,20 +121,20 @@ class Play:
                 for action in pad_pressed(before, pad, self.bindings, mode):
                     self.do(action, player_of(slot, self.pads, self.players))
 
-    def open(self, wanted: study.Study) -> None:
-        """Open a study; what it needs is learnt first, if it was not yet."""
-        asked, said = self.reach.open(wanted)
+    def open(self, wanted: comparison.Comparison) -> None:
+        """Open a comparison; what it needs is learnt first, if it was not yet."""
+        asked, said = self.held_points.open(wanted)
         self._ask(asked, 0) if asked else self.kept.say(said)
 
     def _reached(self, event: Event) -> bool:
         """Take an event that is about a point under the pointer; whether it was."""
         match event:
             case MouseMove(x, y, dx, dy):
-                return self.reach.move(x, y, dx, dy, self.keyboard.held("run", self.bindings))
+                return self.held_points.move(x, y, dx, dy, self.keyboard.held("run", self.bindings))
             case Scroll(dy=notches):
-                return self.reach.scroll(notches)
+                return self.held_points.scroll(notches)
             case KeyEvent(key, pressed) if any(row.action == "study_grab" for row in self.bindings.rows_of(key, mode=HOLDING)):
-                return self.reach.grab(self.now) if pressed else self.reach.let_go()
+                return self.held_points.grab(self.now) if pressed else self.held_points.let_go()
         return False
 
     def do(self, action: str, player: int = 0) -> None:
@@ -153,12 +153,12 @@ class Play:
             self.helping = not self.helping
         elif action == "full_screen":
             self.full_screen = not self.full_screen
-        elif action == "quit" and not self.helping and self.reach.holds(self.now):
+        elif action == "quit" and not self.helping and self.held_points.holds(self.now):
             self.do("study_hands")
         elif action == "quit":
             self.done, self.helping = not self.helping, False
         elif action.startswith("study_") or action == "study":
-            asked, said = self.reach.asked(action, self.now)
+            asked, said = self.held_points.asked(action, self.now)
             self._ask(asked, 0) if asked else self.kept.say(said)
         elif action == "screenshot":
             self.wants_picture = True
@@ -171,7 +171,7 @@ class Play:
 
     def _ask(self, action: str, player: int) -> None:
         """Something that the next tick is to do, unless one looks back or watches."""
-        if "=" in action and action.partition("=")[0] not in study.ACTIONS:
+        if "=" in action and action.partition("=")[0] not in comparison.ACTIONS:
             try:
                 settings.read(action)
             except settings.SettingError as error:
@@ -205,7 +205,7 @@ class Play:
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
         self.undrawn = self.undrawn + seconds if self.panels else 0.0
         self.kept.tend(seconds)
-        if due := self.reach.learnt():
+        if due := self.held_points.learnt():
             self._ask(due, 0) if not due.startswith("!") else self.kept.say(due[1:])
         if self.helping:
             self.held += seconds
@@ -222,7 +222,7 @@ class Play:
         if self.look is None and not asked and self.timeline.past and self._holds("rewind"):
             self.look = Look()
         if not (asked or self.look or self.tape):  # what is pressed may change whose the points are
-            for action in self.reach.actions(self.now, self.now.number * DT):
+            for action in self.held_points.actions(self.now, self.now.number * DT):
                 self._wish(Wish(pressed=(action,)))
         asked_for = self._wishes()
         if self.look is not None:
@@ -311,7 +311,7 @@ class Play:
         if self.hud is not None:
             self.hud.release()
             self.hud = None
-        self.reach.close()
+        self.held_points.close()
 
     def _overlays(self) -> list[str]:
         return [name for name in OVERLAYS if getattr(self.overlays, name)]
@@ -321,8 +321,8 @@ class Play:
         moment, fraction, cameras = self._shown(self.clock.alpha)
         self.previews = previews(moment, self.previews)
         views = scenes(moment, fraction, cameras, self.overlays, self._texts(moment), self.previews)
-        self.reach.look(cameras[0], size[0] / (len(views) * size[1]))
-        views = (replace(views[0], figures=self.reach.marked(views[0].figures, moment)), *views[1:])
+        self.held_points.look(cameras[0], size[0] / (len(views) * size[1]))
+        views = (replace(views[0], figures=self.held_points.marked(views[0].figures, moment)), *views[1:])
         if self.helping:
             sheet = help_sheet(self.bindings, self.keyboard, self.pads, self.players)
             views = tuple(replace(view, text=()) for view in views)
@@ -332,7 +332,7 @@ class Play:
         if self.panels and not self.helping:
             views = (self._with_panels(views[0], size), *views[1:])
         elif self.overlays.errors and not self.helping and (lines := rows(moment.after)):
-            views = (replace(views[0], ink=self.reach.legend(lines, size, moment.study)), *views[1:])
+            views = (replace(views[0], ink=self.held_points.legend(lines, size, moment.comparison)), *views[1:])
         return views[0] if len(views) == 1 else views
 
     def _with_panels(self, view: Scene, size: tuple[int, int]) -> Scene:
@@ -351,7 +351,7 @@ class Play:
         text = (view.text[0], *self.kept.notices) if view.text else ()
         return replace(view, ink=ink, text=text, figures=view.figures + self.hud.ghosts(view.figures, moment))
 
-    def _shown(self, alpha: float) -> tuple[Moment, float, tuple[Camera, ...]]:
+    def _shown(self, alpha: float) -> tuple[SessionState, float, tuple[Camera, ...]]:
         """The moment to draw, how far it is between its worlds, and from where each player sees it."""
         if self.look is not None:
             behind, fraction = self.look.at(alpha)
@@ -360,7 +360,7 @@ class Play:
         alpha = 1.0 if self.halted else alpha
         return self.now, self.now.fraction(alpha), tuple(player.view(alpha) for player in self.now.players)
 
-    def _texts(self, moment: Moment) -> tuple[tuple[str, ...], ...]:
+    def _texts(self, moment: SessionState) -> tuple[tuple[str, ...], ...]:
         """The lines in each player's corner; what concerns all stands in the first one's."""
         own = [(self._moving(moment, who),) for who in range(len(moment.players))]
         lines = []
@@ -375,10 +375,10 @@ class Play:
             lines.append(f"paused: {self._key('pause')} goes on, {self._key('step')} makes one step")
         if moment.slow > 1:
             lines.append(f"slow motion 1/{moment.slow}")
-        told = (*lines, *self.reach.status(moment, self._key), *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
+        told = (*lines, *self.held_points.status(moment, self._key), *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
         return ((*own[0], *told), *own[1:])
 
-    def _moving(self, moment: Moment, who: int) -> str:
+    def _moving(self, moment: SessionState, who: int) -> str:
         if jumping(moment.after.characters[who].state) is not None:
             return "jumping"
         v_f, omega, v_l = moment.after.characters[who].state.velocity

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ..files import OutputError, named, output_file, output_folder
-from ..session import SUFFIX, Moment
+from ..session import SUFFIX, SessionState
 
 OUT = Path("out")
 """Where what is kept while playing goes, unless it is named."""
@@ -98,7 +98,7 @@ class Film:
         self._process.wait()
 
 
-class Studio:
+class Capture:
     """Where screenshots and films go. options: what `gambol render` needs to draw the same character."""
 
     def __init__(self, folder: Path, options: Sequence[str] = ()):
@@ -133,7 +133,7 @@ class Studio:
         self._threads[-1].start()
         return path
 
-    def motion(self, history: Sequence[Moment]) -> Path:
+    def motion(self, history: Sequence[SessionState]) -> Path:
         """Keep what was played since the last reset as an animated GLB. Its path; it is there a moment later.
 
         history: one moment for each step of the world. OutputError.
@@ -183,7 +183,7 @@ class Studio:
             raise
 
 
-def _write_motion(path: Path, history: Sequence[Moment]) -> None:
+def _write_motion(path: Path, history: Sequence[SessionState]) -> None:
     from ..output import takes, write
 
     numbers = [moment.after.number for moment in history]

@@ -1,4 +1,4 @@
-"""What pointer and stream do with the points of a study, as actions that a log keeps; and what is learnt meanwhile."""
+"""What pointer and stream do with the points of a comparison, as actions that a log keeps; and what is learnt meanwhile."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from ..explain import RADIUS, Row
 from ..scene import Camera, Dot, Figure, Ink
-from ..session import Moment, Study, written
+from ..session import SessionState, Comparison, written
 from ..world import Learning, Methods
 from .point_picking import Grip, nearest
 
@@ -19,11 +19,11 @@ HELD = (0.95, 0.95, 0.92)
 """The colour round a point that is held or could be."""
 
 
-class Reach:
-    """The pointer over the points of a study, a stream of them, and the methods that are being learnt.
+class HeldPoints:
+    """The pointer over the points of a comparison, a stream of them, and the methods that are being learnt.
 
     stream: a `gambol.controllers.reconstruction.live.sources.Source`; its points are held from the first on, beside the player as
-    a study's bodies are.
+    a comparison's bodies are.
     """
 
     def __init__(self, methods: Methods, stream: Any = None):
@@ -35,19 +35,19 @@ class Reach:
         self.sent = ""
         self.learning: Learning | None = None
         self.reading: threading.Thread | None = None
-        self.wanted: Study | None = None
+        self.wanted: Comparison | None = None
         self.panel: Any = None
         self._fault = ""
 
     # --- keys
 
-    def asked(self, action: str, now: Moment) -> tuple[str, str]:
+    def asked(self, action: str, now: SessionState) -> tuple[str, str]:
         """What a key asks of the session, as an action; or why nothing, or not yet, in words."""
-        open_ = now.study
+        open_ = now.comparison
         if self.wanted is not None:
             return "", "one thing after the other: it is still learning"
         if action == "study":
-            return self.open(Study()) if open_ is None else ("study=", "")
+            return self.open(Comparison()) if open_ is None else ("study=", "")
         if open_ is None:
             return "", "nothing is reconstructed yet"
         if self.stream is not None and action != "study_ghosts":
@@ -65,8 +65,8 @@ class Reach:
         place = self._places(now)[number] if open_.pins[number] is None else np.full(3, np.nan)
         return f"pin={number}:{written(place)}", ""
 
-    def open(self, wanted: Study) -> tuple[str, str]:
-        """The action that opens a study, if all of it is ready; else it is learnt first."""
+    def open(self, wanted: Comparison) -> tuple[str, str]:
+        """The action that opens a comparison, if all of it is ready; else it is learnt first."""
         missing = [(name, wanted.points) for name in wanted.methods if not self.methods.knows(name, wanted.points)]
         if not missing:
             return wanted.action, ""
@@ -89,22 +89,22 @@ class Reach:
         wanted, self.wanted, self.reading = self.wanted, None, None
         return f"!{self._fault}" if self._fault else wanted.action
 
-    def _read(self, wanted: Study) -> None:
+    def _read(self, wanted: Comparison) -> None:
         try:
             for name in wanted.methods:
                 self.methods(name, wanted.points)
         except (ValueError, OSError) as error:
             self._fault = str(error)
 
-    def status(self, moment: Moment, key: Callable[[str], str]) -> tuple[str, ...]:
+    def status(self, moment: SessionState, key: Callable[[str], str]) -> tuple[str, ...]:
         """What is going on, in lines."""
         lines = []
         if self.wanted is not None:
             said = self.learning.said if self.learning is not None else ""
             lines.append(f"learning for {self.wanted.count} points" + (f": {said}" if said else ""))
-        if moment.study is not None:
-            if moment.study.pins is None:
-                lines.append(f"from {moment.study.count} points: {key('study_points')} others, "
+        if moment.comparison is not None:
+            if moment.comparison.pins is None:
+                lines.append(f"from {moment.comparison.count} points: {key('study_points')} others, "
                              f"{key('study_ghosts')} ghosts, {key('study_hands')} hold them")
             elif self.stream is None:
                 lines.append(f"drag the points, wheel or {key('run')} deeper, {key('study_hide')} unseen, "
@@ -126,9 +126,9 @@ class Reach:
             self.grip = self.grip.slid(dx, dy)
         return True
 
-    def holds(self, now: Moment) -> bool:
+    def holds(self, now: SessionState) -> bool:
         """Whether hands hold the points."""
-        return self.stream is None and now.study is not None and now.study.pins is not None
+        return self.stream is None and now.comparison is not None and now.comparison.pins is not None
 
     def scroll(self, notches: float) -> bool:
         """The wheel; whether it pushes a point that is held."""
@@ -136,7 +136,7 @@ class Reach:
             self.grip = self.grip.pushed(notches)
         return self.grip is not None
 
-    def grab(self, now: Moment) -> bool:
+    def grab(self, now: SessionState) -> bool:
         """Take hold of the point under the pointer; whether there is one."""
         number = self._under(now)
         if number is not None:
@@ -148,12 +148,12 @@ class Reach:
         held, self.grip = self.grip is not None, None
         return held
 
-    def actions(self, now: Moment, time: float) -> list[str]:
+    def actions(self, now: SessionState, time: float) -> list[str]:
         """What the hands or the stream ask for in this tick. time: [s] of the session."""
-        if now.study is None:
+        if now.comparison is None:
             return []
         if self.stream is not None:
-            seen = self.stream.at(time) + np.array(now.study.beside)
+            seen = self.stream.at(time) + np.array(now.comparison.beside)
             return ["pins=" + ";".join(written(place) for place in seen)]
         if self.grip is None or not self.holds(now) or self.camera is None:
             return []
@@ -163,21 +163,21 @@ class Reach:
         self.sent = place
         return [f"pin={self.grip.number}:{place}"] if place else []
 
-    def _places(self, now: Moment) -> np.ndarray:
-        """Where the points (n, 3) of the study are, or the body has them."""
+    def _places(self, now: SessionState) -> np.ndarray:
+        """Where the points (n, 3) of the comparison are, or the body has them."""
         body = next(one for one in now.after.characters if one.follows is not None)
         own = body.follows.controls.on(*body.joints)
-        goals = now.study.goals
+        goals = now.comparison.goals
         return own if goals is None else np.where(np.isfinite(goals), goals, own)
 
-    def _under(self, now: Moment) -> int | None:
+    def _under(self, now: SessionState) -> int | None:
         if not self.holds(now) or self.camera is None:
             return None
         return nearest(self.camera, self.aspect, self._places(now), *self.pointer)
 
     # --- the picture
 
-    def marked(self, figures: Sequence[Figure], moment: Moment) -> tuple[Figure, ...]:
+    def marked(self, figures: Sequence[Figure], moment: SessionState) -> tuple[Figure, ...]:
         """The figures with a ring round the point that is held, or would be."""
         number = self.grip.number if self.grip is not None else self._under(moment)
         if number is None or not self.holds(moment):
@@ -185,13 +185,13 @@ class Reach:
         ring = Dot("points", self._places(moment)[number], HELD, 1.7 * RADIUS, through=True, look="ring")
         return (replace(figures[0], sketches=(*figures[0].sketches, ring)), *figures[1:])
 
-    def legend(self, told: Sequence[Row], size: tuple[int, int], study: Study | None) -> Ink:
+    def legend(self, told: Sequence[Row], size: tuple[int, int], comparison: Comparison | None) -> Ink:
         """The legend over a picture of `size` pixels."""
         if self.panel is None:
             from ..hud import Legend  # loads ImGui, for those only who reconstruct
 
             self.panel = Legend()
-        return self.panel.ink(told, size, "" if study is None else f"from {study.count} points")
+        return self.panel.ink(told, size, "" if comparison is None else f"from {comparison.count} points")
 
     def close(self) -> None:
         """Give everything back."""

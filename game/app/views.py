@@ -8,21 +8,21 @@ from typing import Any
 
 from ..explain import Preview, broken, explained, pointed, preview
 from ..scene import Camera, Overlays, Scene
-from ..session import Log, Moment, replay, strayed
+from ..session import Log, SessionState, replay, strayed
 from ..world import RATE, figures
 
 
 Previews = tuple[Preview | None, ...]
 
 
-def previews(moment: Moment, before: Previews = ()) -> Previews:
+def previews(moment: SessionState, before: Previews = ()) -> Previews:
     """The jumps that players aim at. before: those of a picture earlier."""
     return tuple(preview(character, player.aim, moment.after.props, old)
                  for player, character, old in zip_longest(moment.players, moment.after.characters[:len(moment.players)],
                                                            before[:len(moment.players)]))
 
 
-def scenes(moment: Moment, fraction: float, cameras: Sequence[Camera], overlays: Overlays,
+def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], overlays: Overlays,
            text: Sequence[tuple[str, ...]] = (), aimed: Previews | None = None) -> tuple[Scene, ...]:
     """One scene for each camera.
 

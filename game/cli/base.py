@@ -119,7 +119,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
 
 
 def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
-    """An input log and who moves in it; what its studies need is learnt. LogError for one that can't be played."""
+    """An input log and who moves in it; what its comparisons need is learnt. LogError for one that can't be played."""
     from ..session import of_library, performer_of, read
     from ..session import wanted
 

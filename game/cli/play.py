@@ -31,20 +31,20 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     from ..session import LogWriter
     from ..world import methods
     from ..app import Play
-    from ..app import OUT, Studio, log_file
+    from ..app import OUT, Capture, log_file
 
     tape, clip, database = None, None, None
     if replay is not None:
         tape, controller = replayed(replay, controller)
         players, clip, database = tape.players, tape.clip or None, tape.database or None
     log = LogWriter(log_file(record), controller, players, clip, database)
-    studio = Studio(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
+    capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
-    game = Play(controller, players, bindings=hands, log=log, studio=studio, tape=tape, learnt=methods(database))
-    show(game, pixels, preset, log, studio)
+    game = Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database))
+    show(game, pixels, preset, log, capture)
 
 
-def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, studio: Any = None) -> None:
+def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:
     """Run a game in a window until it is over; exit code NO_DISPLAY where none can be opened."""
     from ..hosts import DisplayError, run_window
 
@@ -57,8 +57,8 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, st
         game.close()
         if log is not None and log.begun:
             say(f"{log.path}: {game.now.number / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
-        if studio is not None:
-            studio.finish(say)
+        if capture is not None:
+            capture.finish(say)
 
 
 def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
@@ -80,15 +80,15 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     from ..world import methods
     from ..app import Play
     from ..world import Recorded
-    from ..app import OUT, Studio, log_file
-    from ..session import Study
+    from ..app import OUT, Capture, log_file
+    from ..session import Comparison
 
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
-    studio = Studio(OUT)
-    game = Play(performer, bindings=load_bindings(), log=log, studio=studio, learnt=methods(database), stream=stream)
-    game.open(Study(wanted, points))
-    show(game, pixels, preset, log, studio)
+    capture = Capture(OUT)
+    game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream)
+    game.open(Comparison(wanted, points))
+    show(game, pixels, preset, log, capture)
 
 
 @app.command()

@@ -83,8 +83,8 @@ def pushed(character: Character, physique: Physique, gravity: float) -> np.ndarr
         return np.zeros(3)
     weight = physique.mass * gravity
     push = np.array([0.0, weight, 0.0])
-    if character.sway is not None:
-        push += physique.mass * character.sway.acceleration
+    if character.centre_of_mass is not None:
+        push += physique.mass * character.centre_of_mass.acceleration
     return push * min(max(push[1], 0.0) / max(abs(push[1]), 1e-9), MOST_DRAWN * weight / max(np.linalg.norm(push), 1e-9))
 
 

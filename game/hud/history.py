@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..session import Moment
+from ..session import SessionState
 from ..world import RATE, Character, World
 from .on_duty import acting, own
 
@@ -44,7 +44,7 @@ class Trace:
         self.rows: dict[int, tuple[World, np.ndarray]] = {}
         self.who = 0
 
-    def read(self, moments: Sequence[Moment], who: int = 0) -> Signals:
+    def read(self, moments: Sequence[SessionState], who: int = 0) -> Signals:
         """The signals of character `who` up to the last of the moments, of which there is one at least."""
         if who != self.who:
             self.rows, self.who = {}, who
@@ -58,7 +58,7 @@ class Trace:
         return Signals(rows[:, 0], rows[:, 1:4], rows[:, 4:7], rows[:, 7:10], rows[:, 10], rows[:, 11:15] > 0.5)
 
 
-def recent(moments: Sequence[Moment]) -> list[World]:
+def recent(moments: Sequence[SessionState]) -> list[World]:
     """The worlds of the last STEPS steps, oldest first; those of one unbroken run, each once."""
     worlds: list[World] = []
     for moment in reversed(moments):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..explain import Row
 from ..hosts import Event
 from ..scene import PANELS, Figure, Ink
-from ..session import Moment
+from ..session import SessionState
 from . import legend, plots, quality_meter, sliders, space_panel, time_strip
 from .canvas import Canvas
 from .ghost import ghost
@@ -38,7 +38,7 @@ class Hud:
         """Take an event; whether a panel has taken it, so that the game should not."""
         return self.canvas is not None and self.canvas.handle(event)
 
-    def frame(self, open: Collection[str], history: Sequence[Moment], now: Moment, behind: int, kept: int,
+    def frame(self, open: Collection[str], history: Sequence[SessionState], now: SessionState, behind: int, kept: int,
               size: tuple[int, int], seconds: float, told: Sequence[Row] = ()) -> tuple[Ink, list[str]]:
         """The panels named in `open` over a picture of `size` pixels, and the actions their user asks for.
 
@@ -85,7 +85,7 @@ class Hud:
             self.phase = (self.phase + seconds / self.space.library.primitives[self.space.chosen].period) % 1.0
         return self.canvas.end(), actions + asked
 
-    def ghosts(self, figures: Sequence[Figure], moment: Moment) -> tuple[Figure, ...]:
+    def ghosts(self, figures: Sequence[Figure], moment: SessionState) -> tuple[Figure, ...]:
         """The figure that plays the chosen primitive beside its character. figures: the moment's own."""
         number, character = self.space.chosen, moment.after.characters[self.who]
         library = getattr(character.controller, "library", None)

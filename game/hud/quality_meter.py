@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..explain import Quality, quality_of
-from ..session import Moment
+from ..session import SessionState
 from . import style
 from .history import STEPS, recent
 from .toolkit import imgui
@@ -38,7 +38,7 @@ class Meter:
         """A frame was shown `seconds` after the one before."""
         self.frames.append(seconds)
 
-    def look(self, moments: Sequence[Moment], who: int, seconds: float) -> None:
+    def look(self, moments: Sequence[SessionState], who: int, seconds: float) -> None:
         """Measure character `who` anew, if it is time to."""
         self.wait -= seconds
         if self.wait > 0.0:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..session import SETTINGS, Moment, Setting, owners
+from ..session import SETTINGS, SessionState, Setting, owners
 from . import style
 from .on_duty import own
 from .toolkit import imgui
@@ -31,7 +31,7 @@ def meaning(owner: type, field: str) -> str:
     return next((s for s in sentences if re.search(rf"\b{field}\b", s)), sentences[0]).rstrip(".")
 
 
-def draw(moment: Moment, who: int, scale: float) -> list[str]:
+def draw(moment: SessionState, who: int, scale: float) -> list[str]:
     """Fill the current window; what was changed, as actions "name=value"."""
     actions: list[str] = []
     small = bool(np.any(own(moment.after.characters[who]) != 1.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..session import Moment
+from ..session import SessionState
 from ..world import RATE
 from . import style
 from .decision import family, reason
@@ -10,7 +10,7 @@ from .on_duty import acting, why
 from .toolkit import imgui
 
 
-def draw(now: Moment, shown: Moment, behind: int, kept: int, who: int, scale: float) -> tuple[int, list[str]]:
+def draw(now: SessionState, shown: SessionState, behind: int, kept: int, who: int, scale: float) -> tuple[int, list[str]]:
     """Fill the current window; whom to look at from now on, and what was asked for, as actions.
 
     shown: the moment looked at, `behind` steps before now. kept: how many steps one can look back.

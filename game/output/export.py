@@ -67,7 +67,7 @@ def _fill(kept: list, count: int, value: Any) -> None:
 
 
 def sampled(moments: Iterable[Any], fps: float) -> Iterable[tuple[World, World, float]]:
-    """Frames at `fps` a second of a session's moments (`gambol.game.session.state.Moment`), which are RATE a second."""
+    """Frames at `fps` a second of a session's moments (`gambol.game.session.state.SessionState`), which are RATE a second."""
     number = 0
     for tick, moment in enumerate(moments):
         while (due := number * RATE / fps) <= tick + 1e-9:

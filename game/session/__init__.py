@@ -4,15 +4,15 @@ the comparison of methods beside a player.
 
 from . import comparison, settings
 from .actions import ACTIONS
-from .comparison import GHOST, Study, wanted, written
+from .comparison import GHOST, Comparison, wanted, written
 from .input_log import SUFFIX, Log, LogWriter, digest, of_library, performer_of, read, replay, strayed
 from .rewind import Look
 from .settings import SETTINGS, Setting
-from .state import Moment, begin, opening, owners
+from .state import SessionState, begin, opening, owners
 from .tick import Timeline, refused
 
 __all__ = [
-    "ACTIONS", "GHOST", "SETTINGS", "SUFFIX", "Log", "LogWriter", "Look", "Moment", "Setting", "Study", "Timeline",
-    "begin", "comparison", "digest", "of_library", "opening", "owners", "performer_of", "read", "refused", "replay",
-    "settings", "strayed", "wanted", "written",
+    "ACTIONS", "GHOST", "SETTINGS", "SUFFIX", "Comparison", "Log", "LogWriter", "Look", "SessionState", "Setting",
+    "Timeline", "begin", "comparison", "digest", "of_library", "opening", "owners", "performer_of", "read", "refused",
+    "replay", "settings", "strayed", "wanted", "written",
 ]

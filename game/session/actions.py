@@ -1,4 +1,4 @@
-"""What pressing something does to a moment: pause, reset, a second player, settings, studies."""
+"""What pressing something does to a moment: pause, reset, a second player, settings, comparisons."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from dataclasses import replace
 from ..camera import Follow, cycled
 from ..input import Aim, Pilot
 from ..world import Character, World
-from . import comparison as study, settings
-from .comparison import Study
-from .state import TINTS, Moment, Player, newcomer, owners
+from . import comparison, settings
+from .comparison import Comparison
+from .state import TINTS, SessionState, Player, newcomer, owners
 
 SLOWER = (1, 2, 4, 10)
 """Slow motion: how many ticks one step of the world takes."""
 ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"))
-"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", and `study.ACTIONS`."""
+"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", and `comparison.ACTIONS`."""
 
 
-def done(moment: Moment, who: int, action: str) -> Moment:
+def done(moment: SessionState, who: int, action: str) -> SessionState:
     """The moment once `action` is done; what means nothing here changes nothing."""
     name, equals, _ = action.partition("=")
     player = moment.players[who]
-    if name in study.ACTIONS:
-        return _studied(moment, action)
+    if name in comparison.ACTIONS:
+        return _compared(moment, action)
     if equals and name != "back":
         return _tuned(moment, who, action)
     if name == "pause":
@@ -46,11 +46,11 @@ def done(moment: Moment, who: int, action: str) -> Moment:
     return moment
 
 
-def _with(moment: Moment, who: int, player: Player) -> Moment:
+def _with(moment: SessionState, who: int, player: Player) -> SessionState:
     return replace(moment, players=moment.players[:who] + (player,) + moment.players[who + 1:])
 
 
-def _reset(moment: Moment) -> Moment:
+def _reset(moment: SessionState) -> SessionState:
     """The opening again; what was tuned stays so."""
     world = replace(moment.opening, characters=tuple(
         replace(first, controller=now.controller)
@@ -59,34 +59,34 @@ def _reset(moment: Moment) -> Moment:
     for old, character in zip(moment.players, world.characters):
         camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
         players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim()))
-    return _studying(replace(moment, before=world, after=world, players=tuple(players), phase=0),
-                     None if moment.study is None else replace(moment.study, pins=None))
+    return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0),
+                     None if moment.comparison is None else replace(moment.comparison, pins=None))
 
 
-def _studied(moment: Moment, action: str) -> Moment:
-    """The moment with a study opened or closed, or its points held otherwise. SettingError for what can't be."""
+def _compared(moment: SessionState, action: str) -> SessionState:
+    """The moment with a comparison opened or closed, or its points held otherwise. SettingError for what can't be."""
     if action.startswith("study="):
-        wanted, now = study.opened(action), moment.study
+        wanted, now = comparison.opened(action), moment.comparison
         if wanted is not None and now is not None:
             wanted = replace(wanted, beside=now.beside, pins=now.pins if wanted.points == now.points else None)
-        return _studying(moment, wanted, {one.name: one for one in moment.after.characters if one.follows is not None})
-    if moment.study is None:
-        raise settings.SettingError(f"{action}: no study is open")
-    now, after = study.pinned(moment.study, action, moment.after)
-    return replace(moment, study=now, after=after)
+        return _comparing(moment, wanted, {one.name: one for one in moment.after.characters if one.follows is not None})
+    if moment.comparison is None:
+        raise settings.SettingError(f"{action}: no comparison is open")
+    now, after = comparison.pinned(moment.comparison, action, moment.after)
+    return replace(moment, comparison=now, after=after)
 
 
-def _studying(moment: Moment, wanted: Study | None, kept: Mapping[str, Character] = {}) -> Moment:
-    """The moment with another study, or none. Followers that were not `kept` begin as the first player stands and moves."""
+def _comparing(moment: SessionState, wanted: Comparison | None, kept: Mapping[str, Character] = {}) -> SessionState:
+    """The moment with another comparison, or none. Followers that were not `kept` begin as the first player stands and moves."""
     followers: tuple[Character, ...] = ()
     if wanted is not None:
-        wanted, followers = study.joined(wanted, moment.after.characters[0], moment.methods, kept)
+        wanted, followers = comparison.joined(wanted, moment.after.characters[0], moment.methods, kept)
     def among(world: World) -> World:
         return replace(world, characters=tuple(c for c in world.characters if c.follows is None) + followers)
-    return replace(moment, before=among(moment.before), after=among(moment.after), study=wanted)
+    return replace(moment, before=among(moment.before), after=among(moment.after), comparison=wanted)
 
 
-def _joined(moment: Moment) -> Moment:
+def _joined(moment: SessionState) -> SessionState:
     """One player more, beside the first; no more than there are tints."""
     count, controller = len(moment.players), moment.after.characters[0].controller
     if count >= len(TINTS):
@@ -102,7 +102,7 @@ def _joined(moment: Moment) -> Moment:
                    players=(*moment.players, Player.behind(late)))
 
 
-def _tuned(moment: Moment, who: int, action: str) -> Moment:
+def _tuned(moment: SessionState, who: int, action: str) -> SessionState:
     """The moment under another setting of one player."""
     owner, new = settings.changed(owners(moment, who), action)
     player, people = moment.players[who], moment.after.characters

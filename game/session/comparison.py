@@ -1,4 +1,4 @@
-"""A study: somebody who plays, and beside them bodies that know a few points of theirs and nothing else.
+"""A comparison: somebody who plays, and beside them bodies that know a few points of theirs and nothing else.
 
 Or hands hold the points: each is pinned to a place, or is not seen. What hands and streams do comes as actions of a
 wish, so that a log has all of it: "study=ours lpcr@4" opens, "study=" closes; "pins=hold" takes hold of the points,
@@ -29,14 +29,14 @@ ASIDE = 1.4
 GHOST = 0.34
 """The opacity of a ghost."""
 ACTIONS = frozenset(("study", "pins", "pin"))
-"""What comes before the "=" of an action that is about a study."""
+"""What comes before the "=" of an action that is about a comparison."""
 FAR = 1e3
 
 Place = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Study:
+class Comparison:
     """methods: by name; the first one's is the body, the others' are ghosts. points: as `controls.parse` has them.
 
     beside: from the performer [m]. pins: where hands hold each of the n points [m], None where it is not seen; None
@@ -63,19 +63,19 @@ class Study:
         """The pins as points (n, 3) [m], NaN where one is not seen."""
         return None if self.pins is None else np.array([(math.nan,) * 3 if pin is None else pin for pin in self.pins])
 
-    def more_points(self) -> Study:
+    def more_points(self) -> Comparison:
         """With the next set of points."""
         at = SETS.index(self.points) if self.points in SETS else -1
         return replace(self, points=SETS[(at + 1) % len(SETS)], pins=None)
 
-    def other_ghosts(self) -> Study:
+    def other_ghosts(self) -> Comparison:
         """With the next ghosts."""
         at = GHOSTS.index(self.methods[1:]) if self.methods[1:] in GHOSTS else -1
         return replace(self, methods=(self.methods[0], *GHOSTS[(at + 1) % len(GHOSTS)]))
 
 
-def opened(action: str) -> Study | None:
-    """The study that "study=METHOD METHOD@POINTS" asks for; None for "study=". SettingError for anything else."""
+def opened(action: str) -> Comparison | None:
+    """The comparison that "study=METHOD METHOD@POINTS" asks for; None for "study=". SettingError for anything else."""
     text = action.partition("=")[2]
     if not text:
         return None
@@ -83,11 +83,11 @@ def opened(action: str) -> Study | None:
     methods = tuple(names.split())
     if not at or not methods or len(set(methods)) < len(methods) or not set(methods) <= set(METHODS):
         raise SettingError(f"{action}: needs methods of {', '.join(METHODS)}, then @ and points")
-    return Study(methods, points)
+    return Comparison(methods, points)
 
 
 def wanted(ticks: Iterable[Iterable[Wish]]) -> tuple[tuple[str, str], ...]:
-    """The methods, name and points, that wishes open studies with, so that they can be learnt before."""
+    """The methods, name and points, that wishes open comparisons with, so that they can be learnt before."""
     found = {}
     for action in (action for wishes in ticks for wish in wishes for action in wish.pressed if action.startswith("study=")):
         with suppress(SettingError):  # told of where it is played
@@ -96,18 +96,18 @@ def wanted(ticks: Iterable[Iterable[Wish]]) -> tuple[tuple[str, str], ...]:
     return tuple(found)
 
 
-def joined(study: Study, performer: Character, methods: Methods, before: Mapping[str, Character]
-           ) -> tuple[Study, tuple[Character, ...]]:
-    """The study beside a performer, and its followers: those from `before`, by name, that go on, and others as they begin.
+def joined(comparison: Comparison, performer: Character, methods: Methods, before: Mapping[str, Character]
+           ) -> tuple[Comparison, tuple[Character, ...]]:
+    """The comparison beside a performer, and its followers: those from `before`, by name, that go on, and others as they begin.
 
     SettingError for points that there are not.
     """
     try:
-        learnt = [(name, methods(name, study.points)[1]) for name in study.methods]
+        learnt = [(name, methods(name, comparison.points)[1]) for name in comparison.methods]
     except ValueError as error:
-        raise SettingError(f"{study.action}: {error}") from None
+        raise SettingError(f"{comparison.action}: {error}") from None
     heading = float(performer.state.ground[2])
-    beside = study.beside if any(study.beside) else (-ASIDE * math.cos(heading), 0.0, ASIDE * math.sin(heading))
+    beside = comparison.beside if any(comparison.beside) else (-ASIDE * math.cos(heading), 0.0, ASIDE * math.sin(heading))
     made: list[Character] = []
     for number, (name, points) in enumerate(learnt):
         kept = before.get(NAMES[name])
@@ -115,21 +115,21 @@ def joined(study: Study, performer: Character, methods: Methods, before: Mapping
             made.append(replace(kept, opacity=GHOST if number else 1.0))
             continue
         # where hands hold the points, like the body that they move
-        like, aside = (performer, np.array(beside)) if study.pins is None or not made else (made[0], np.zeros(3))
-        follows = Follows(name, points, performer.name if study.pins is None else "", np.array(beside))
-        someone = follower_of(performer.controller, name, study.points, methods)
+        like, aside = (performer, np.array(beside)) if comparison.pins is None or not made else (made[0], np.zeros(3))
+        follows = Follows(name, points, performer.name if comparison.pins is None else "", np.array(beside))
+        someone = follower_of(performer.controller, name, comparison.points, methods)
         made.append(Character(NAMES[name], someone, beginning(someone, like.state, aside), TINTS[name],
                               follows=follows, opacity=GHOST if number else 1.0))
-    return replace(study, beside=beside), tuple(made)
+    return replace(comparison, beside=beside), tuple(made)
 
 
-def pinned(study: Study, action: str, world: World) -> tuple[Study, World]:
-    """Study and world after an action "pins=…" or "pin=…"; SettingError for one that says nothing sound."""
+def pinned(comparison: Comparison, action: str, world: World) -> tuple[Comparison, World]:
+    """Comparison and world after an action "pins=…" or "pin=…"; SettingError for one that says nothing sound."""
     body = next(one for one in world.characters if one.follows is not None)
     name, _, text = action.partition("=")
     count = len(body.follows.controls)
     if name == "pins" and not text:
-        return _given_back(study, world, body)
+        return _given_back(comparison, world, body)
     if name == "pins" and text == "hold":
         pins = tuple(_place(*at) for at in body.follows.controls.on(*body.joints))
     elif name == "pins":
@@ -139,24 +139,24 @@ def pinned(study: Study, action: str, world: World) -> tuple[Study, World]:
         pins = tuple(_read(action, place) for place in places)
     else:
         number, colon, place = text.partition(":")
-        if study.pins is None or not colon or not number.isdecimal() or int(number) >= count:
+        if comparison.pins is None or not colon or not number.isdecimal() or int(number) >= count:
             raise SettingError(f"{action}: needs a point's number below {count}, a colon and its place, once points are held")
-        pins = tuple(_read(action, place) if n == int(number) else pin for n, pin in enumerate(study.pins))
-    if study.pins is None:
+        pins = tuple(_read(action, place) if n == int(number) else pin for n, pin in enumerate(comparison.pins))
+    if comparison.pins is None:
         world = replace(world, characters=tuple(
             one if one.follows is None else replace(one, follows=replace(one.follows, performer=""), told=one.told[:0])
             for one in world.characters))
-    return replace(study, pins=pins), world
+    return replace(comparison, pins=pins), world
 
 
-def _given_back(study: Study, world: World, body: Character) -> tuple[Study, World]:
+def _given_back(comparison: Comparison, world: World, body: Character) -> tuple[Comparison, World]:
     """The points are the performer's again; the bodies stay where they are."""
-    if study.pins is None:
-        return study, world
+    if comparison.pins is None:
+        return comparison, world
     performer = world.characters[0]
     x, _, z = np.asarray(body.state.pose.root, float) - performer.state.pose.root
     beside = (float(x), 0.0, float(z))
-    return replace(study, pins=None, beside=beside), replace(world, characters=tuple(
+    return replace(comparison, pins=None, beside=beside), replace(world, characters=tuple(
         one if one.follows is None else
         replace(one, follows=replace(one.follows, performer=performer.name, beside=np.array(beside)), told=one.told[:0])
         for one in world.characters))

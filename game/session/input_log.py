@@ -23,7 +23,7 @@ from ..input import STEPS, Wish
 from ..world import RATE, Recorded, methods
 from .comparison import wanted
 from .settings import SettingError
-from .state import Moment, opening
+from .state import SessionState, opening
 from .tick import Timeline
 
 FORMAT = 1
@@ -69,7 +69,7 @@ def digest(controller: Any) -> str:
     return hashed.hexdigest()[:16]
 
 
-def fingerprint(moment: Moment) -> int:
+def fingerprint(moment: SessionState) -> int:
     """A checksum of where everybody is, to notice where a replay goes another way."""
     print_ = 0
     for character in moment.after.characters:
@@ -104,7 +104,7 @@ class LogWriter:
             self.flush()
         self._waiting.append(tuple(wishes))
 
-    def flush(self, moment: Moment | None = None) -> None:
+    def flush(self, moment: SessionState | None = None) -> None:
         """Write what was added since the last time. moment: what it led to."""
         if not self._waiting:
             return
@@ -228,7 +228,7 @@ def of_library(log: Log, controller: Any) -> Log:
     return log
 
 
-def replay(log: Log, controller: Any) -> Iterator[Moment]:
+def replay(log: Log, controller: Any) -> Iterator[SessionState]:
     """The opening and the moment after every tick, to the bit as they were played.
 
     LogError for what can't be played.
@@ -245,6 +245,6 @@ def replay(log: Log, controller: Any) -> Iterator[Moment]:
         yield timeline.now
 
 
-def strayed(log: Log, moment: Moment) -> bool:
+def strayed(log: Log, moment: SessionState) -> bool:
     """Whether a replay is elsewhere than the player was: another version of Gambol walks another way."""
     return log.prints.get(moment.number, fingerprint(moment)) != fingerprint(moment)

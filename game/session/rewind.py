@@ -9,7 +9,7 @@ import numpy as np
 from ..input import Wish
 from ..scene import Camera
 from ..world import DT
-from .state import Moment, Player
+from .state import SessionState, Player
 
 HELD = 18
 """Ticks after which a scrub key that is held goes on by itself."""
@@ -49,7 +49,7 @@ class Look:
         where = self.last + alpha * (self.behind - self.last)
         return int(where), 1.0 - (where - int(where))
 
-    def turned(self, wish: Wish, moment: Moment) -> Look:
+    def turned(self, wish: Wish, moment: SessionState) -> Look:
         """The camera turned, zoomed or pushed about `moment`, the one that is shown."""
         if self.viewer is None and not wish.zoom and wish.drag == wish.orbit == wish.pan == (0.0, 0.0):
             return self
@@ -58,7 +58,7 @@ class Look:
             orbit=wish.orbit, drag=wish.drag, zoom=wish.zoom, pan=wish.pan), DT, moment.after.props)
         return replace(self, viewer=replace(player, last=player.camera, camera=camera))
 
-    def cameras(self, moment: Moment, fraction: float, alpha: float) -> tuple[Camera, ...]:
+    def cameras(self, moment: SessionState, fraction: float, alpha: float) -> tuple[Camera, ...]:
         """Each player's camera at a past moment; the first one's as it was turned since."""
         first = self.viewer.view(alpha) if self.viewer else moment.players[0].view(fraction)
         return (first, *(player.view(fraction) for player in moment.players[1:]))

@@ -14,7 +14,7 @@ from ..input import STEERING, Aim, Pilot
 from ..scene import TINT, Camera, Figure
 from ..world import COURSE, Character, Methods, World, figures, methods
 from . import settings
-from .comparison import Study
+from .comparison import Comparison
 
 APART = 1.2
 """How far from one another players start [m]."""
@@ -44,13 +44,13 @@ class Player:
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class SessionState:
     """All of a session after a tick.
 
     before, after: the worlds that the last step of the simulation led from and to; player i moves
     character i. opening: the world that a reset returns to. number: ticks since the session began,
     whatever became of the world meanwhile. slow: ticks that a step of the world takes. phase: those
-    made since the last step. study: what is reconstructed of the first player, by characters that come last in the
+    made since the last step. comparison: what is reconstructed of the first player, by characters that come last in the
     worlds; methods: where what they need is learnt.
     """
 
@@ -62,7 +62,7 @@ class Moment:
     paused: bool = False
     slow: int = 1
     phase: int = 0
-    study: Study | None = None
+    comparison: Comparison | None = None
     methods: Methods = field(default_factory=methods)
 
     def fraction(self, alpha: float) -> float:
@@ -78,17 +78,17 @@ class Moment:
         return settings.value(owners(self, player), name)
 
 
-def opening(controller: Any, players: int = 1, learnt: Methods | None = None) -> Moment:
+def opening(controller: Any, players: int = 1, learnt: Methods | None = None) -> SessionState:
     """The first moment: so many players side by side, with a course to jump on to their left.
 
-    learnt: the methods of its studies; those over Gambol's own motion by default.
+    learnt: the methods of its comparisons; those over Gambol's own motion by default.
     """
     return begin(World(tuple(newcomer(controller, n, np.zeros(3)) for n in range(players)), COURSE), players, learnt)
 
 
-def begin(world: World, players: int = 1, learnt: Methods | None = None) -> Moment:
+def begin(world: World, players: int = 1, learnt: Methods | None = None) -> SessionState:
     """The first moment in a world, whose first characters the players move."""
-    return Moment(world, world, tuple(Player.behind(c) for c in world.characters[:players]), world,
+    return SessionState(world, world, tuple(Player.behind(c) for c in world.characters[:players]), world,
                   methods=methods() if learnt is None else learnt)
 
 
@@ -100,7 +100,7 @@ def newcomer(controller: Any, number: int, ground: np.ndarray) -> Character:
         ground=(x - side * np.cos(heading), z + side * np.sin(heading), heading)))
 
 
-def owners(moment: Moment, who: int) -> dict[str, Any]:
+def owners(moment: SessionState, who: int) -> dict[str, Any]:
     """Whose settings player `who` tunes, by the owner's name; None where there is no such owner."""
     player = moment.players[who]
     return {"locomotion": getattr(moment.after.characters[who].controller, "settings", None),

@@ -1,6 +1,6 @@
 """A session: the one function that takes what is played a tick further, and the moments that were.
 
-A `gambol.game.session.state.Moment` is all there is sixty times a second: worlds, and for each player pilot and camera.
+A `gambol.game.session.state.SessionState` is all there is sixty times a second: worlds, and for each player pilot and camera.
 `advance` gives the next one from what the hands wish. It knows no clock and no window, so the
 window, a film of a log and the tests play the same game, to the bit.
 """
@@ -21,13 +21,13 @@ from ..input import Aim, Wish, jumping
 from ..world import DT, RATE, ground_between, jump_of
 from . import settings
 from .actions import done
-from .state import Moment, Player
+from .state import SessionState, Player
 
 KEPT = 30 * RATE
 """How many steps of the world one can go back."""
 
 
-def advance(moment: Moment, wishes: Sequence[Wish], past: Sequence[Moment] = ()) -> Moment:
+def advance(moment: SessionState, wishes: Sequence[Wish], past: Sequence[SessionState] = ()) -> SessionState:
     """The moment a sixtieth of a second later; one wish for each player, in order.
 
     First what was pressed is done, then the world moves, then the cameras. Everything stays as it
@@ -56,7 +56,7 @@ def advance(moment: Moment, wishes: Sequence[Wish], past: Sequence[Moment] = ())
         range(len(moment.players)), wishes)))
 
 
-def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
+def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
     """One step of the world."""
     players, intents = [], []
     for player, character, wish in zip(moment.players, moment.after.characters, wishes):
@@ -75,12 +75,12 @@ def _stepped(moment: Moment, wishes: Sequence[Wish]) -> Moment:
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
         leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
         intents.append(replace(command.intent(state, player.steering), leap=leap))
-    held = None if moment.study is None else moment.study.goals
+    held = None if moment.comparison is None else moment.comparison.goals
     intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
 
 
-def refused(before: Moment, after: Moment) -> tuple[str, ...]:
+def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
     """Why jumps that players had asked for were given up in the last step: a line for each."""
     lines = []
     for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
@@ -91,7 +91,7 @@ def refused(before: Moment, after: Moment) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def _filmed(moment: Moment, who: int, wish: Wish, stepped: bool) -> Player:
+def _filmed(moment: SessionState, who: int, wish: Wish, stepped: bool) -> Player:
     """A player whose camera is a tick further, after the character."""
     first, second = moment.before.characters[who], moment.after.characters[who]
     old, new, part = first.state, second.state, moment.fraction(1.0)
@@ -111,8 +111,8 @@ class Timeline:
     present, so that a long pause doesn't push out what one would go back to.
     """
 
-    now: Moment
-    past: deque[Moment] = field(default_factory=lambda: deque(maxlen=KEPT))
+    now: SessionState
+    past: deque[SessionState] = field(default_factory=lambda: deque(maxlen=KEPT))
 
     def advance(self, wishes: Sequence[Wish]) -> None:
         """One tick on. A "back=N" forgets what came after the moment that it returns to."""
@@ -125,7 +125,7 @@ class Timeline:
         self.now = moment
 
 
-def backward(wishes: Sequence[Wish], past: Sequence[Moment]) -> int:
+def backward(wishes: Sequence[Wish], past: Sequence[SessionState]) -> int:
     """How many steps of the world the wishes of a tick go back, at most to the oldest of `past`.
 
     SettingError for a "back=" without a whole number from 1.

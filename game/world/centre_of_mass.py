@@ -18,7 +18,7 @@ ADULT = Physique()
 
 
 @dataclass(frozen=True, eq=False)
-class Sway:
+class CentreOfMass:
     """A critically damped follower of a centre of mass: place, velocity, acceleration, (3,) each [m, s].
 
     Its acceleration is the centre's without what trembles.
@@ -29,14 +29,14 @@ class Sway:
     acceleration: np.ndarray
 
     @staticmethod
-    def begun(centre: np.ndarray, velocity: np.ndarray) -> Sway:
+    def begun(centre: np.ndarray, velocity: np.ndarray) -> CentreOfMass:
         """At a centre (3,) [m] that moves with a velocity (3,) [m/s]."""
-        return Sway(centre, velocity, np.zeros(3))
+        return CentreOfMass(centre, velocity, np.zeros(3))
 
-    def step(self, centre: np.ndarray, dt: float) -> Sway:
+    def step(self, centre: np.ndarray, dt: float) -> CentreOfMass:
         """`dt` seconds later, the centre at a new place (3,) [m]."""
         offset, velocity = settle(self.place - centre, self.velocity, HALFLIFE, dt)
-        return Sway(centre + offset, velocity, (velocity - self.velocity) / dt)
+        return CentreOfMass(centre + offset, velocity, (velocity - self.velocity) / dt)
 
 
 def jump_of(controller: Any) -> Jump | None:

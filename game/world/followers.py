@@ -16,7 +16,7 @@ import numpy as np
 from gambol.controllers.body import STATURE, Pose
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import floor_at
-from gambol.controllers.reconstruction import JOINTS, SKELETON, Controls, Reconstruction
+from gambol.controllers.reconstruction import JOINTS, SKELETON, ControlPoints, Reconstruction
 from gambol.controllers.reconstruction.evaluation import position_error
 from gambol.controllers.supervisor import Supervisor
 
@@ -48,7 +48,7 @@ class Follows:
     """
 
     method: str
-    controls: Controls
+    controls: ControlPoints
     performer: str = ""
     beside: np.ndarray = field(default_factory=lambda: np.zeros(3))
     hidden: tuple[Hidden, ...] = ()

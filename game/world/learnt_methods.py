@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.reconstruction import SKELETON, Controls, encode, parse
+from gambol.controllers.reconstruction import SKELETON, ControlPoints, encode, parse
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.following import Starts
 
@@ -53,7 +53,7 @@ class Methods:
         """Whether a method for some points is ready at once."""
         return (name, points) in self._known
 
-    def __call__(self, name: str, points: str, progress: Progress | None = None) -> tuple[Any, Controls]:
+    def __call__(self, name: str, points: str, progress: Progress | None = None) -> tuple[Any, ControlPoints]:
         """A method of `METHODS` and the points that it follows, as `controls.parse` has them.
 
         ValueError, saying what there is, for others.
@@ -90,12 +90,12 @@ def methods(file: str | Path | None = None) -> Methods:
     return Methods(file)
 
 
-def learnt(name: str, database: Database, controls: Controls, progress: Progress | None = None) -> Any:
+def learnt(name: str, database: Database, controls: ControlPoints, progress: Progress | None = None) -> Any:
     """A method of `METHODS`, ready: nothing of it is compiled or read later. Rivals as they are best on recorded takes."""
     from gambol.controllers.reconstruction.ours import ours
-    from gambol.controllers.reconstruction.evaluation import rival
+    from gambol.controllers.reconstruction.evaluation import baseline
 
-    method = ours(database, controls, progress=progress) if name == "ours" else rival(name, database, controls)
+    method = ours(database, controls, progress=progress) if name == "ours" else baseline(name, database, controls)
     rehearse(method, controls)
     return method
 
@@ -104,7 +104,7 @@ def _silent(what: str, done: int, total: int) -> None:
     pass
 
 
-def rehearse(method: Any, controls: Controls) -> None:
+def rehearse(method: Any, controls: ControlPoints) -> None:
     """Two frames of nobody, so that what they compile or load halts no game."""
     still = np.broadcast_to(np.eye(3), (1, len(SKELETON), 3, 3))
     memory = method.begin(*encode(SKELETON.offsets[:1], still, 1 / 60))

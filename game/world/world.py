@@ -19,7 +19,7 @@ from gambol.controllers.navigation import drift
 from gambol.controllers.reconstruction import towards
 
 from ..scene import TINT, Figure, Prop
-from .centre_of_mass import Sway, centre_of
+from .centre_of_mass import CentreOfMass, centre_of
 from .followers import KEPT, Follows, carried, errors
 
 RATE = 60
@@ -42,7 +42,7 @@ class Character:
     `body` (`gambol.game.render.mesh.Body`) is drawn in it.
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
     follows: whose points it follows, None for somebody with a will. told: (N, 4) its `follow.errors`, oldest first.
-    opacity: 1 for a body, less for a ghost. sway: how its centre of mass is borne; None before its first step.
+    opacity: 1 for a body, less for a ghost. centre_of_mass: how its centre of mass is borne; None before its first step.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Character:
     follows: Follows | None = None
     told: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
     opacity: float = 1.0
-    sway: Sway | None = None
+    centre_of_mass: CentreOfMass | None = None
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -78,8 +78,8 @@ class Character:
             trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
         made = replace(self, state=state, intent=intent, trail=trail)
         centre = centre_of(made.controller, made.joints)
-        sway = self.sway or Sway.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
-        return replace(made, sway=sway.step(centre, DT))
+        centre_of_mass = self.centre_of_mass or CentreOfMass.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
+        return replace(made, centre_of_mass=centre_of_mass.step(centre, DT))
 
     def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
         """One step on of a follower, whose performer has made that step."""

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from gambol.controllers.locomotion import Locomotion
-from gambol.game.app import Play, Studio
+from gambol.game.app import Play, Capture
 from gambol.game.hosts import DisplayError, KeyEvent, run_window
 from gambol.game.session import LogWriter
 from gambol.game.world import DT
@@ -35,7 +35,7 @@ class Watched(Play):
     """The game, noting by a clock of its own when it was ticked and asked for frames."""
 
     def __init__(self, controller: Locomotion, folder: Path, film: bool):
-        super().__init__(controller, log=LogWriter(folder / "pacing.gambol", controller, 1), studio=Studio(folder))
+        super().__init__(controller, log=LogWriter(folder / "pacing.gambol", controller, 1), capture=Capture(folder))
         self.frames, self.film, self.wall, self.counted = [], film, [], []
         for key in ("W", "Q"):
             self.handle(KeyEvent(key, True))
@@ -79,8 +79,8 @@ def main() -> None:
             run_window(game, options.size, options.preset, limit=options.seconds + WARM_UP)
             if options.film:
                 game.close()
-                print("film while playing:", *game.kept.studio.status() or ["done"])
-                game.kept.studio.finish(print)
+                print("film while playing:", *game.kept.capture.status() or ["done"])
+                game.kept.capture.finish(print)
     except DisplayError as error:
         sys.exit(str(error))
     finally:

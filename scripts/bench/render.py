@@ -1,12 +1,12 @@
 """How long a frame takes offscreen: p50 and p99 for both presets, one and ten characters, and beside rivals.
 
-    python scripts/bench/render.py [--frames 120] [--size 1280x720] [--rivals]
+    python scripts/bench/render.py [--frames 120] [--size 1280x720] [--renderers]
 
 Each frame moves the figures, draws them and reads the picture back, as a film does. One character stands
 close and is drawn with its finest mesh; ten are drawn as the preset would. The processor time, summed over
 all cores, tells what a frame costs where other programs were running too.
 
---rivals installs pyrender and aitviewer into environments of their own, in the system's folder for temporary
+--renderers installs pyrender and aitviewer into environments of their own, in the system's folder for temporary
 files, and has them draw the same mesh of the same pose, with floor and shadows, at the same size, in turns
 with Gambol. Their pictures lie beside them.
 """
@@ -148,14 +148,14 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--frames", type=int, default=120)
     options.add_argument("--size", default="1280x720", type=lambda s: tuple(map(int, s.split("x"))))
-    options.add_argument("--rivals", action="store_true", help="measure pyrender and aitviewer too")
+    options.add_argument("--renderers", action="store_true", help="measure pyrender and aitviewer too")
     options = options.parse_args()
     print(f"{options.size[0]}×{options.size[1]}, {len(mannequin().levels[0].triangles)} triangles in the finest mesh")
     for count in (1, 10):
         for name in OURS:
             took, spent, draws = measured(options.size, name, count, options.frames)
             show(f"{name}, {count} character{'s' * (count > 1)}", took, spent, draws)
-    if options.rivals:
+    if options.renderers:
         beside_rivals(options.size, max(options.frames // ROUNDS, 5))
 
 

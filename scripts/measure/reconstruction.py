@@ -25,7 +25,7 @@ from gambol.controllers.reconstruction.database import DatabaseError
 from gambol.controllers.reconstruction.regression import SPAN
 from reconstruction_bench import Bench, Course, Courses, lost_from
 from reconstruction_figures import PRINTED, PRINTED_SIZES, Figures, against, bars, figures, lines, table
-from reconstruction_rivals import BASE, OURS, RIVALS
+from reconstruction_methods import BASE, OURS, RIVALS
 
 SETS = ("2", "3", "4", "5", "6", "liu")
 NOISE, HIDDEN = 0.01, 0.5
@@ -35,7 +35,7 @@ HEAD = ("", "cm", "ours - this [95 %]", "/ LPCR", "aligned cm", "joint deg", "do
 """What the long tables tell of a method; see `Figures`."""
 
 
-class Study:
+class Comparison:
     """The sections, each a text; figures are made of outcomes when they are asked for."""
 
     def __init__(self, bench: Bench, on: Courses, methods: list[str], sets: list[str], out: Path | None):
@@ -162,14 +162,14 @@ class Study:
         """What was tried on the validation takes."""
         parts = [self.about("validation")]
         for name in self.methods:
-            rival, rows = RIVALS[name], []
-            for settings in rival.tries(self.bench.seed):
+            baseline, rows = RIVALS[name], []
+            for settings in baseline.tries(self.bench.seed):
                 found = self.of(name, "validation", "4", settings=settings)
                 rows.append((found.position.mean(), [*map(str, settings.values()), f"{found.position.mean():.2f}", f"{found.angle.mean():.1f}",
-                             "in use" if settings.items() <= dict(rival.settings).items() else ""]))
+                             "in use" if settings.items() <= dict(baseline.settings).items() else ""]))
             if rows:
                 rows = [row for _, row in sorted(rows, key=lambda one: one[0])]
-                parts.append(f"### {name}\n\n" + table([*rival.grid, "cm", "joint deg", ""], rows))
+                parts.append(f"### {name}\n\n" + table([*baseline.grid, "cm", "joint deg", ""], rows))
         return "\n\n".join(parts)
 
     def time(self) -> str:
@@ -232,9 +232,9 @@ def main() -> None:
     try:
         with bench.progress:
             main_, large = bench.database(options.motion), bench.database(options.large or options.motion)
-            study = Study(bench, Courses(main_, large, options.takes, options.seed), methods, sets, options.out)
+            comparison = Comparison(bench, Courses(main_, large, options.takes, options.seed), methods, sets, options.out)
             for name in wanted:
-                text = f"## {SECTIONS[name]}\n\n{getattr(study, name)()}\n"
+                text = f"## {SECTIONS[name]}\n\n{getattr(comparison, name)()}\n"
                 print(f"\n{text}", flush=True)
                 if options.out:
                     (options.out / f"{name}.md").write_text(text)

@@ -22,7 +22,7 @@ from gambol.controllers.reconstruction.database import Database, DatabaseError, 
 from gambol.controllers.reconstruction.evaluation import trials
 from gambol.controllers.reconstruction.regression import SPAN
 
-from reconstruction_rivals import RIVALS, Rival
+from reconstruction_methods import RIVALS, Rival
 
 _HOME = Path(method_room.__file__).parent
 
@@ -64,13 +64,13 @@ class Bench:
 
     def learn(self, name: str, course: Course, points: str, settings: dict | None = None) -> Any:
         """A method learnt from a course's database; the last one is remembered."""
-        rival = RIVALS[name]
-        settings = dict(rival.settings) | (settings or {})
-        key = _digest([name, identity(course.learnt), points, settings, _code(rival)])
+        baseline = RIVALS[name]
+        settings = dict(baseline.settings) | (settings or {})
+        key = _digest([name, identity(course.learnt), points, settings, _code(baseline)])
         if key not in self._learnt:
             bar = self.progress.add_task(f"learning {name}, {points} points", total=None)
             self._learnt.clear()
-            self._learnt[key] = rival.learn(course.learnt, parse(points, SKELETON), **settings)
+            self._learnt[key] = baseline.learn(course.learnt, parse(points, SKELETON), **settings)
             self.progress.remove_task(bar)
         return self._learnt[key]
 
@@ -80,9 +80,9 @@ class Bench:
 
         noise: standard deviation [m] of each coordinate of the points. hidden: for how long each point is lost once [s].
         """
-        rival, tests = RIVALS[name], self.trials(course, points)
+        baseline, tests = RIVALS[name], self.trials(course, points)
         told = [name, identity(course.learnt), [(take.clip, take.mirrored) for take in course.takes], course.most, points,
-                dict(rival.settings) | (settings or {}), noise, hidden, self.seed, _code(rival)]
+                dict(baseline.settings) | (settings or {}), noise, hidden, self.seed, _code(baseline)]
         path = self.cache / f"{course.name}-{points}-{name}-{_digest(told)}.npz".replace(" ", "_").replace(",", "")
         if not path.exists():
             method = self.learn(name, course, points, settings)
@@ -198,9 +198,9 @@ class Courses:
         return trials.split(self.true, self.takes, self.takes // 2, self.seed)
 
 
-def _code(rival: Rival) -> str:
+def _code(baseline: Rival) -> str:
     told = hashlib.sha1()
-    for pattern in rival.sources:
+    for pattern in baseline.sources:
         for path in sorted(_HOME.glob(pattern)):
             told.update(path.read_bytes())
     return told.hexdigest()

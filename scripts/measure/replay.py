@@ -20,7 +20,7 @@ import numpy as np
 from gambol.controllers.locomotion import Locomotion
 from gambol.game.app import Play
 from gambol.game.hosts import KeyEvent, MouseMove, PadState
-from gambol.game.session import LogWriter, Moment, of_library, read, replay
+from gambol.game.session import LogWriter, SessionState, of_library, read, replay
 
 FRAME = 1.0 / 60.0
 TAPS = ("TAB", "C", "V", "V", "V", "R")
@@ -66,7 +66,7 @@ def both(game: Play, rng: np.random.Generator, frame: int) -> None:
         game.do(f"locomotion.acceleration={rng.uniform(2.0, 8.0):.3f}")
 
 
-def bits(moment: Moment) -> tuple[bytes, ...]:
+def bits(moment: SessionState) -> tuple[bytes, ...]:
     """All that is known of everybody, as bytes."""
     return tuple(part for character in moment.after.characters for state in (character.state,) for part in (
         *(np.ascontiguousarray(state.memory[name]).tobytes() for name in state.memory.dtype.names),

@@ -121,13 +121,13 @@ def test_who_joins_later_waits_where_they_appear():
 @pytest.mark.parametrize("fps", [24.0, 60.0, 100.0])
 def test_moments_are_sampled_at_any_rate(fps):
     """Somebody who moves a metre a tick is at time × RATE metres, whatever the frame rate."""
-    class Moment:
+    class SessionState:
         def __init__(self, tick):
             self.before, self.after = Stage(("Ada", max(tick - 1.0, 0.0))), Stage(("Ada", float(tick)))
 
         def fraction(self, alpha):
             return alpha
-    one, = export.takes(export.sampled((Moment(tick) for tick in range(61)), fps))
+    one, = export.takes(export.sampled((SessionState(tick) for tick in range(61)), fps))
     assert len(one.poses) == fps + 1
     assert np.allclose([pose.root[0] for pose in one.poses], np.arange(fps + 1) * RATE / fps)
 
@@ -148,15 +148,15 @@ def test_the_key_keeps_what_was_played_since_the_last_reset(tmp_path):
     from stand_in import Glide
 
     from gambol.game.app.app import Play
-    from gambol.game.app.capture import Studio
+    from gambol.game.app.capture import Capture
 
-    game = Play(Glide(), studio=Studio(tmp_path))
+    game = Play(Glide(), capture=Capture(tmp_path))
     for tick in range(50):
         if tick == 30:
             game.do("reset")
         game.tick(1 / RATE)
     game.do("export")
-    game.kept.studio.finish(lambda line: None)
+    game.kept.capture.finish(lambda line: None)
     file, = tmp_path.glob("*.glb")
     assert any(file.name in text for text in game.kept.notices)
     frames = len(described(file)["animations"][0]["extras"]["contacts"]["Player 1"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gambol.game.app.capture import Film, Studio, log_file
+from gambol.game.app.capture import Film, Capture, log_file
 from gambol.game.app.app import Play
 from gambol.game.files.paths import OutputError
 from gambol.game.session.input_log import LogWriter, fingerprint, read, replay
@@ -35,14 +35,14 @@ def test_a_game_is_watched_from_its_log_until_somebody_walks(tmp_path):
 
 
 def test_a_screenshot_is_clean_has_a_name_of_its_own_and_is_said(tmp_path):
-    game = Play(Glide(), studio=Studio(tmp_path))
+    game = Play(Glide(), capture=Capture(tmp_path))
     pixels = np.random.default_rng(0).integers(0, 255, (4, 6, 4), np.uint8)
     for _ in range(2):
         tap(game, "F12")
         assert game.wants_picture and game.scene((10, 10)).text == ()
         game.take(pixels)
         assert not game.wants_picture and ".png" in text(game)
-    game.kept.studio.finish(print)
+    game.kept.capture.finish(print)
     files = list(tmp_path.glob("*.png"))
     assert len(files) == 2 and all(np.array_equal(np.asarray(Image.open(file)), pixels[..., :3]) for file in files)
 
@@ -69,7 +69,7 @@ def test_a_film_is_made_of_what_was_played_meanwhile(tmp_path, monkeypatch):
         def status(self):
             return f"{self.path.name}: 5 %"
     monkeypatch.setattr("gambol.game.app.capture.Film", Film)
-    game = Play(Glide(), log=LogWriter(tmp_path / "a.gambol", Glide(), 1), studio=Studio(tmp_path, ("--library", "x.npz")))
+    game = Play(Glide(), log=LogWriter(tmp_path / "a.gambol", Glide(), 1), capture=Capture(tmp_path, ("--library", "x.npz")))
     wait(game, 1.0)
     tap(game, "F10")
     wait(game, 1.0)
@@ -89,7 +89,7 @@ def test_a_film_is_made_of_what_was_played_meanwhile(tmp_path, monkeypatch):
 
 def test_a_log_that_cannot_be_written_does_not_end_the_game(tmp_path):
     (tmp_path / "file").touch()
-    game = Play(Glide(), log=LogWriter(tmp_path / "file" / "a.gambol", Glide(), 1), studio=Studio(tmp_path / "file"))
+    game = Play(Glide(), log=LogWriter(tmp_path / "file" / "a.gambol", Glide(), 1), capture=Capture(tmp_path / "file"))
     wait(game, 1.0)
     assert "the log ends here" in text(game) and game.kept.log is None
     tap(game, "F10")

@@ -14,7 +14,7 @@ from gambol.game.hosts.events import KeyEvent, MouseMove, Scroll
 from gambol.game.hud.legend import cells
 from gambol.game.input import Wish
 from gambol.game.output.recorder import motion_clip
-from gambol.game.session.comparison import Study, opened, written
+from gambol.game.session.comparison import Comparison, opened, written
 from gambol.game.session.input_log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
 from gambol.game.session.settings import SettingError
 from gambol.game.session.state import opening
@@ -50,7 +50,7 @@ HANDS = [Wish(pressed=("study=ours lpcr@4",)), *[WALK] * 40, Wish(pressed=("pins
 
 
 def same(a, b):
-    assert a.study == b.study and [c.name for c in a.after.characters] == [c.name for c in b.after.characters]
+    assert a.comparison == b.comparison and [c.name for c in a.after.characters] == [c.name for c in b.after.characters]
     for x, y in zip(a.after.characters, b.after.characters, strict=True):
         assert np.array_equal(x.state.pose.root, y.state.pose.root) and np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
         assert np.array_equal(x.told, y.told, equal_nan=True)
@@ -64,9 +64,9 @@ def test_a_log_with_hands_on_points_replays_to_the_bit(tmp_path, walker):
     for a, b in zip(moments, again, strict=True):
         same(a, b)
         assert not strayed(log, b)
-    held = next(m for m in moments if m.study and m.study.pins and m.study.pins[0] == (1.09, 1.2, 1.0))
-    assert held.study.pins[1] is not None and len(held.after.characters) == 3
-    assert moments[-1].study is None and len(moments[-1].after.characters) == 1
+    held = next(m for m in moments if m.comparison and m.comparison.pins and m.comparison.pins[0] == (1.09, 1.2, 1.0))
+    assert held.comparison.pins[1] is not None and len(held.after.characters) == 3
+    assert moments[-1].comparison is None and len(moments[-1].after.characters) == 1
 
 
 def test_a_clip_s_log_plays_again_with_its_clip_and_its_database(tmp_path, walker):
@@ -76,7 +76,7 @@ def test_a_clip_s_log_plays_again_with_its_clip_and_its_database(tmp_path, walke
     performer = Recorded.load(tmp_path / "clip.bvh", walker)
     game = Play(performer, learnt=learning.methods(str(database)),
                 log=LogWriter(tmp_path / "a.gambol", performer, 1, tmp_path / "clip.bvh", database))
-    game.do(Study(("ours",), "4").action)
+    game.do(Comparison(("ours",), "4").action)
     for _ in range(60):
         game.tick(DT)
     game.close()
@@ -110,7 +110,7 @@ def test_the_body_goes_where_it_is_pulled_and_hands_take_it_over_without_a_jump(
     timeline.advance((Wish(pressed=("pins=hold",)),))
     body = timeline.now.after.characters[1]
     assert np.linalg.norm(body.joints[0] - before.joints[0], axis=-1).max() < 0.08
-    goal = np.array(timeline.now.study.pins[0]) + [0.05, 0.25, 0.05]
+    goal = np.array(timeline.now.comparison.pins[0]) + [0.05, 0.25, 0.05]
     for k in range(90):
         old = body.joints[0]
         timeline.advance((Wish(pressed=(f"pin=0:{written(goal)}",) if k == 0 else ()),))
@@ -136,10 +136,10 @@ def test_pins_that_can_not_be_are_refused(walker, action):
 
 
 def test_a_study_reads_as_it_writes():
-    for study, count in ((Study(), 4), (Study(("nearest",), "lwrist,head+0/0.1/0"), 2), (Study().more_points(), 5), (Study().other_ghosts(), 4)):
-        assert opened(study.action) == study and study.count == count
+    for comparison, count in ((Comparison(), 4), (Comparison(("nearest",), "lwrist,head+0/0.1/0"), 2), (Comparison().more_points(), 5), (Comparison().other_ghosts(), 4)):
+        assert opened(comparison.action) == comparison and comparison.count == count
     assert opened("study=") is None
-    cycle, seen = Study(points="2"), []
+    cycle, seen = Comparison(points="2"), []
     for _ in range(5):
         seen.append(cycle.points)
         cycle = cycle.more_points()
@@ -149,7 +149,7 @@ def test_a_study_reads_as_it_writes():
 def game(walker, **options):
     play = Play(walker, **options)
     for name in ("ours", "lpcr", "lpca"):
-        play.reach.methods(name, "4")
+        play.held_points.methods(name, "4")
     return play
 
 
@@ -163,40 +163,40 @@ def test_keys_open_hold_and_leave(walker):
     play = game(walker)
     play.handle(KeyEvent("X", True))
     ticks(play, 3)
-    assert play.now.study is not None and [one.name for one in play.now.after.characters[1:]] == ["ours", "local PCR", "local PCA"]
+    assert play.now.comparison is not None and [one.name for one in play.now.after.characters[1:]] == ["ours", "local PCR", "local PCA"]
     scene = play.scene((1280, 720))
     assert scene.ink is not None and len(scene.figures) == 4
     play.do("study_hands")
     ticks(play, 2)
-    pins = play.now.study.pins
-    camera, aspect = play.reach.camera, play.reach.aspect
+    pins = play.now.comparison.pins
+    camera, aspect = play.held_points.camera, play.held_points.aspect
     number = 0
     x, y = project(camera, aspect, np.array(pins[number]))[:2]
     play.handle(MouseMove(float(x), float(y), 0.0, 0.0))
     play.handle(KeyEvent("LEFT_BUTTON", True))
-    assert play.reach.grip is not None and play.reach.grip.number == number
+    assert play.held_points.grip is not None and play.held_points.grip.number == number
     play.handle(MouseMove(float(x), float(y) - 0.1, 0.0, -0.1))
     ticks(play, 2)
-    up = play.now.study.pins[number]
-    assert up[1] > pins[number][1] + 0.2 and play.now.study.pins[1:] == pins[1:]
+    up = play.now.comparison.pins[number]
+    assert up[1] > pins[number][1] + 0.2 and play.now.comparison.pins[1:] == pins[1:]
     before = play.now.players[0].camera.distance
     play.handle(Scroll(0.0, 5.0))
     ticks(play, 2)
-    deeper = project(camera, aspect, np.array(play.now.study.pins[number]))[2]
+    deeper = project(camera, aspect, np.array(play.now.comparison.pins[number]))[2]
     assert deeper > project(camera, aspect, np.array(up))[2] + 0.3 and play.now.players[0].camera.distance == before
     play.handle(KeyEvent("LEFT_BUTTON", False))
-    held = play.now.study.pins[number]
+    held = play.now.comparison.pins[number]
     play.handle(MouseMove(0.1, 0.9, 0.0, 0.0))
     ticks(play, 3)
-    assert play.now.study.pins[number] == held  # released, it stays
-    x, y = project(play.reach.camera, aspect, np.array(held))[:2]
+    assert play.now.comparison.pins[number] == held  # released, it stays
+    x, y = project(play.held_points.camera, aspect, np.array(held))[:2]
     play.handle(MouseMove(float(x), float(y), 0.0, 0.0))
     play.handle(KeyEvent("U", True))
     ticks(play, 2)
-    assert play.now.study.pins[number] is None
+    assert play.now.comparison.pins[number] is None
     play.handle(KeyEvent("ESCAPE", True))
     ticks(play, 2)
-    assert play.now.study.pins is None and not play.done
+    assert play.now.comparison.pins is None and not play.done
     play.handle(KeyEvent("ESCAPE", True))
     assert play.done
 
@@ -208,12 +208,12 @@ def test_a_stream_holds_the_points(walker):
     play = game(walker, stream=Somebody())
     play.do("study")
     ticks(play, 5)
-    assert play.now.study.pins[1] is None
-    assert play.now.study.pins[0] == pytest.approx(np.array([0.4, 1.0, 0.3]) + play.now.study.beside, abs=1e-4)
+    assert play.now.comparison.pins[1] is None
+    assert play.now.comparison.pins[0] == pytest.approx(np.array([0.4, 1.0, 0.3]) + play.now.comparison.beside, abs=1e-4)
     play.do("study_points")
     play.do("study_hands")
     ticks(play, 3)
-    assert play.now.study.points == "4" and play.now.study.pins is not None  # they are the stream's
+    assert play.now.comparison.points == "4" and play.now.comparison.pins is not None  # they are the stream's
     play.do("quit")
     assert play.done
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from gambol.controllers.reconstruction.ours.lost_points import NOISE, Moments
+from gambol.controllers.reconstruction.ours.lost_points import NOISE, LostPoints
 from gambol.controllers.reconstruction.ours.networks import LAGS, view
 
 POINTS = 4
@@ -21,7 +21,7 @@ def moments():
     drawn = rng.normal(size=(4000, 5)) @ rng.normal(0, 0.2, (5, WIDTH)) + rng.normal(0, 0.01, (4000, WIDTH))
     points = drawn.reshape(-1, len(LAGS), POINTS, 3) + [[0.3, 1.0, 0], [-0.3, 1.0, 0], [0.1, 0.1, 0], [-0.1, 0.1, 0]]
     inputs, _ = view(points, np.zeros(len(points)))
-    return Moments(inputs.mean(0), np.cov(inputs.T)), points
+    return LostPoints(inputs.mean(0), np.cov(inputs.T)), points
 
 
 @given(masks)
@@ -52,8 +52,8 @@ def test_points_that_are_seen_stay_and_a_wild_guess_is_forgotten(moments, mask, 
 
 def test_they_are_kept_on_disk(moments, tmp_path):
     moments[0].save(tmp_path / "moments")
-    back = Moments.load(tmp_path / "moments")
+    back = LostPoints.load(tmp_path / "moments")
     assert np.array_equal(back.covariance, moments[0].covariance) and np.array_equal(back.mean, moments[0].mean)
     with pytest.raises(ValueError):
-        Moments(np.zeros(5), np.zeros((5, 5))).save(tmp_path / "odd")
-        Moments.load(tmp_path / "odd")
+        LostPoints(np.zeros(5), np.zeros((5, 5))).save(tmp_path / "odd")
+        LostPoints.load(tmp_path / "odd")

@@ -17,7 +17,7 @@ from gambol.controllers.reconstruction.evaluation import metrics
 from gambol.controllers.reconstruction.neighbours.cells import Cells
 from gambol.controllers.reconstruction.neighbours.segments import Segments
 from gambol.controllers.reconstruction.ours import combined, networks
-from gambol.controllers.reconstruction.ours.lost_points import Moments
+from gambol.controllers.reconstruction.ours.lost_points import LostPoints
 from gambol.controllers.reconstruction.ours.networks import (
     LAGS, WORLD, Networks, draw, learn, misfit, placed, seen_from, view)
 from gambol.controllers.reconstruction.ours.combined import (FADING, HEARD, KEPT, LASTING, LISTENED, NARROW, NEAR, NEARER,
@@ -50,7 +50,7 @@ def world(tmp_path_factory):
 def method(world):
     """Ours with a small network that has learnt that motion."""
     networks = learn(world[2], seeds=1, batches=2500, hidden=(128, 128))
-    return Ours(Method(Fused((Expectation(networks, Moments.of(world[2]), DT),)), world[1]))
+    return Ours(Method(Fused((Expectation(networks, LostPoints.of(world[2]), DT),)), world[1]))
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +170,7 @@ def test_what_was_off_is_expected_to_be_off_again(world, performance):
     bias = np.random.default_rng(5).normal(0, 0.05, WIDTH)
     grounds = [view(points[np.maximum(t - LAGS, 0)], tracks[t - 1, 2])[1] for t in range(1, SPAN + 1)]
     truth = [seen_from(ground, placed(frames[t], tracks[t]), WORLD) for t, ground in enumerate(grounds, 1)]
-    prior = Expectation(Biased([*truth[SPAN - 2::-1], truth[SPAN - 1]], bias), Moments.of(world[2]), DT)
+    prior = Expectation(Biased([*truth[SPAN - 2::-1], truth[SPAN - 1]], bias), LostPoints.of(world[2]), DT)
     known = prior.known(memory.frames, tracks[newest], memory.points)
     expected = -LASTING * bias
     expected[YAW_RATE] = 0.0
@@ -250,7 +250,7 @@ def test_what_is_done_about_lost_points_changes_nothing_while_all_are_seen(liste
         def believe(self, memory, seen, goals):
             raise AssertionError("asked")
     make, usual = listening
-    nothing = Moments(np.full(72, np.nan), np.full((72, 72), np.nan))
+    nothing = LostPoints(np.full(72, np.nan), np.full((72, 72), np.nan))
     plain = replace(method, method=replace(method.method, prior=Fused((method.method.prior.priors[0], usual))))
     found, points = run(plain, performance, performance[3]), performance[3].copy()
     assert np.array_equal(run(make(torn=Never(), moments=nothing), performance, points), found)

@@ -264,14 +264,14 @@ def five(tmp_path_factory) -> Database:
 def script(monkeypatch, tmp_path):
     """The script with two quick rows and few tries; what it learns is kept apart."""
     import reconstruction as script
-    import reconstruction_rivals as rivals
+    import reconstruction_methods as rivals
     from gambol.controllers.reconstruction.database import store
 
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "kernels")
     monkeypatch.setattr(rivals, "TRIES", 2)
     for name in set(rivals.RIVALS) - {"LPCR"}:
         monkeypatch.delitem(rivals.RIVALS, name)
-    mended = rivals.Rival(partial(rivals.rival, "mousas"), settings={"ridge": 0.1, "loosening": 100.0})
+    mended = rivals.Rival(partial(rivals.baseline, "mousas"), settings={"ridge": 0.1, "loosening": 100.0})
     monkeypatch.setitem(rivals.RIVALS, "ours", mended)
     return script
 
@@ -290,7 +290,7 @@ def _rows(text):
 def test_the_script_measures_every_section_once(script, five, monkeypatch, tmp_path, capsys):
     """What it prints is what the methods did; started again it learns nothing; a changed setting costs its own row alone."""
     from reconstruction_bench import Bench, Courses
-    from reconstruction_rivals import RIVALS
+    from reconstruction_methods import RIVALS
 
     pytest.importorskip("matplotlib")
     sections = [name for name in script.SECTIONS if name != "time"]

@@ -151,7 +151,7 @@ class Running:
         at first as ahead of it at last, or farther ahead if it is to become faster.
         """
         start, g, most = self.start, -float(self.gravity[1]), float(self.heights.leads[-1])
-        passing, pace = self.before, float(np.linalg.norm(self.before))
+        passing = self.before
         mean = 0.5 * (passing + velocity * FLAT)
         along = mean / max(float(np.linalg.norm(mean)), 1e-6)
         behind = (start.centre - self.ball) @ along

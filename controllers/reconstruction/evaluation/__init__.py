@@ -3,8 +3,8 @@
 from . import metrics, trials
 from .metrics import angle_error, jitter, position_error
 from .trials import Outcome
-from .tuned_baselines import SETTINGS, rival
+from .tuned_baselines import SETTINGS, baseline
 
 __all__ = [
-    "SETTINGS", "Outcome", "angle_error", "jitter", "metrics", "position_error", "rival", "trials",
+    "SETTINGS", "Outcome", "angle_error", "baseline", "jitter", "metrics", "position_error", "trials",
 ]

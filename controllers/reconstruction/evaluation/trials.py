@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from ...body import forward_kinematics
-from ..control_points import Controls
+from ..control_points import ControlPoints
 from ..database import Database, DatabaseError, Take
 from ..pose_vector import SKELETON, advance, decode
 from ..regression import SPAN, Method
@@ -169,7 +169,7 @@ def _usable(database, take):
     return stop - take.start >= SPAN + LEAST and bool(database.sound[take.start:stop].all())
 
 
-def trial(database: Database, take: Take, controls: Controls, most: int = MOST) -> Trial:
+def trial(database: Database, take: Take, controls: ControlPoints, most: int = MOST) -> Trial:
     """A take's first frames, `SPAN` + `most` at most, from the origin on."""
     frames = database.frames[take.start:min(take.stop, take.start + SPAN + most)].astype(float)
     tracks = np.zeros((len(frames), 3))

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..baselines import LOOSE, SGPLVM, Layers, LocalPCA, LocalPCR, Nearest, Samples, network, ridge
-from ..control_points import Controls
+from ..control_points import ControlPoints
 from ..database import Database, kept
 from ..ours import cells
 from ..regression import FLOOR, PAPER, Local, LocalRegression, Method, Regression, Solver
@@ -34,10 +34,10 @@ SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({
 })
 """By name: SGPLVM (Grochow 2004); local PCA (Chai & Hodgins 2005); local PCR (Liu 2011); Mousas 2014 to the letter, and
 mended; the nearest recording; ridge regression; a small network."""
-_BLIND = Controls((), np.zeros(0, np.int64), np.zeros((0, 3)))
+_BLIND = ControlPoints((), np.zeros(0, np.int64), np.zeros((0, 3)))
 
 
-def rival(name: str, database: Database, controls: Controls, **settings: Any) -> Method:
+def baseline(name: str, database: Database, controls: ControlPoints, **settings: Any) -> Method:
     """A method of `SETTINGS`, learnt from a database for some control points. settings: instead of its own.
 
     What takes long is kept on disk. KeyError for another name, TypeError for settings that it has not.

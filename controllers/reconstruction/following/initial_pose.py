@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...body import forward_kinematics, yaw
-from ..control_points import Controls
+from ..control_points import ControlPoints
 from ..database import Database
 from ..pose_vector import SKELETON, YAW_RATE, advance, decode
 from ..regression import SPAN, in_world
@@ -20,20 +20,20 @@ PACE = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Starts:
-    """Moments of a database to begin from. frames: (S,) their numbers. first: (S,) where their takes begin.
+    """LostPoints of a database to begin from. frames: (S,) their numbers. first: (S,) where their takes begin.
 
     points: (S, n, 3) [m] places of the control points on the moment's own ground. velocities: (S, n, 3) [m/s].
     """
 
     database: Database
-    controls: Controls
+    controls: ControlPoints
     frames: np.ndarray
     first: np.ndarray
     points: np.ndarray
     velocities: np.ndarray
 
     @staticmethod
-    def of(database: Database, controls: Controls) -> Starts:
+    def of(database: Database, controls: ControlPoints) -> Starts:
         """The moments of a database, evenly spread."""
         step = max(1, len(database) // MOST)
         whole = database.segments(2)  # neither across takes nor unsound

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...body import STATURE, exp, forward_kinematics, yaw
-from ..control_points import Controls
+from ..control_points import ControlPoints
 from ..pose_vector import SKELETON
 
 STILL = 0.05
@@ -60,7 +60,7 @@ class Standing:
         return np.mean([points for _, points in self.frames], 0)
 
 
-def stances(controls: Controls) -> np.ndarray:
+def stances(controls: ControlPoints) -> np.ndarray:
     """Where a standard body has its points (2, n, 3) [m] that stands at the origin facing +Z: T-pose, arms down."""
     turns = np.tile(np.eye(3), (2, len(SKELETON), 1, 1))
     for side, down in (("Left", -1.3), ("Right", 1.3)):
@@ -68,7 +68,7 @@ def stances(controls: Controls) -> np.ndarray:
     return controls.on(*forward_kinematics(SKELETON, np.tile(SKELETON.offsets[0], (2, 1)), turns))
 
 
-def placed(seen: np.ndarray, controls: Controls, height: float | None = None) -> Placement:
+def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = None) -> Placement:
     """What carries a standing performer's points (n, 3) [m] onto a standard body that stands at the origin.
 
     height: the performer's [m]; by default it is told from the points, and needs two of them apart.

@@ -11,13 +11,13 @@ from typing import Protocol
 import numpy as np
 
 from ...body import Clip
-from ..control_points import Controls
+from ..control_points import ControlPoints
 
 
 class Source(Protocol):
     """Gives the points of `controls`, in their order."""
 
-    controls: Controls
+    controls: ControlPoints
 
     def at(self, time: float) -> np.ndarray:
         """Where the points are (n, 3) [m] in the world at a time [s], NaN where one is not seen. Times only grow."""
@@ -27,12 +27,12 @@ class Source(Protocol):
 class Recorded:
     """A recorded performance. points: (T, n, 3) [m], NaN where one is not seen, `frame_time` [s] apart from time 0 on."""
 
-    controls: Controls
+    controls: ControlPoints
     points: np.ndarray
     frame_time: float
 
     @staticmethod
-    def of(clip: Clip, controls: Controls) -> Recorded:
+    def of(clip: Clip, controls: ControlPoints) -> Recorded:
         """The points of a clip; it must have the skeleton that the controls were parsed for."""
         return Recorded(controls, controls.extract(clip), clip.frame_time)
 

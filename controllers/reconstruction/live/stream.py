@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from pythonosc.osc_packet import OscPacket, ParseError
 
-from ..control_points import Controls, parse
+from ..control_points import ControlPoints, parse
 from ..pose_vector import SKELETON
 from .placing import Placement
 
@@ -131,7 +131,7 @@ def understood(packet: bytes) -> list[tuple[str, str, np.ndarray]] | None:
     return found
 
 
-def controls_of(points: Mapping[str, str]) -> Controls:
+def controls_of(points: Mapping[str, str]) -> ControlPoints:
     """The control points that trackers are on. StreamError for a point that there is not, or two trackers on one."""
     try:
         controls = parse(",".join(points.values()), SKELETON)

@@ -21,14 +21,14 @@ import numpy as np
 
 from ...body import Pose, Skeleton
 from ..baselines import Samples
-from ..control_points import Controls
+from ..control_points import ControlPoints
 from ..database import Database, kept
 from ..neighbours import Cells, Segments
 from ..pose_vector import FORWARD, LEFTWARD, SKELETON, WIDTH, YAW_RATE
 from ..regression import (FAR, FLOOR, SPAN, Fused, Gaussian, Local, LocalRegression, Memory, Method, Prior, Regression,
                           Solver, posed, seen_kernel)
 from .filters import Motion, noise
-from .lost_points import Moments
+from .lost_points import LostPoints
 from .networks import LAGS, WORLD, Networks, learn, placed, seen_from, view
 
 Progress = Callable[[str, int, int], None]
@@ -86,7 +86,7 @@ class Expectation:
     """
 
     networks: Networks
-    moments: Moments
+    moments: LostPoints
     dt: float
 
     def known(self, frames: np.ndarray, tracks: np.ndarray, points: np.ndarray) -> Expected:
@@ -206,7 +206,7 @@ class Ours:
         return Remembered(after, recent, filtered, pose), posed(frame, frame[[LEFTWARD, FORWARD, YAW_RATE]])
 
 
-def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETON, steady: bool = True,
+def ours(database: Database, controls: ControlPoints, *, skeleton: Skeleton = SKELETON, steady: bool = True,
          progress: Progress | None = None) -> Ours:
     """The method for some control points, learnt from a database on the first call, and kept on disk.
 
@@ -219,15 +219,15 @@ def ours(database: Database, controls: Controls, *, skeleton: Skeleton = SKELETO
         return learn(Samples.of(database, plain), progress=told, **how)
     points = controls.joints.tolist(), controls.offsets.tolist()
     networks = kept("networks", database, (*points, *how.items()), make, Networks.save, Networks.load, _SOURCES)
-    moments = kept("moments", database, points, lambda: Moments.of(Samples.of(database, plain)), Moments.save,
-                   Moments.load, (*_SOURCES, "ours/lost_points.py"))
+    moments = kept("moments", database, points, lambda: LostPoints.of(Samples.of(database, plain)), LostPoints.save,
+                   LostPoints.load, (*_SOURCES, "ours/lost_points.py"))
     search = cells(database, controls)
     whole, torn = (Local(LocalRegression(how, reach), search, NEIGHBOURS) for how, reach in ((LISTENED, NEAR), (HEARD, NEARER)))
     prior = Fused((Expectation(networks, moments, 1 / database.fps), Torn(whole, torn)))
     return Ours(Method(prior, replace(plain, skeleton=skeleton)), steady)
 
 
-def cells(database: Database, controls: Controls, m: int = 3, stride: int = 4) -> Cells:
+def cells(database: Database, controls: ControlPoints, m: int = 3, stride: int = 4) -> Cells:
     """A database's segments to search, with these points; made on the first call, and kept on disk."""
     segments = Segments.of(database, m, stride, controls.joints)
     return kept("cells", database, (m, stride, segments.joints), lambda: Cells(segments), Cells.save,

@@ -17,17 +17,17 @@ _SAMPLED = 20_000
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class LostPoints:
     """Of what networks see (`learning.view`). mean: (P,) [m]. covariance: (P, P)."""
 
     mean: np.ndarray
     covariance: np.ndarray
 
     @staticmethod
-    def of(samples: Samples) -> Moments:
+    def of(samples: Samples) -> LostPoints:
         """Told from some of the samples."""
         inputs, _ = draw(samples, np.random.default_rng(0).permutation(len(samples))[:_SAMPLED])
-        return Moments(inputs.mean(0), np.cov(inputs.T))
+        return LostPoints(inputs.mean(0), np.cov(inputs.T))
 
     def given(self, inputs: np.ndarray, known: np.ndarray) -> np.ndarray:
         """Inputs (P,) where they are known (P,) bool, and elsewhere their conditional mean, if all were normal."""
@@ -57,9 +57,9 @@ class Moments:
             np.savez(file, mean=self.mean, covariance=self.covariance)
 
     @staticmethod
-    def load(path: Path) -> Moments:
+    def load(path: Path) -> LostPoints:
         """Read what `save` wrote. OSError or ValueError for anything else."""
         with np.load(path) as file:
             if file["mean"].shape[0] % (3 * len(LAGS)) or file["covariance"].shape != 2 * file["mean"].shape:
                 raise ValueError(f"{path}: holds no moments")
-            return Moments(file["mean"], file["covariance"])
+            return LostPoints(file["mean"], file["covariance"])

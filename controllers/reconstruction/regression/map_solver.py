@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ...body import Skeleton
-from ..control_points import Controls
+from ..control_points import ControlPoints
 from ..pose_vector import JOINTS, REFERENCE, SKELETON
 from .beliefs import Gaussian
 from .solver_kernel import kinematics_kernel, points_kernel, solve_all_kernel
@@ -40,7 +40,7 @@ class Solver:
     lowers the energy by less than this share of it.
     """
 
-    controls: Controls
+    controls: ControlPoints
     dt: float
     sigma: float | np.ndarray = 0.01
     skeleton: Skeleton = SKELETON

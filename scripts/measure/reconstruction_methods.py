@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.reconstruction.evaluation import SETTINGS, rival
+from gambol.controllers.reconstruction.evaluation import SETTINGS, baseline
 from gambol.controllers.reconstruction.ours import ours
 
 TRIES = 12
@@ -45,7 +45,7 @@ class Rival:
 
 
 def _rival(name, printed="", sources=(), grid=None):
-    return Rival(partial(rival, name), printed, sources, SETTINGS[name], grid or {})
+    return Rival(partial(baseline, name), printed, sources, SETTINGS[name], grid or {})
 
 
 OURS, BASE = "ours", "LPCR"
