@@ -8,11 +8,12 @@ from .controller import DEFAULT_LIBRARY, Locomotion
 from .coverage import picture, report
 from .cycles import ACCELERATION_RATE, joint_acceleration
 from .library import HIPS, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
-from .memory import RUN, Settings
+from .memory import RUN, Settings, walks
 from .selection import neighbours, select
 
 __all__ = [
     "ACCELERATION_RATE", "DEFAULT_LIBRARY", "HIPS", "LABELS", "RUN", "SCALE", "Blender", "ControlSpace", "Library",
     "LibraryError", "Locomotion", "Primitive", "Settings", "build_library", "channels", "collect", "fourier",
     "joint_acceleration", "neighbours", "picture", "read_recipe", "reference_rotations", "report", "select", "thin",
+    "walks",
 ]
