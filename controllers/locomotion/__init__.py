@@ -2,12 +2,12 @@
 
 from . import fourier
 from .blend import Blender
-from .build_library import build_library, collect, read_recipe
 from .control_space import SCALE, ControlSpace, thin
 from .controller import DEFAULT_LIBRARY, Locomotion
 from .coverage import picture, report
 from .cycles import ACCELERATION_RATE, joint_acceleration
 from .library import HIPS, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
+from .library_build import build_library, collect, read_recipe
 from .memory import RUN, Settings, walks
 from .selection import neighbours, select
 

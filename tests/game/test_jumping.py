@@ -14,7 +14,7 @@ from gambol.game.explain.jump import LAYERS, explained
 from gambol.game.explain.jump_preview import CAN, CANNOT, aimed, previewed
 from gambol.game.input.script import jumping
 from gambol.game.input.wish import Wish
-from gambol.game.output.strip import strip
+from gambol.game.output.pose_strip import strip
 from gambol.game.render.sketches import sketched
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import ScenarioError, load
@@ -70,7 +70,7 @@ def same_run(played, monkeypatch):
     def run(wanted, controller):
         assert wanted == scenario, "at another rate it would be another run"
         return iter(frames)
-    monkeypatch.setattr("gambol.game.output.strip.run", run)
+    monkeypatch.setattr("gambol.game.output.pose_strip.run", run)
     return scenario
 
 
