@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotations as rot
+from ..files import contents
 from ..mocap import MotionFileError, calibrate, load, retarget
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
@@ -54,13 +55,15 @@ class Source:
 def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
     try:
-        recipe = tomllib.loads(Path(path).read_text("utf-8"))
+        recipe = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
         sources = [Source(**{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()})
                    for s in recipe.get("source", [])]
         for number, source in enumerate(sources, 1):
             source.check(number)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError, ValueError) as error:
-        raise LibraryError(f"{path}: not a library recipe: {error}") from None
+        raise LibraryError(f"{path}: not a library recipe: {getattr(error, 'strerror', None) or error}") from None
+    except RecursionError:
+        raise LibraryError(f"{path}: not a library recipe: brackets are nested too deeply") from None
     if not sources:
         raise LibraryError(f"{path}: a recipe needs at least one [[source]]")
     return sources, recipe.get("provenance", "")

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import functools
+import math
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args, get_type_hints
 
 import typer
 
@@ -42,6 +44,7 @@ def plainly(command):
     @functools.wraps(command)
     def wrapped(*args, **kwargs):
         try:
+            _check_finite(command, kwargs)
             return command(*args, **kwargs)
         except BrokenPipeError:  # whoever read our words has had enough: no mistake, and typer ends quietly
             raise
@@ -55,6 +58,16 @@ def plainly(command):
             say("gambol: stopped")
             raise typer.Exit(130) from None
     return wrapped
+
+
+def _check_finite(command: Any, given: dict[str, Any]) -> None:
+    """Mistake for an option with a bound that is no finite number: nan is on no side of it, and inf is beyond none."""
+    for name, value in given.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            option = get_args(get_type_hints(command, include_extras=True)[name])[-1]
+            if option.min is not None:  # others are judged where they are used
+                said = [word for word in (f"--{name}", option.default, *(option.param_decls or ())) if str(word).startswith("--")]
+                raise Mistake(f"{said[-1]} {value}: needs a finite number")
 
 
 def say(text: str) -> None:
@@ -133,7 +146,7 @@ def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
 def pixels_of(text: str) -> tuple[int, int]:
     """Width and height from "WIDTHxHEIGHT". Mistake for anything else."""
     width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
+    if not (re.fullmatch("[0-9]{2,4}", width) and re.fullmatch("[0-9]{2,4}", height) and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
         raise Mistake(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
     return int(width), int(height)
 
@@ -154,5 +167,5 @@ def progress_bar() -> Any:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    return Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
+    return Progress(TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
                     console=Console(stderr=True))

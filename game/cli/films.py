@@ -125,7 +125,7 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
 
     from ..scenario import scenario as scenarios
     from ..hosts import GraphicsError, Offscreen
-    from ..files import named, output_file
+    from ..files import output_file, whole
     from ..scenario import overlays
     from ..output import strip as poses
 
@@ -138,8 +138,8 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     made = poses(film, controller, count, overlays(overlays_of(overlay)), pixels,
                  start, end, actor)
     try:
-        with Offscreen(pixels, Preset.full.value) as stage, named(out):
-            Image.fromarray(stage.frame(made)[..., :3]).save(out)
+        with Offscreen(pixels, Preset.full.value) as stage, whole(out) as part:
+            Image.fromarray(stage.frame(made)[..., :3]).save(part)
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     say(f"{out}: {count} poses, {pixels[0]} × {pixels[1]}")

@@ -57,7 +57,7 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
     from gambol.controllers.locomotion import picture as draw
     from gambol.controllers.locomotion import report as in_words
 
-    from ..files import named, output_file
+    from ..files import output_file, whole
 
     if picture:
         output_file(picture, ".png")
@@ -71,8 +71,8 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
                        f"{f', mean of {one.averaged}' if one.averaged > 1 else ''}")
     if picture:
         try:
-            with named(picture):
-                draw(made, picture)
+            with whole(picture) as part:
+                draw(made, part)
         except ImportError:
             raise Mistake('--picture needs matplotlib: .venv/bin/pip install -e ".[report]"') from None
         say(str(picture))

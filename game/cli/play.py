@@ -97,7 +97,7 @@ def bindings(file: Hands = None,
              write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
     """Print the keys, buttons and sticks in force, as a file to edit."""
     from ..input import as_toml, load
-    from ..files import named, output_file
+    from ..files import output_file, whole
 
     text = as_toml(load(file))
     if write is None:
@@ -105,6 +105,6 @@ def bindings(file: Hands = None,
         return
     if write.exists():
         raise Mistake(f"{write}: is there already; name another file")
-    with named(output_file(write, ".toml")):
-        write.write_text(text, encoding="utf-8")
+    with whole(output_file(write, ".toml")) as part:
+        part.write_text(text, encoding="utf-8")
     say(str(write))

@@ -5,7 +5,7 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from . import devices, key_names
+from . import devices, key_names, remap
 from .aim import Aim
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
@@ -21,5 +21,5 @@ __all__ = [
     "DEFAULT", "HOLDING", "JOINING", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
     "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "Pace", "Pilot", "Script", "Sticks", "Wish", "as_toml",
     "dead_zone", "devices", "drivers", "help_sheet", "jumping", "key_label", "key_names", "load", "mode_of",
-    "mouse_wish", "pad_held", "pad_pressed", "pad_wish", "player_of", "wheel_wish", "wishes",
+    "mouse_wish", "pad_held", "pad_pressed", "pad_wish", "player_of", "remap", "wheel_wish", "wishes",
 ]

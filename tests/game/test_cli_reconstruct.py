@@ -80,6 +80,8 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["{clip}", "--database", "{clip}", "-o", "o.bvh"], "is no motion database"),
     (["{clip}", "--database", "none.gambolmotion", "-o", "o.bvh"], "none.gambolmotion: can't be read"),
     (["{clip}", "--port", "9000", "-o", "o.bvh"], "--port goes with --stream"),
+    (["{clip}", "--host", "0.0.0.0", "-o", "o.bvh"], "--host goes with --stream"),
+    (["--stream", "osc", "--host", "", "-o", "o.bvh", "--database", "{database}", "--method", "nearest"], "host '' is no address of this machine"),
     (["--stream", "osc", "--noise", "1", "-o", "o.bvh"], "--noise goes with a motion file"),
     (["--stream", "osc", "--map", "none.toml", "-o", "o.bvh"], "none.toml: can't be read"),
     (["--stream", "osc", "--map", "m.toml", "--points", "4", "-o", "o.bvh"], "give one of them"),
