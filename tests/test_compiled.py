@@ -30,7 +30,7 @@ def package(tmp_path):
 def call(package, code="print(outer(1.0), sum(outer.stats.cache_hits.values()))"):
     """What some code prints in a new process that has the package."""
     done = subprocess.run([sys.executable, "-c", f"from pack.outer import outer\nimport pack.compiled as c\n{code}"],
-                          cwd=package.parent, capture_output=True, text=True, timeout=100)
+                          cwd=package.parent, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout.split()
 

@@ -32,7 +32,7 @@ def dotted(path):
 
 def in_a_fresh_interpreter(code):
     """What some code prints, line by line, in a new process without a display."""
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout.split()
 

@@ -168,6 +168,8 @@ def _figures(clip: Any, poses: list) -> list[str]:
 
 def _record(source: Any, controller: Any, out: Path, height: float | None, seconds: float | None) -> None:
     """Record what a stream says until the time is up or somebody stops it; what there is by then is written."""
+    import numpy as np
+
     from gambol.controllers.contract import Intent
     from gambol.controllers.locomotion import Locomotion
     from gambol.controllers.reconstruction import towards
@@ -184,6 +186,8 @@ def _record(source: Any, controller: Any, out: Path, height: float | None, secon
             for now in _ticks(seconds):
                 seen = source.at(now)
                 if state is None:
+                    if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
+                        continue
                     state = someone.enter(controller.begin(seen), Intent())
                 intent = Intent(towards(state, seen), points=seen)
                 state, pose = someone.step(state, intent, 1 / FPS)

@@ -5,7 +5,7 @@ import socket
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 from pythonosc.osc_message_builder import OscMessageBuilder
@@ -121,7 +121,7 @@ def test_broken_packets_are_left_out_and_counted(stream, send, packet):
 
 
 @given(st.binary(max_size=200), st.sampled_from([b"", b"/VMC/Ext/Tra/Pos\0\0\0\0,sfff\0\0\0", b"#bundle\0" + b"\0" * 7 + b"\1"]))
-@settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=300)
 def test_no_packet_does_harm(noise, head):
     for _, _, place in understood(head + noise) or ():
         assert np.isfinite(place).all()
