@@ -22,7 +22,7 @@ for library in ("OPENBLAS", "OMP"):
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
-REHEARSALS = ("-m", "gambol.controllers.jump.warm_up"), ("tests/rehearsal.py",)
+REHEARSALS = ("-c", "from gambol.controllers.jump import Jump, rehearse; rehearse(Jump())"), ("tests/rehearsal.py",)
 
 
 @pytest.fixture(scope="session")

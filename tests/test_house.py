@@ -105,7 +105,7 @@ PLAN = {
         "locomotion": "compiled files body contract mocap",
         "jump": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles",
-        "person": "contract scaled supervisor locomotion jump",
+        "person": "compiled body contract jump.body scaled supervisor jump.muscles locomotion jump",
         "reconstruction.database": "compiled files body contract mocap supervisor locomotion jump",
         "reconstruction.neighbours": "compiled reconstruction.database",
         "reconstruction.regression": "compiled body reconstruction.neighbours",
@@ -130,7 +130,7 @@ PLAN = {
         "hud": "scene hosts world explain session",
         "scenario": "scene files input camera world explain session hud",
         "output": "scene files render character input world explain session scenario",
-        "app": "scene files render input hosts world explain session hud output",
+        "app": "scene files render input camera hosts world explain session hud output",
         "cli": "scene files character input hosts world session scenario output app",
     },
 }

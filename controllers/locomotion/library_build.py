@@ -12,7 +12,6 @@ import numpy as np
 
 from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotations as rot
 from ..files import contents
-from ..mocap import MotionFileError, calibrate, load, retarget
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
@@ -75,6 +74,8 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
 
     Clips on the same skeleton are calibrated together. Each comes with its source and its actor.
     """
+    from ..mocap import MotionFileError, calibrate, load, retarget  # who walks by a library needs no files of motion
+
     found: dict[tuple[int, str], list[Path]] = {}
     for number, source in enumerate(sources):
         for path in sorted(folder.glob(source.glob)):

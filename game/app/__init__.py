@@ -1,9 +1,12 @@
 """The game as a person plays it: events in, scenes out. It needs no window; a host gives it one."""
 
+from . import preparing
 from .app import Play
 from .capture import OUT, Capture, log_file
+from .opening import Opening
+from .preparing import Preparing
 from .views import filmed, frames
 
 __all__ = [
-    "OUT", "Capture", "Play", "filmed", "frames", "log_file",
+    "OUT", "Capture", "Opening", "Play", "Preparing", "filmed", "frames", "log_file", "preparing",
 ]

@@ -24,6 +24,7 @@ from ..session import (ACTIONS, Log, LogWriter, Look, SessionState, Timeline, be
 from ..world import DT, FixedStep, Methods, World
 from .capture import Capture
 from .held_points import HeldPoints
+from .preparing import Preparing
 from .recordings import Recordings
 from .views import Previews, previews, scenes
 
@@ -42,16 +43,18 @@ class Play:
     look: how one looks back; None while one plays. panels: what is shown of `PANELS`. kept: what
     is kept of it all. tape: a log that is watched, until somebody walks. clock, held: the time that was
     dropped, and spent in help, past or halt [s]. held_points: what pointer and stream do with the points of a comparison.
+    preparing: what is compiled meanwhile; None where everything is.
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
                  log: LogWriter | None = None, capture: Capture | None = None, tape: Log | None = None,
-                 learnt: Methods | None = None, stream: Any = None):
+                 learnt: Methods | None = None, stream: Any = None, preparing: Preparing | None = None):
         self.timeline = Timeline(opening(controller, players, learnt) if world is None else
                                  begin(world, players, learnt))
         self.bindings, self.kept, self.tape = bindings, Recordings(log, capture), tape
         self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
         self.held_points = HeldPoints(self.now.methods, stream)
+        self.preparing, self.refused = preparing, False
         self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
@@ -78,6 +81,11 @@ class Play:
         """The moments of the last half minute, one for each step of the world, up to the one shown."""
         past, behind = self.timeline.past, self.look.behind if self.look else 0
         return (*islice(past, len(past) - behind), self._back(behind))
+
+    @property
+    def jumps(self) -> bool:
+        """Whether a jump would not halt the game."""
+        return self.preparing is None or self.preparing.jumps
 
     @property
     def players(self) -> int:
@@ -205,6 +213,8 @@ class Play:
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
         self.undrawn = self.undrawn + seconds if self.panels else 0.0
         self.kept.tend(seconds)
+        if self.preparing is not None:
+            self.preparing.tend(self.now.after.characters[0].controller)
         if due := self.held_points.learnt():
             self._ask(due, 0) if not due.startswith("!") else self.kept.say(due[1:])
         if self.helping:
@@ -231,7 +241,7 @@ class Play:
             self._advance(asked_for)
         elif self._pushed():
             self._take_over("you play on from here")
-        elif not self.halted:
+        elif not self.halted and self.jumps:  # a log may jump at once
             self._play_back(self.tape)
 
     def _advance(self, asked_for: tuple[Wish, ...]) -> None:
@@ -266,7 +276,15 @@ class Play:
         held = wishes(self.keyboard, self.pads, self.players, self.bindings)
         asked_for = tuple(wish.merged(self.pending.get(who, Wish())).rounded() for who, wish in enumerate(held))
         self.pending.clear()
-        return asked_for
+        return asked_for if self.jumps else self._grounded(asked_for)
+
+    def _grounded(self, asked_for: tuple[Wish, ...]) -> tuple[Wish, ...]:
+        """The wishes without jumps, which nobody can make yet; whoever asks is told so."""
+        asked = any(wish.jump for wish in asked_for)
+        if asked and not self.refused:
+            self.kept.say("no jump yet: it is being prepared")
+        self.refused = asked
+        return tuple(replace(wish, jump=False) for wish in asked_for)
 
     # --- looking back
 
@@ -375,6 +393,8 @@ class Play:
             lines.append(f"paused: {self._key('pause')} goes on, {self._key('step')} makes one step")
         if moment.slow > 1:
             lines.append(f"slow motion 1/{moment.slow}")
+        if self.preparing is not None:
+            lines += self.preparing.said
         told = (*lines, *self.held_points.status(moment, self._key), *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
         return ((*own[0], *told), *own[1:])
 

@@ -76,24 +76,29 @@ def say(text: str) -> None:
 
 
 def person_of(library: Path | None, character: Path | None = None) -> Any:
-    """Who moves, with a gait library (the shipped one by default), in a character's body if one is named."""
+    """Who moves, with a gait library (the shipped one by default), in a character's body if one is named; all of it
+    is compiled first, where it never was."""
     from gambol.controllers.compiled import cold
     from gambol.controllers.contract import Intent
     from gambol.controllers.locomotion import Locomotion
-    from gambol.controllers.locomotion import DEFAULT_LIBRARY
-    from gambol.controllers.locomotion import Library as Gaits
-    from gambol.controllers.person import person, rehearse
+    from gambol.controllers.person import person, preparing, rehearse
 
-    gaits = Gaits.load(library or DEFAULT_LIBRARY)
+    walker = Locomotion.load(library)
     beside = None
     if cold():
         say("compiling the motion, once: half a minute")
-        beside = subprocess.Popen([sys.executable, "-P", "-m", "gambol.controllers.jump.warm_up"], stdin=subprocess.DEVNULL)
-    somebody = person(Locomotion(gaits))
+        beside = subprocess.Popen([sys.executable, "-P", "-c", "from gambol.controllers.jump import Jump, rehearse; rehearse(Jump())"], stdin=subprocess.DEVNULL)
+    somebody = person(walker)
     if beside is not None:
         somebody.step(somebody.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
         beside.wait()
     rehearse(somebody)
+    preparing.done(walker)
+    return in_body(somebody, character)
+
+
+def in_body(somebody: Any, character: Path | None) -> Any:
+    """Somebody in a character's body, if one is named."""
     if character is None:
         return somebody
     from ..character import load

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, Wearing, app, learn, person_of, pixels_of, plainly, replayed, say
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, in_body, learn, person_of, pixels_of, plainly, replayed,
+                   say)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -25,8 +26,14 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from ..input import load as load_bindings
 
+    from gambol.controllers.locomotion import Locomotion
+    from gambol.controllers.person import person
+
+    from ..app import Opening, Preparing
+
     pixels, hands = pixels_of(size), load_bindings(bindings)
-    controller = person_of(library, character)
+    walker = Locomotion.load(library)
+    controller = in_body(person(walker), character)
 
     from ..session import LogWriter
     from ..world import methods
@@ -40,12 +47,16 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     log = LogWriter(log_file(record), controller, players, clip, database)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
-    game = Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database))
-    show(game, pixels, preset, log, capture)
+    preparing = Preparing(walker, library)
+
+    def begun() -> Play:
+        return Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
+                    preparing=preparing)
+    show(Opening(begun, preparing), pixels, preset, log, capture)
 
 
 def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:
-    """Run a game in a window until it is over; exit code NO_DISPLAY where none can be opened."""
+    """Run a game, or what opens one, in a window until it is over; exit code NO_DISPLAY where none can be opened."""
     from ..hosts import DisplayError, run_window
 
     try:
@@ -56,7 +67,7 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
     finally:
         game.close()
         if log is not None and log.begun:
-            say(f"{log.path}: {game.now.number / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
+            say(f"{log.path}: {log.ticks / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
         if capture is not None:
             capture.finish(say)
 

@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gambol.controllers.reconstruction import control_points as controls
-
 from ..input import Wish
 from ..world import METHODS, NAMES, TINTS, Character, Follows, Methods, World, beginning, follower_of
 from .settings import SettingError
@@ -56,6 +54,8 @@ class Comparison:
     @property
     def count(self) -> int:
         """How many points there are."""
+        from gambol.controllers.reconstruction import control_points as controls  # a game without a study starts without
+
         return len(controls.SETS.get(self.points, self.points.split(",")))
 
     @property

@@ -80,7 +80,8 @@ def fingerprint(moment: SessionState) -> int:
 
 
 class LogWriter:
-    """Keeps a log as it is played; the file begins with the first `flush` that has something to write.
+    """Keeps a log as it is played; the file begins with the first `flush` that has something to write. ticks: so many
+    were added.
 
     clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
     where it can't be written.
@@ -88,7 +89,7 @@ class LogWriter:
 
     def __init__(self, path: Path, controller: Any, players: int, clip: str | Path | None = None,
                  database: str | Path | None = None):
-        self.path, self._file = Path(path), None
+        self.path, self._file, self.ticks = Path(path), None, 0
         needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file}
         self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
                       "library": digest(controller),
@@ -106,6 +107,7 @@ class LogWriter:
         if self._waiting and (len(self._waiting[0]) != len(wishes) or len(self._waiting) == BLOCK):  # somebody has joined
             self.flush()
         self._waiting.append(tuple(wishes))
+        self.ticks += 1
 
     def flush(self, moment: SessionState | None = None) -> None:
         """Write what was added since the last time. moment: what it led to."""

@@ -16,7 +16,6 @@ from scipy.spatial.transform import Rotation
 from gambol.controllers.body import Pose, forward_kinematics, wrap
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import drift
-from gambol.controllers.reconstruction import towards
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
@@ -83,6 +82,8 @@ class Character:
 
     def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
         """One step on of a follower, whose performer has made that step."""
+        from gambol.controllers.reconstruction import towards  # a game without a study starts without
+
         old, seen, truth = self, intent.points, None
         if performer is not None:
             there = performer.joints
