@@ -1,12 +1,12 @@
 """The game as a person plays it: events in, scenes out. It needs no window; a host gives it one."""
 
-from . import preparing
 from .app import Play
 from .capture import OUT, Capture, log_file
+from .hints import Teacher
 from .opening import Opening
 from .preparing import Preparing
 from .views import filmed, frames
 
 __all__ = [
-    "OUT", "Capture", "Opening", "Play", "Preparing", "filmed", "frames", "log_file", "preparing",
+    "OUT", "Capture", "Opening", "Play", "Preparing", "Teacher", "filmed", "frames", "log_file",
 ]

@@ -24,6 +24,7 @@ from ..session import (ACTIONS, Log, LogWriter, Look, SessionState, Timeline, be
 from ..world import DT, FixedStep, Methods, World
 from .capture import Capture
 from .held_points import HeldPoints
+from .hints import Teacher
 from .preparing import Preparing
 from .recordings import Recordings
 from .views import Previews, previews, scenes
@@ -44,14 +45,16 @@ class Play:
     is kept of it all. tape: a log that is watched, until somebody walks. clock, held: the time that was
     dropped, and spent in help, past or halt [s]. held_points: what pointer and stream do with the points of a comparison.
     preparing: what is compiled meanwhile; None where everything is.
+    teacher: who shows hints; None shows none.
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
                  log: LogWriter | None = None, capture: Capture | None = None, tape: Log | None = None,
-                 learnt: Methods | None = None, stream: Any = None, preparing: Preparing | None = None):
+                 learnt: Methods | None = None, stream: Any = None, preparing: Preparing | None = None,
+                 teacher: Teacher | None = None):
         self.timeline = Timeline(opening(controller, players, learnt) if world is None else
                                  begin(world, players, learnt))
-        self.bindings, self.kept, self.tape = bindings, Recordings(log, capture), tape
+        self.bindings, self.kept, self.tape, self.teacher = bindings, Recordings(log, capture), tape, teacher
         self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
         self.held_points = HeldPoints(self.now.methods, stream)
         self.preparing, self.refused = preparing, False
@@ -104,6 +107,8 @@ class Play:
 
     def handle(self, event: Event) -> None:
         """Take one event from the host; those that mean nothing here are ignored."""
+        if self.teacher is not None:
+            self.teacher.heard(event)
         if self.panels and self.hud is not None and self.hud.handle(event):
             return
         rewound = self.look is not None
@@ -225,6 +230,8 @@ class Play:
             for _ in range(due):
                 self._tick()
             self.held += (due - (self.now.number - number)) * DT
+            if self.teacher is not None and self._taught and not self.now.paused:
+                self.teacher.tick(self.now, seconds)
         self.kept.save_sometimes(seconds, self.now)
 
     def _tick(self) -> None:
@@ -347,6 +354,8 @@ class Play:
             views = (replace(views[0], sheet=sheet), *views[1:])
         elif self.wants_picture:  # nothing is written on a screenshot
             views = tuple(replace(view, text=()) for view in views)
+        elif self.teacher is not None and self._taught:
+            views = (replace(views[0], hint=self.teacher.hint()), *views[1:])
         if self.panels and not self.helping:
             views = (self._with_panels(views[0], size), *views[1:])
         elif self.overlays.errors and not self.helping and (lines := rows(moment.after)):
@@ -368,6 +377,11 @@ class Play:
         # the strip tells of looking back, pause and slow motion
         text = (view.text[0], *self.kept.notices) if view.text else ()
         return replace(view, ink=ink, text=text, figures=view.figures + self.hud.ghosts(view.figures, moment))
+
+    @property
+    def _taught(self) -> bool:
+        """Whether somebody plays whom hints could help: nobody looks back or watches."""
+        return self.look is None and self.tape is None
 
     def _shown(self, alpha: float) -> tuple[SessionState, float, tuple[Camera, ...]]:
         """The moment to draw, how far it is between its worlds, and from where each player sees it."""

@@ -118,6 +118,8 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     if not wanted:
         return
     with progress_bar() as bar:
+        if not bar.console.is_terminal:
+            say("learning to make bodies of a few points, once: a minute or less")
         tasks: dict[str, Any] = {}
 
         def progress(what: str, done: int, total: int) -> None:
@@ -138,8 +140,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
 
 def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
     """An input log and who moves in it; what its comparisons need is learnt. LogError for one that can't be played."""
-    from ..session import of_library, performer_of, read
-    from ..session import wanted
+    from ..session import of_library, performer_of, read, wanted
 
     log = read(file)
     performer = performer_of(log, controller)

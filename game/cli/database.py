@@ -21,8 +21,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
           fps: Annotated[float, typer.Option(min=1.0, max=1000.0, help="Frames a second.")] = 60.0,
           mirrors: Annotated[bool, typer.Option("--mirrors/--no-mirrors", help="Add the mirror image of every take.")] = True) -> None:
     """Put every motion file of a folder onto one skeleton, into one file."""
-    from gambol.controllers.reconstruction.database import SUFFIX
-    from gambol.controllers.reconstruction.database import build as build_database
+    from gambol.controllers.reconstruction.database import SUFFIX, build as build_database
 
     from ..files import named, output_file
 

@@ -49,13 +49,11 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
            picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None,
            primitives: Annotated[bool, typer.Option("--primitives", help="List every primitive and its clip.")] = False) -> None:
     """What a library covers, and where its primitives come from."""
-    from gambol.controllers.locomotion import DEFAULT_LIBRARY
-    from gambol.controllers.locomotion import Library as GaitLibrary
+    from gambol.controllers.locomotion import DEFAULT_LIBRARY, Library as GaitLibrary
 
     made = GaitLibrary.load(file or DEFAULT_LIBRARY)
 
-    from gambol.controllers.locomotion import picture as draw
-    from gambol.controllers.locomotion import report as in_words
+    from gambol.controllers.locomotion import picture as draw, report as in_words
 
     from ..files import output_file, whole
 

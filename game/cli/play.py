@@ -22,24 +22,20 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          bindings: Hands = None,
          players: Annotated[int, typer.Option(min=1, max=2, help="How many play; a second one may also join later.")] = 1,
          record: Annotated[Path | None, typer.Option(help="Keep the input log in this new .gambol file; by default in out/.")] = None,
-         replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None) -> None:
+         replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
+         hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    from ..input import load as load_bindings
-
     from gambol.controllers.locomotion import Locomotion
     from gambol.controllers.person import person
 
-    from ..app import Opening, Preparing
+    from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
+    from ..input import load as load_bindings
+    from ..session import LogWriter
+    from ..world import methods
 
     pixels, hands = pixels_of(size), load_bindings(bindings)
     walker = Locomotion.load(library)
     controller = in_body(person(walker), character)
-
-    from ..session import LogWriter
-    from ..world import methods
-    from ..app import Play
-    from ..app import OUT, Capture, log_file
-
     tape, clip, database = None, None, None
     if replay is not None:
         tape, controller = replayed(replay, controller)
@@ -51,7 +47,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
 
     def begun() -> Play:
         return Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
-                    preparing=preparing)
+                    preparing=preparing, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)))
     show(Opening(begun, preparing), pixels, preset, log, capture)
 
 
@@ -86,13 +82,10 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
+    from ..app import OUT, Capture, Play, log_file
     from ..input import load as load_bindings
-    from ..session import LogWriter
-    from ..world import methods
-    from ..app import Play
-    from ..world import Recorded
-    from ..app import OUT, Capture, log_file
-    from ..session import Comparison
+    from ..session import Comparison, LogWriter
+    from ..world import Recorded, methods
 
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
@@ -107,8 +100,8 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
 def bindings(file: Hands = None,
              write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
     """Print the keys, buttons and sticks in force, as a file to edit."""
-    from ..input import as_toml, load
     from ..files import output_file, whole
+    from ..input import as_toml, load
 
     text = as_toml(load(file))
     if write is None:

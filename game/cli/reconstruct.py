@@ -87,8 +87,7 @@ def _known(method: str) -> str:
 
 def _named(text: str) -> str:
     """Points by name, a set of the paper spelt out. Mistake for a point that there is not."""
-    from gambol.controllers.reconstruction import SKELETON
-    from gambol.controllers.reconstruction import parse
+    from gambol.controllers.reconstruction import SKELETON, parse
 
     try:
         return ",".join(parse(text, SKELETON).names)

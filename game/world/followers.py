@@ -149,8 +149,7 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
 
     performer: the performer's controller. name, points: of one of the methods.
     """
-    from gambol.controllers.reconstruction import SKELETON
-    from gambol.controllers.reconstruction import Reconstruction
+    from gambol.controllers.reconstruction import SKELETON, Reconstruction
 
     method, controls = methods(name, points)
     someone = performer.walker if isinstance(performer, Recorded) else performer

@@ -61,8 +61,7 @@ class Methods:
         """
         if name not in METHODS:
             raise ValueError(f"no method {name!r}: there are {', '.join(METHODS)}")
-        from gambol.controllers.reconstruction import SKELETON
-        from gambol.controllers.reconstruction import parse
+        from gambol.controllers.reconstruction import SKELETON, parse
 
         controls = parse(points, SKELETON)
         if not self.knows(name, points):
@@ -72,8 +71,7 @@ class Methods:
 
     def starts(self, points: str) -> Starts:
         """Where one begins from such points alone."""
-        from gambol.controllers.reconstruction import SKELETON
-        from gambol.controllers.reconstruction import parse
+        from gambol.controllers.reconstruction import SKELETON, parse
         from gambol.controllers.reconstruction.following import Starts
 
         if points not in self._starts:
@@ -82,8 +80,7 @@ class Methods:
 
     def database(self, progress: Progress | None = None) -> Database:
         """What they learn from."""
-        from gambol.controllers.reconstruction.database import Database
-        from gambol.controllers.reconstruction.database import default_database
+        from gambol.controllers.reconstruction.database import Database, default_database
 
         if self._database is None:
             told = progress or _silent
@@ -101,8 +98,8 @@ def methods(file: str | Path | None = None) -> Methods:
 
 def learnt(name: str, database: Database, controls: ControlPoints, progress: Progress | None = None) -> Any:
     """A method of `METHODS`, ready: nothing of it is compiled or read later. Rivals as they are best on recorded takes."""
-    from gambol.controllers.reconstruction.ours import ours
     from gambol.controllers.reconstruction.evaluation import baseline
+    from gambol.controllers.reconstruction.ours import ours
 
     method = ours(database, controls, progress=progress) if name == "ours" else baseline(name, database, controls)
     rehearse(method, controls)
