@@ -51,7 +51,6 @@ class Opening:
             self.game.tick(seconds)
         elif self.preparing.walks:
             self.game = self.make()
-            self.game.tick(0.0)
         else:
             time.sleep(REST)
 

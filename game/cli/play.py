@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, in_body, learn, person_of, pixels_of, plainly, replayed,
-                   say)
+                   say, unswept)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -25,13 +25,14 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    from gambol.controllers.locomotion import Locomotion
-    from gambol.controllers.person import person
+    with unswept():
+        from gambol.controllers.locomotion import Locomotion
+        from gambol.controllers.person import person
 
-    from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
-    from ..input import load as load_bindings
-    from ..session import LogWriter
-    from ..world import methods
+        from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
+        from ..input import load as load_bindings
+        from ..session import LogWriter
+        from ..world import methods
 
     pixels, hands = pixels_of(size), load_bindings(bindings)
     walker = Locomotion.load(library)
@@ -53,7 +54,8 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
 
 def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:
     """Run a game, or what opens one, in a window until it is over; exit code NO_DISPLAY where none can be opened."""
-    from ..hosts import DisplayError, run_window
+    with unswept():
+        from ..hosts import DisplayError, run_window
 
     try:
         run_window(game, pixels, preset.value)

@@ -31,12 +31,12 @@ def start(began: float) -> dict[str, tuple[float, float]]:
         spent = os.times()
         done[what] = time.time() - began, spent.user + spent.system + spent.children_user + spent.children_system
     after("interpreter")
-    from gambol.controllers.locomotion import Locomotion
-    from gambol.controllers.person import person
-    from gambol.game.cli import main  # noqa: F401, as the command does
-    from gambol.game.hosts import Offscreen
-    from gambol.game.app import Play
-    from gambol.game.app import Opening, Preparing
+    from gambol.game.cli import unswept
+    with unswept():  # as the command does
+        from gambol.controllers.locomotion import Locomotion
+        from gambol.controllers.person import person
+        from gambol.game.app import Opening, Play, Preparing
+        from gambol.game.hosts import Offscreen
     after("imports")
     walker = Locomotion.load()
     preparing = Preparing(walker)

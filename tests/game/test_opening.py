@@ -139,5 +139,6 @@ def test_where_everything_was_compiled_before_nothing_is_waited_for(monkeypatch)
     play = Play(Glide(), preparing=preparing)
     compiled_at_once = Opening(lambda: play, preparing)
     compiled_at_once.tick(0.0)
+    compiled_at_once.tick(0.0)
     preparing.loading.join()
     assert play.jumps
