@@ -1,6 +1,6 @@
 """The moving picture of the README: a walk, a run, a leap and the control space, in a loop.
 
-    python scripts/build_picture.py [-o docs/gambol.webp] [--size 640x360] [--fps 20]
+    python scripts/build/picture.py [-o docs/gambol.webp] [--size 640x360] [--fps 20]
 
 It is cut from the demo (assets/scenarios/demo.toml), without its captions.
 """
@@ -8,7 +8,6 @@ It is cut from the demo (assets/scenarios/demo.toml), without its captions.
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,6 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-sys.path[:0] = [str(Path(__file__).parent.parent)]
 
 from gambol.controllers.person import person
 from gambol.game.cli import learn, pixels_of
