@@ -11,7 +11,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from contextlib import contextmanager
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_type_hints
 
@@ -22,7 +22,7 @@ app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_
                   help="A real-time human character, driven by gamepad, keyboard or script.")
 
 
-class Preset(str, Enum):
+class Preset(StrEnum):
     """How much light and shadow is drawn."""
 
     full = "full"

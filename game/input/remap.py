@@ -103,7 +103,7 @@ def clashes(bindings: Bindings, kind: str = "keys", blamed: Iterable[str] = ()) 
 def as_toml(bindings: Bindings) -> str:
     """The whole table as a file that `load` reads."""
     lines = [HEAD.format(place=user_file())]
-    for kind, known in KINDS.items():
+    for kind in KINDS:
         lines.append(f"[{kind}]")
         rows = [row for row in bindings if row.can_have(kind)]
         wide = max(len(row.action) for row in rows)

@@ -15,7 +15,6 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-
 from gambol.controllers.person import person
 from gambol.game.cli import learn, pixels_of
 from gambol.game.hosts import Offscreen
