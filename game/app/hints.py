@@ -7,11 +7,12 @@ Neither wishes nor worlds know of hints, so a log plays again without them.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+from gambol.controllers.files import whole
 
 from ..files import toml
 from ..hosts import Event, KeyEvent, PadState
@@ -176,11 +177,7 @@ def remembered(file: Path) -> frozenset[str]:
 def remember(file: Path, done: Collection[str]) -> None:
     """Write what was done into a file; where that can't be, one is told again another time."""
     words = ", ".join(f'"{name}"' for name in ORDER if name in done)
-    part = file.with_name(f"{file.name}.{os.getpid()}")
-    try:
+    with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        part.write_text(f"# What Gambol need not teach again; delete this file to be told anew.\ndone = [{words}]\n", "utf-8")
-        part.replace(file)
-    except OSError:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
+        with whole(file) as part:
+            part.write_text(f"# What Gambol need not teach again; delete this file to be told anew.\ndone = [{words}]\n", "utf-8")

@@ -128,7 +128,7 @@ def test_hints_keep_out_of_the_way(taught):
     taught.wants_picture = False
     taught.handle(KeyEvent("BACKSPACE", True))
     wait(taught, 0.2)
-    assert taught.look is not None and not hint(taught), "nor over the past"
+    assert taught.past.look is not None and not hint(taught), "nor over the past"
     assert not hint(Play(Glide())), "nor where nobody asked for them"
 
 

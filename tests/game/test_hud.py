@@ -145,7 +145,7 @@ def test_the_mouse_is_the_panels_where_they_are_and_the_games_elsewhere(game):
     frames(game)
     assert abs(game.now.players[0].camera.wanted_yaw - turned) > 0.1
     button(game, False)
-    assert not game.keyboard.down
+    assert not game.hands.keyboard.down
 
 
 def test_losing_the_window_leaves_nothing_pressed(game):
@@ -155,7 +155,7 @@ def test_losing_the_window_leaves_nothing_pressed(game):
     game.handle(KeyEvent("LEFT_BUTTON", False))
     game.handle(Focus(False))
     frames(game)
-    assert not game.hud.canvas.held
+    assert not game.showing.hud.canvas.held
 
 
 def middle_of(setting):
@@ -185,11 +185,11 @@ def test_a_number_typed_into_a_slider_is_not_played(game):
     button(game, False)
     game.handle(KeyEvent("LEFT_CONTROL", False))
     frames(game)
-    mesh = game.overlays.mesh
+    mesh = game.showing.overlays.mesh
     for key in ("2", "PERIOD", "1", "ENTER"):  # 1 and 2 show and hide the body and the skeleton
         tap(game, key)
     assert game.now.setting("locomotion.acceleration") == pytest.approx(2.1)
-    assert game.overlays.mesh == mesh and not game.overlays.skeleton
+    assert game.showing.overlays.mesh == mesh and not game.showing.overlays.skeleton
 
 
 def test_the_strip_pauses_looks_back_and_plays_on_from_there(game):
@@ -203,13 +203,13 @@ def test_the_strip_pauses_looks_back_and_plays_on_from_there(game):
     click(game, left + 30, bar)
     assert game.now.paused
     click(game, left + 0.5 * width, bar)
-    behind = game.look.behind
-    assert 20 < behind < 110 and game.moment is game.timeline.past[-behind]
+    behind = game.past.look.behind
+    assert 20 < behind < 110 and game.moment is game.past.timeline.past[-behind]
     then = game.moment.after.characters[0].state.ground.copy()
     number = game.now.after.number
     click(game, left + width - 40, bar)
-    assert game.look is None and not game.now.paused and game.now.after.number < number - 10
-    assert np.linalg.norm(game.timeline.past[0].after.characters[0].state.ground[:2] - then[:2]) < 2.0
+    assert game.past.look is None and not game.now.paused and game.now.after.number < number - 10
+    assert np.linalg.norm(game.past.timeline.past[0].after.characters[0].state.ground[:2] - then[:2]) < 2.0
 
 
 def test_every_setting_begins_as_shipped_and_has_something_said_of_it(locomotion):
@@ -255,7 +255,7 @@ def test_panels_look_through_another_size(locomotion):
     game.handle(KeyEvent("W", True))
     assert frames(game, 120).ink is not None
     whole = game.now.after.characters[0]
-    child, signals = acting(whole), Trace().read(game.history)
+    child, signals = acting(whole), Trace().read(game.past.shown)
     assert child.controller is locomotion and child.intent.velocity[0] > whole.intent.velocity[0]
     assert np.abs(signals.blended[-1] - signals.achieved[-30:].mean(0)).max() < 0.3
     assert np.array_equal(signals.asked[-1], whole.intent.velocity) and np.array_equal(signals.achieved[-1], whole.state.velocity)
@@ -317,13 +317,13 @@ def test_a_vertex_that_is_clicked_plays_beside_the_character_until_clicked_again
     left, top, width, height = layout(SIZE, 1.0)["space"]
     for x in np.arange(left + 20, left + width - 20, 7):
         point(game, x, top + 0.4 * height)
-        if game.hud.space.hovered is not None:
+        if game.showing.hud.space.hovered is not None:
             break
-    number = game.hud.space.hovered
+    number = game.showing.hud.space.hovered
     assert number is not None
     button(game, True)
     button(game, False)
-    assert game.hud.space.chosen == number
+    assert game.showing.hud.space.chosen == number
     figures = frames(game).figures
     assert len(figures) == 2 and np.linalg.norm(figures[1].positions[0] - figures[0].positions[0]) > 0.5
     button(game, True)
@@ -356,7 +356,7 @@ def test_two_huds_do_not_mix(game, locomotion):
     tap(game, "F2")
     tap(other, "F5")
     a, b = frames(game).ink, frames(other).ink
-    assert len(a.vertices) > 2 * len(b.vertices) and set(PANELS) == game.panels
+    assert len(a.vertices) > 2 * len(b.vertices) and set(PANELS) == game.showing.panels
     other.close()
     assert frames(game).ink is not None
 

@@ -89,15 +89,15 @@ def test_help_holds_everything_and_escape_closes_it_first(game):
 def test_overlays_and_panels_are_toggled(game):
     for key, name in (("1", "mesh"), ("2", "skeleton"), ("3", "contacts"), ("4", "trail"), ("5", "path"),
                       ("6", "jump"), ("7", "balance"), ("8", "forces")):
-        before = getattr(game.overlays, name)
+        before = getattr(game.showing.overlays, name)
         tap(game, key)
         assert getattr(game.scene((10, 10)).overlays, name) is not before
     tap(game, "F4")
-    assert game.panels == {"plots"}
+    assert game.showing.panels == {"plots"}
     tap(game, "F2")
-    assert not game.panels
+    assert not game.showing.panels
     tap(game, "F2")
-    assert game.panels == {"space", "plots", "quality", "settings"}
+    assert game.showing.panels == {"space", "plots", "quality", "settings"}
 
 
 def test_the_mouse_turns_the_camera_only_while_dragging(game):

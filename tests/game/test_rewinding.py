@@ -20,7 +20,7 @@ def test_rewinding_runs_back_in_real_time_and_stops_where_the_key_is_let_go(game
     assert np.all(np.diff(where) <= 0) and np.diff(where).min() > -0.05, "no jump on the way"
     wait(game, 1.0)
     assert game.moment.after.number == number - 60 and game.now.after.number == number
-    assert game.history[-1] is game.moment and len(game.history) == number - 60 + 1
+    assert game.past.shown[-1] is game.moment and len(game.past.shown) == number - 60 + 1
     assert "1.0 s ago" in text(game)
 
 
@@ -28,7 +28,7 @@ def test_scrubbing_goes_step_by_step_and_then_by_itself(game):
     walked(game)
     number = game.now.after.number
     tap(game, "BACKSPACE")  # let go before a tick has seen it
-    assert game.look is None
+    assert game.past.look is None
     press(game, "BACKSPACE")
     wait(game, 0.5)
     release(game, "BACKSPACE")
@@ -56,7 +56,7 @@ def test_playing_on_from_the_past_branches_there(game):
     release(game, "BACKSPACE")
     then, number = at(game).copy(), game.moment.after.number
     tap(game, "ENTER")
-    assert game.look is None and game.now.after.number == number + 1 and np.linalg.norm(at(game) - then) < 0.05
+    assert game.past.look is None and game.now.after.number == number + 1 and np.linalg.norm(at(game) - then) < 0.05
     press(game, "BACKSPACE")
     wait(game, 0.5)
     release(game, "BACKSPACE")
@@ -72,13 +72,13 @@ def test_a_push_plays_on_but_only_one_made_since(game):
     wait(game, 1.0)
     release(game, "BACKSPACE")
     wait(game, 0.5)
-    assert game.look is not None, "W was down all along"
+    assert game.past.look is not None, "W was down all along"
     release(game, "W")
     wait(game, 0.1)
     number = game.moment.after.number
     press(game, "D")
     wait(game, 0.1)
-    assert game.look is None and number < game.now.after.number <= number + 6
+    assert game.past.look is None and number < game.now.after.number <= number + 6
 
 
 def test_a_past_moment_is_looked_at_from_anywhere_and_nothing_of_it_is_kept(game):
