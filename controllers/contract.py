@@ -6,13 +6,14 @@ replaying, testing and crowds need nothing more than keeping states.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from .body import Pose
+from .body import Pose, Skeleton
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +81,30 @@ class CharacterState:
     previous: Pose | None = None
     elapsed: float = 0.0
 
+    @property
+    def active(self) -> str:
+        """Which of several controllers is on duty, by name; "" where one alone moves it."""
+        return self.memory.active if isinstance(self.memory, Duty) else ""
+
+    @property
+    def refused(self) -> str:
+        """Why what was asked last can't be done, or goes wrong; "" if it can."""
+        return self.memory.refused if isinstance(self.memory, Duty) else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Duty:
+    """The memory of a supervisor: who is on duty. active: a controller's name. memory: its own. why: why it was
+    chosen, in words.
+
+    refused: why what was asked last can't be done, or goes wrong; empty if it can.
+    """
+
+    active: str
+    memory: Any
+    why: str
+    refused: str = ""
+
 
 @dataclass(frozen=True)
 class Status:
@@ -94,18 +119,45 @@ class Unable(ValueError):
 
 
 class Controller(Protocol):
-    """What the world asks of a controller."""
+    """What the world asks of a controller. Whoever inherits from it has the null answers below, and gives what follows them.
+
+    skeleton: what its poses are of. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be tuned. body: what it is drawn in, a
+    `gambol.game.render.Body`. None of each where it has none. parts: the controllers that it is made of, by name.
+    """
+
+    skeleton: Skeleton
+    library: Any = None
+    settings: Any = None
+    body: Any = None
+    parts: Mapping[str, Controller] = MappingProxyType({})
+
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of other controllers, beside the library."""
+        return type(self).__name__
+
+    def tuned(self, settings: Any) -> Controller:
+        """The same controller under other settings; itself where it has none."""
+        return self
+
+    def start(self, ground: Any = (0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
+        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
+        ...
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """How well it could start from here for this intent: 0 not at all … 1 perfectly. Of one that
         is active already: how firmly it holds on."""
+        ...
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state with this controller's own memory, ready to step: it takes over pose and motion as
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
+        ...
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds."""
+        ...
 
     def status(self, state: CharacterState) -> Status:
         """Whether it goes on."""
+        ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from typing import Any
 
 from .contract import Intent
@@ -18,7 +19,7 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
     a standard adult; another height walks as its legs are long. gravity: (3,) [m/s²] of the jumps.
     LibraryError if the library can't be used; ValueError for a physique or gravity that can't be.
     """
-    walker = locomotion if hasattr(locomotion, "step") else Locomotion.load(locomotion)
+    walker = Locomotion.load(locomotion) if locomotion is None or isinstance(locomotion, str | PathLike) else locomotion
     physique = Physique() if physique is None else physique
     factor = physique.size
     return Supervisor({"locomotion": walker if factor == 1.0 else Scaled(walker, factor),
@@ -28,13 +29,13 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
 def rehearse(someone: Any) -> None:
     """One step and one jump of nobody, so that what they compile or load does not halt a game."""
     someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
-    if "jump" in getattr(someone, "controllers", {}):
-        warm_up.rehearse(someone.controllers["jump"])
+    if "jump" in someone.parts:
+        warm_up.rehearse(someone.parts["jump"])
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:
     """The same gaits in another body; a controller that is no person stays as it is."""
-    if "jump" not in getattr(someone, "controllers", {}):
+    if "jump" not in someone.parts:
         return someone
-    walker = someone.controllers["locomotion"]
+    walker = someone.parts["locomotion"]
     return person(walker.controller if isinstance(walker, Scaled) else walker, physique, gravity)

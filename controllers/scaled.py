@@ -13,24 +13,24 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import CharacterState, Intent, Status
+from .contract import CharacterState, Controller, Intent, Status
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
+class Scaled(Controller):
     """A walker in another size. What stands about and jumps is no matter of its own and not passed on.
 
-    controller: keeps the contract, with `start` and `skeleton`. factor: the legs' length over that of
+    factor: the legs' length over that of
     the skeleton it is made for.
     """
 
-    controller: Any
+    controller: Controller
     factor: float
 
     @property
     def kind(self) -> str:
         """What tells its motion from that of other controllers, beside the library."""
-        return getattr(self.controller, "kind", type(self.controller).__name__) + f" × {self.factor:.6f}"
+        return self.controller.kind + f" × {self.factor:.6f}"
 
     @property
     def skeleton(self) -> Skeleton:
@@ -40,12 +40,12 @@ class Scaled:
     @property
     def library(self) -> Any:
         """The controller's gaits."""
-        return getattr(self.controller, "library", None)
+        return self.controller.library
 
     @property
     def settings(self) -> Any:
         """The controller's settings."""
-        return getattr(self.controller, "settings", None)
+        return self.controller.settings
 
     def tuned(self, settings: Any) -> Scaled:
         """The same under other settings."""

@@ -8,27 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from .body import Pose, Skeleton
-from .contract import CharacterState, Controller, Intent, Status, Unable
+from .contract import CharacterState, Controller, Duty, Intent, Status, Unable
 
 
-@dataclass(frozen=True, eq=False)
-class Duty:
-    """Who is on duty. active: a controller's name. memory: its own. why: why it was chosen, in words.
-
-    refused: why what was asked last can't be done, or goes wrong; empty if it can.
-    """
-
-    active: str
-    memory: Any
-    why: str
-    refused: str = ""
-
-
-class Supervisor:
+class Supervisor(Controller):
     """Several controllers as one. The first is where every character starts and what always can go on.
 
     controllers: by name, all for the same skeleton. Characters come singly: for a crowd that only
@@ -36,38 +23,38 @@ class Supervisor:
     """
 
     def __init__(self, controllers: Mapping[str, Controller]):
-        self.controllers = dict(controllers)
-        self.first = next(iter(self.controllers))
+        self.parts: Mapping[str, Controller] = dict(controllers)
+        self.first = next(iter(self.parts))
 
     @property
     def skeleton(self) -> Skeleton:
         """The skeleton that the poses are of."""
-        return self.controllers[self.first].skeleton
+        return self.parts[self.first].skeleton
 
     @property
     def kind(self) -> str:
         """What tells its motion from that of other controllers, beside the library."""
-        return " + ".join(getattr(one, "kind", type(one).__name__) for one in self.controllers.values())
+        return " + ".join(one.kind for one in self.parts.values())
 
     @property
     def library(self) -> Any:
         """The first controller's gaits."""
-        return getattr(self.controllers[self.first], "library", None)
+        return self.parts[self.first].library
 
     @property
     def settings(self) -> Any:
         """The first controller's settings."""
-        return getattr(self.controllers[self.first], "settings", None)
+        return self.parts[self.first].settings
 
     def tuned(self, settings: Any) -> Supervisor:
         """The same under other settings of the first controller."""
         other = copy(self)
-        other.controllers = {**self.controllers, self.first: self.controllers[self.first].tuned(settings)}
+        other.parts = {**self.parts, self.first: self.parts[self.first].tuned(settings)}
         return other
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
-        state = self.controllers[self.first].start(ground, floor)
+        state = self.parts[self.first].start(ground, floor)
         return replace(state, memory=Duty(self.first, state.memory, "it starts here"))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
@@ -76,25 +63,25 @@ class Supervisor:
         own = replace(state, memory=duty.memory)
         duty, own = self._choose(duty, own, intent)
         before = state.pose
-        after, pose = self.controllers[duty.active].step(own, intent, dt)
+        after, pose = self.parts[duty.active].step(own, intent, dt)
         duty = replace(duty, memory=after.memory)
         return replace(after, memory=duty, previous=before, elapsed=dt), pose
 
     def _choose(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState]:
         """Who acts in this step, and the state it starts from."""
-        active = self.controllers[duty.active]
+        active = self.parts[duty.active]
         status = active.status(own)
         # one that ended holds on to nothing
         hold = active.precondition(own, intent) if status.kind == "running" else 0.0
         bids = {name: other.precondition(own, intent)
-                for name, other in self.controllers.items() if name != duty.active}
+                for name, other in self.parts.items() if name != duty.active}
         gone_wrong = "" if status.kind == "done" else status.reason
         refused = "" if intent.leap is None else duty.refused
         for name in sorted(bids, key=bids.get, reverse=True):
             if bids[name] <= hold:
                 break
             try:
-                entered = self.controllers[name].enter(own, intent)
+                entered = self.parts[name].enter(own, intent)
             except Unable as reason:
                 refused = str(reason)
                 continue
@@ -110,13 +97,13 @@ class Supervisor:
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """As good as its best."""
         own = self.active(state)[1]
-        return max(controller.precondition(own, intent) for controller in self.controllers.values())
+        return max(controller.precondition(own, intent) for controller in self.parts.values())
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state under this supervisor, its first controller on duty unless one is already."""
-        if isinstance(state.memory, Duty) and state.memory.active in self.controllers:
+        if isinstance(state.memory, Duty) and state.memory.active in self.parts:
             return state
-        entered = self.controllers[self.first].enter(state, intent)
+        entered = self.parts[self.first].enter(state, intent)
         return replace(entered, memory=Duty(self.first, entered.memory, "it takes over"))
 
     def status(self, state: CharacterState) -> Status:

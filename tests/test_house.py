@@ -197,6 +197,15 @@ def test_no_two_files_are_called_the_same_in_a_wing():
         assert twice <= {"controller"}
 
 
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_nobody_guesses_what_a_controller_has(path):
+    """What the game asks of a controller is in the contract, with a null answer."""
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("getattr", "hasattr"):
+            asked = ast.unparse(node.args[0])
+            assert not re.search(r"(controller|performer|someone|state\.memory)$", asked), ast.unparse(node)
+
+
 def test_nothing_imports_what_imports_it():
     """No ring of modules, however late they import each other."""
     wings = {f"gambol.{wing}" for wing in WINGS}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.body import Pose, forward_kinematics, human
-from gambol.controllers.contract import CharacterState, Intent, Leap, Status, Unable
+from gambol.controllers.contract import CharacterState, Controller, Intent, Leap, Status, Unable
 from gambol.controllers.jump.controller import Jump
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.supervisor import Supervisor
@@ -24,7 +24,7 @@ class Steps:
 
 
 @dataclass
-class StandIn:
+class StandIn(Controller):
     """A controller that bids what it is told and ends when it is told."""
 
     name: str
@@ -123,7 +123,7 @@ def test_walking_jumping_and_walking_on_are_one_motion(person, speed, far):
     arms = [person.skeleton.index(side + part) for side in ("Left", "Right") for part in ("ForeArm", "Hand")]
     jumped = np.array(places)[changes[0] - 2:changes[0] + 8, arms]
     acceleration = np.linalg.norm(jumped[4:] - 2.0 * jumped[2:-2] + jumped[:-4], axis=-1) * (FPS / 2) ** 2
-    usual = person.controllers["locomotion"].library.accelerations["run" if speed > 2.0 else "walk"][arms]
+    usual = person.parts["locomotion"].library.accelerations["run" if speed > 2.0 else "walk"][arms]
     assert (acceleration < 4.0 * usual).all()
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
-from ..contract import CharacterState, Intent, Status
+from ..contract import CharacterState, Controller, Intent, Status
 from ..navigation import floor_at, gap
 from .body import FLAT, GRAVITY, Physique, Start, along, landing_feet, soles, vectors
 from .feasibility import HANDS, Refused, fault
@@ -53,7 +53,7 @@ class Jumping:
         return self.time >= self.plan.touch_down
 
 
-class Jump:
+class Jump(Controller):
     """Jumps to where `intent.leap` says, from rest, a walk or a run.
 
     physique: whose body. gravity: (3,) [m/s²].

@@ -2,17 +2,18 @@
 
 from . import fourier
 from .blend import Blender
-from .build_library import build_library, collect, read_recipe
 from .control_space import SCALE, ControlSpace, thin
 from .controller import DEFAULT_LIBRARY, Locomotion
 from .coverage import picture, report
 from .cycles import ACCELERATION_RATE, joint_acceleration
 from .library import HIPS, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
-from .memory import RUN, Settings
+from .library_build import build_library, collect, read_recipe
+from .memory import RUN, Settings, walks
 from .selection import neighbours, select
 
 __all__ = [
     "ACCELERATION_RATE", "DEFAULT_LIBRARY", "HIPS", "LABELS", "RUN", "SCALE", "Blender", "ControlSpace", "Library",
     "LibraryError", "Locomotion", "Primitive", "Settings", "build_library", "channels", "collect", "fourier",
     "joint_acceleration", "neighbours", "picture", "read_recipe", "reference_rotations", "report", "select", "thin",
+    "walks",
 ]

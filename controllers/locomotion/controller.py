@@ -12,7 +12,8 @@ import numpy as np
 from gambol import assets
 
 from ..body import Pose, Skeleton
-from ..contract import CharacterState, Intent, Status
+from ..contract import CharacterState, Controller, Intent, Status
+from .control_space import ControlSpace
 from .entry import entered
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
@@ -23,7 +24,7 @@ from .velocity_correction import space_of
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
 
 
-class Locomotion:
+class Locomotion(Controller):
     """Walks, turns, strafes, runs and stops by blending a library's primitives.
 
     Holds only what it was built from; every character's state is passed in and out, with any
@@ -55,6 +56,10 @@ class Locomotion:
         other = copy(self)
         other.settings = settings if self.run else settings._replace(run_above=np.inf)
         return other
+
+    def space(self, family: str) -> ControlSpace | None:
+        """The control space of "walk" or "run"; None where the library has no such gaits."""
+        return {"walk": self.walk, "run": self.run}[family]
 
     @property
     def skeleton(self) -> Skeleton:

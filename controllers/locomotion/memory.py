@@ -6,7 +6,7 @@ keeping, copying or rewinding a state is copying a record.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -60,6 +60,11 @@ def legs_of(library: Library) -> Legs:
     at = library.skeleton.index
     return Legs(np.array([at("LeftUpLeg"), at("RightUpLeg")]), at("Spine2"), at("Neck"),
                 np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest)
+
+
+def walks(memory: Any) -> bool:
+    """Whether what a character remembers is a walker's, as `memory_dtype` has it."""
+    return isinstance(memory, np.ndarray | np.void) and {"family", "settled", "weights"} <= set(memory.dtype.names or ())
 
 
 def memory_dtype(primitives: int) -> np.dtype:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, contact_height, contact_points, damp,
                     forward_kinematics, heading_of, human, settle, wrap)
-from ..contract import CharacterState, Intent, Status, Unable
+from ..contract import CharacterState, Controller, Intent, Status, Unable
 from .control_points import ControlPoints
 from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved
 from .pose_vector import SKELETON, decode
@@ -74,7 +74,7 @@ class Following:
     fault: str = ""
 
 
-class Reconstruction:
+class Reconstruction(Controller):
     """Moves a whole body as a few points on it go.
 
     method: whose poses. controls: the points, as the method has them. height: of the body [m]; the performer's points

@@ -2,8 +2,10 @@
 
 from .arm import CameraSettings
 from .dolly import dolly, fixed, on_rail
-from .held import Follow, Orbit, PlayerCamera, between, cycled
+from .follow_camera import Follow
 from .line_of_sight import blocked
+from .orbit_camera import Orbit
+from .player_camera import PlayerCamera, between, cycled
 
 __all__ = [
     "CameraSettings", "Follow", "Orbit", "PlayerCamera", "between", "blocked", "cycled", "dolly", "fixed", "on_rail",

@@ -85,6 +85,14 @@ def angles(way: np.ndarray) -> tuple[float, float, float]:
     return math.atan2(way[0], way[2]), math.atan2(-way[1], flat), math.hypot(flat, way[1])
 
 
+def nearer_to(focus: np.ndarray, ground, level: float, s: CameraSettings, dt: float) -> np.ndarray:
+    """What is looked at, `dt` seconds nearer to the character; slower up and down, where jumps go."""
+    here = np.array([ground[0], level + s.height, ground[1]])
+    nearer = damp(focus, here, s.focus_halflife, dt)
+    nearer[1] = damp(focus[1], here[1], s.level_halflife, dt)
+    return nearer
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Turned:
     """What all cameras have.

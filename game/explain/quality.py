@@ -102,7 +102,7 @@ def quality_of(worlds: Sequence[World], who: int) -> Quality:
     controller, poses = worlds[-1].characters[who].controller, [world.characters[who].state.pose for world in worlds]
     posed = forward_kinematics(controller.skeleton, np.array([pose.root for pose in poses], float),
                                np.array([pose.rotations for pose in poses], float))
-    natural = getattr(getattr(controller, "library", None), "accelerations", None)
+    natural = controller.library and controller.library.accelerations
     return measure(controller.skeleton, *posed, DT, natural)
 
 

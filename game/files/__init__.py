@@ -1,8 +1,9 @@
 """What all that users write and name have in common: TOML files, misspelt names, and paths that results go to."""
 
 from . import toml
+from .did_you_mean import did_you_mean, meant
 from .paths import OutputError, named, output_file, output_folder, whole
 
 __all__ = [
-    "OutputError", "named", "output_file", "output_folder", "toml", "whole",
+    "OutputError", "did_you_mean", "meant", "named", "output_file", "output_folder", "toml", "whole",
 ]

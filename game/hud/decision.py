@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gambol.controllers.locomotion import RUN
+from gambol.controllers.locomotion import RUN, walks
 
 from ..world import Character
 from .on_duty import acting, own
@@ -11,8 +11,7 @@ from .on_duty import acting, own
 def family(character: Character) -> str:
     """What a character is at: "walk", "run" or "rest"; "" where its controller knows no such thing."""
     memory = character.state.memory
-    names = getattr(getattr(memory, "dtype", None), "names", None) or ()
-    if not {"family", "settled"} <= set(names):
+    if not walks(memory):
         return ""
     return "rest" if memory["settled"] else "run" if memory["family"] == RUN else "walk"
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gambol.controllers.locomotion import walks
+
 from ..session import SessionState
 from ..world import RATE, Character, World
 from .on_duty import acting, own
@@ -74,9 +76,8 @@ def recent(moments: Sequence[SessionState]) -> list[World]:
 def weights(character: Character) -> np.ndarray | None:
     """How much of each of its library's P primitives a character's pose has, (P,); None where it blends none."""
     memory = character.state.memory
-    names = getattr(getattr(memory, "dtype", None), "names", None) or ()
     # memory has room for more primitives than there are
-    return memory["weights"][:len(character.controller.library.primitives)] if "weights" in names else None
+    return memory["weights"][:len(character.controller.library.primitives)] if walks(memory) else None
 
 
 def _row(world: World, who: int) -> np.ndarray:

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from gambol.controllers.contract import Duty
 from gambol.controllers.scaled import Scaled
-from gambol.controllers.supervisor import Duty
 
 from ..world import Character
 
@@ -19,7 +19,7 @@ def acting(character: Character) -> Character:
     """
     controller, state, intent = character.controller, character.state, character.intent
     if isinstance(state.memory, Duty):
-        controller = controller.controllers[state.memory.active]
+        controller = controller.parts[state.memory.active]
         state = replace(state, memory=state.memory.memory)
     if isinstance(controller, Scaled):
         state, intent = controller.within(state, intent)
@@ -31,7 +31,7 @@ def own(character: Character) -> np.ndarray:
     """What velocities (v_f, ω, v_l) of the library (3,) are multiplied by to be those of the character's own body."""
     controller = character.controller
     if isinstance(character.state.memory, Duty):
-        controller = controller.controllers[character.state.memory.active]
+        controller = controller.parts[character.state.memory.active]
     root = controller.factor**0.5 if isinstance(controller, Scaled) else 1.0
     return np.array([root, 1.0 / root, root])
 

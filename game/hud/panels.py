@@ -88,7 +88,7 @@ class Hud:
     def ghosts(self, figures: Sequence[Figure], moment: SessionState) -> tuple[Figure, ...]:
         """The figure that plays the chosen primitive beside its character. figures: the moment's own."""
         number, character = self.space.chosen, moment.after.characters[self.who]
-        library = getattr(character.controller, "library", None)
+        library = character.controller.library
         if number is None or "space" not in self.open or library is not self.space.library:
             return ()
         played = ghost(library, number, self.phase, character.state.ground)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gambol.controllers.body import damp
-from gambol.controllers.locomotion import SCALE
+from gambol.controllers.locomotion import SCALE, Locomotion
 
 SEEN = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """Scaled (v_f, ω, v_l) to right, up, away."""
@@ -74,7 +74,7 @@ class Mesh:
     @staticmethod
     def of(controller, name: str) -> Mesh | None:
         """The mesh of a family; None where the controller has no such space."""
-        space = getattr(controller, name, None)
+        space = controller.space(name) if isinstance(controller, Locomotion) else None
         if space is None:
             return None
         edges, _ = space.edges()

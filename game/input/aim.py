@@ -66,7 +66,7 @@ class Aim:
             if self.aiming:
                 x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
-            given_up = self.waiting <= dt or not self.moving and getattr(state.memory, "refused", "")
+            given_up = self.waiting <= dt or not self.moving and state.refused
             return Aim() if given_up else replace(self, waiting=self.waiting - dt)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))

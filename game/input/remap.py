@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from ..files import toml
+from ..files import did_you_mean, toml
 from .bindings import DEFAULT, Binding, Bindings, Mouse, Sticks
 from .key_names import BUTTONS, KEYS
 
@@ -186,7 +186,7 @@ def _unknown(kind: str, table: Mapping[str, tuple[str, ...]]) -> Iterable[str]:
 
 def _near(name: str, known: Iterable[str]) -> str:
     """What somebody may have meant, in words."""
-    return toml.did_you_mean(name, known) or "; `gambol bindings` shows the names"
+    return did_you_mean(name, known) or "; `gambol bindings` shows the names"
 
 
 def _fault(file: str | Path, fault: Mapping[str, Any]) -> str:

@@ -106,7 +106,7 @@ class Script:
         jump, refused = self.moves[self.index].jump, self.refused
         if jump is not None and not self.jumped:
             where = "up" if jump.place is None else "to ({:g}, {:g}, {:g})".format(*jump.place)
-            why = getattr(state.memory, "refused", "") or "it never came to where it could jump from"
+            why = state.refused or "it never came to where it could jump from"
             refused = (*refused, f"no jump {where}: {why}")
         return Script(self.moves, self.index + 1, refused=refused)
 
@@ -161,7 +161,7 @@ class Script:
 
 def jumping(state: CharacterState) -> Any:
     """What somebody who jumps remembers of it; None for everybody else."""
-    return state.memory.memory if getattr(state.memory, "active", "") == "jump" else None
+    return state.memory.memory if state.active == "jump" else None
 
 
 def _from_here(ground: np.ndarray, points) -> Path | None:

@@ -3,8 +3,8 @@
 from . import export, gallery
 from .export import Take, checked, sampled, takes, write
 from .gallery import PAGE, make, plan, write_page
+from .pose_strip import strip
 from .recorder import recorder
-from .strip import strip
 
 __all__ = [
     "PAGE", "Take", "checked", "export", "gallery", "make", "plan", "recorder", "sampled", "strip", "takes", "write",

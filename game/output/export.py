@@ -59,7 +59,7 @@ def takes(frames: Iterable[tuple[World, World, float]]) -> list[Take]:
         _fill(poses[name], count, poses[name][-1])
         _fill(contacts[name], count, contacts[name][-1])
     return [Take(name, who.controller.skeleton, tuple(poses[name]), np.stack(contacts[name]), who.tint,
-                 getattr(who.controller, "body", None)) for name, who in names.items()]
+                 who.controller.body) for name, who in names.items()]
 
 
 def _fill(kept: list, count: int, value: Any) -> None:

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, ValidationError, model_validator
 from gambol.assets import path as asset
 
 from ..camera import blocked, on_rail
-from ..files import toml
+from ..files import did_you_mean, meant, toml
 from ..scene import Prop
 from ..world import STAGES
 from .actors import PROPS, ActorTable, FollowsTable, PropTable, beside_the_file
@@ -130,7 +130,7 @@ def locate(name: str | File) -> File:
         return file
     if str(name) not in shipped():
         raise ScenarioError(f"no scenario is called {str(name)!r}: name a .toml file or one of {', '.join(shipped())}"
-                            + toml.did_you_mean(str(name), shipped()))
+                            + did_you_mean(str(name), shipped()))
     return asset("scenarios", f"{name}.toml")
 
 
@@ -147,7 +147,7 @@ def load(name: str | File) -> Scenario:
 def _told(faults: list[dict]) -> list[dict]:
     """The faults without those that only follow from others."""
     misspelt = {(*fault["loc"][:-1], name) for fault in faults if fault["type"] == "extra_forbidden"
-                for name in toml.meant(fault["loc"][-1], _fields(fault["loc"]))}
+                for name in meant(fault["loc"][-1], _fields(fault["loc"]))}
     return [fault for fault in faults if not (
         # a list whose items are faulty also counts as too short
         fault["type"] == "too_short" and any(f["loc"][:len(fault["loc"])] == fault["loc"] and f is not fault for f in faults)
@@ -180,7 +180,7 @@ def _fault(file: File, fault: dict) -> str:
         where += f"[{part}]" if isinstance(part, int) else f"{'.' if where else ''}{part}"
     kind, text = fault["type"], fault["msg"].removeprefix("Value error, ")
     if kind == "extra_forbidden":
-        text = "there is no such field" + toml.did_you_mean(fault["loc"][-1], _fields(fault["loc"]))
+        text = "there is no such field" + did_you_mean(fault["loc"][-1], _fields(fault["loc"]))
     elif kind == "missing":
         text = "is missing, and needed"
     elif kind == "union_tag_invalid":

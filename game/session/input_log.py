@@ -61,8 +61,7 @@ class Log:
 
 def digest(controller: Any) -> str:
     """What tells the motion of one controller from that of another."""
-    kind = getattr(controller, "kind", type(controller).__name__)
-    library, hashed = getattr(controller, "library", None), hashlib.sha256(kind.encode())
+    library, hashed = controller.library, hashlib.sha256(controller.kind.encode())
     if library is not None:
         for array in (library.velocities, library.coefficients, library.reference):
             hashed.update(np.ascontiguousarray(array))
@@ -90,7 +89,7 @@ class LogWriter:
         self.path, self._file = Path(path), None
         needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file}
         self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
-                      "library": digest(controller), "character": getattr(getattr(controller, "body", None), "name", ""), **needs}
+                      "library": digest(controller), "character": "" if controller.body is None else controller.body.name, **needs}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
 
     @property

@@ -103,5 +103,5 @@ def newcomer(controller: Any, number: int, ground: np.ndarray) -> Character:
 def owners(moment: SessionState, who: int) -> dict[str, Any]:
     """Whose settings player `who` tunes, by the owner's name; None where there is no such owner."""
     player = moment.players[who]
-    return {"locomotion": getattr(moment.after.characters[who].controller, "settings", None),
+    return {"locomotion": moment.after.characters[who].controller.settings,
             "steering": player.steering, "pace": player.pilot.pace, "camera": player.camera.settings}

@@ -87,7 +87,7 @@ def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
         if old.aim.waiting > 0.0 and new.aim == Aim() and jumping(now.state) is None and now is not was:
             seen = preview(was, old.aim, before.after.props)
             why = seen.why if seen is not None else ""
-            lines.append(f"no jump: {why or getattr(was.state.memory, 'refused', '') or 'no foot stood ready'}")
+            lines.append(f"no jump: {why or was.state.refused or 'no foot stood ready'}")
     return tuple(lines)
 
 

@@ -41,7 +41,8 @@ class CentreOfMass:
 
 def jump_of(controller: Any) -> Jump | None:
     """The jumps of a controller; None for one that can't jump."""
-    return getattr(controller, "controllers", {}).get("jump")
+    jump = controller.parts.get("jump")
+    return jump if isinstance(jump, Jump) else None
 
 
 def physique_of(controller: Any) -> Physique:

@@ -29,7 +29,7 @@ class Embodied(Supervisor):
         """A person, or one controller alone, in a body; one of unlikely size is fitted to the standard human's."""
         factor = float(leg_length(body.joints) / leg_length(skin.REST))
         factor = factor if SMALLEST <= factor <= LARGEST else 1.0
-        controllers = getattr(controller, "controllers", {"locomotion": controller})
+        controllers = controller.parts or {"locomotion": controller}
         return Embodied({name: sized(one, factor) for name, one in controllers.items()}, body, factor)
 
 

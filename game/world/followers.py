@@ -22,6 +22,7 @@ from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
 from .learnt_methods import Methods
+from .recorded import Recorded
 
 KEPT = 240
 """How many steps of errors are remembered."""
@@ -114,7 +115,7 @@ def carried(follows: Follows, state: CharacterState, truth: np.ndarray, around: 
     That is the lower one of those below the ankles: a foot that is not over a box yet is not in it. While the follower
     walks by itself it stays on its own floor. truth: (J, 3) [m] of the performer. around: props.
     """
-    if getattr(state.memory, "active", "") != "reconstruction":
+    if state.active != "reconstruction":
         return state
     ankles = truth[[SKELETON.index("LeftFoot"), SKELETON.index("RightFoot")]]
     floor = min(floor_at(x, z, around, y) for x, y, z in ankles)
@@ -142,8 +143,8 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
     performer: the performer's controller. name, points: of one of the methods.
     """
     method, controls = methods(name, points)
-    someone = getattr(performer, "walker", performer)
-    walker = getattr(someone, "controllers", {}).get("locomotion", someone)
+    someone = performer.walker if isinstance(performer, Recorded) else performer
+    walker = someone.parts.get("locomotion", someone)
     height = STATURE * float(performer.skeleton.offsets[0, 1] / SKELETON.offsets[0, 1])
     controllers = {"locomotion": walker, "reconstruction": Reconstruction(
         method, controls, height, starts=methods.starts(points))}

@@ -12,7 +12,7 @@ import numpy as np
 
 from gambol.controllers.body import (HEIGHT_GATE, WALK_SPEEDS, Clip, Pose, Skeleton, contact_height, contact_points,
                                      point_speeds, yaw)
-from gambol.controllers.contract import CharacterState, Intent, Status
+from gambol.controllers.contract import CharacterState, Controller, Intent, Status
 from gambol.controllers.mocap import MotionFileError, load, retarget
 from gambol.controllers.reconstruction import SKELETON, encode
 
@@ -27,7 +27,7 @@ class Playing:
     place: tuple[float, float, float]
 
 
-class Recorded:
+class Recorded(Controller):
     """Plays a clip from its first frame and stays at its last.
 
     clip: at 60 frames a second on the standard human. walker: what walks for those who follow it, when it is gone.

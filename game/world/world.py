@@ -198,5 +198,5 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         drawn.append(Figure(positions, orientations, new.tint, contacts,
                             np.concatenate([old.trail, here]),
                             np.stack([ahead[:, 0], np.full(len(ahead), lift), ahead[:, 1]], -1),
-                            getattr(new.controller, "body", None), opacity=new.opacity))
+                            new.controller.body, opacity=new.opacity))
     return tuple(drawn)

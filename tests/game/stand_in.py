@@ -6,12 +6,12 @@ import numpy as np
 
 from gambol.controllers.body import Pose, Skeleton, human
 from gambol.controllers.body.rotations import yaw
-from gambol.controllers.contract import CharacterState, Intent, Status
+from gambol.controllers.contract import CharacterState, Controller, Intent, Status
 from gambol.controllers.navigation import drift
 
 
 @dataclass(frozen=True, eq=False)
-class Glide:
+class Glide(Controller):
     """Approaches the wished velocity with a half-life [s]; forward kinematics needs nothing else."""
 
     halflife: float = 0.1

@@ -1,13 +1,14 @@
 """Aiming: where the ring goes, what is asked for when the button is let go. No window, no library."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gambol.controllers.contract import Duty
 from gambol.controllers.navigation import drift
 from gambol.game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, Aim
 from gambol.game.input.wish import Wish
@@ -18,16 +19,9 @@ from stand_in import Glide
 HELD, FREE = Wish(jump=True), Wish()
 
 
-@dataclass(frozen=True)
-class Refusing:
-    """What a supervisor remembers, as far as aiming reads it."""
-
-    refused: str = ""
-
-
 def standing(velocity=(0.0, 0.0, 0.0), heading=0.0, refused=""):
     state = Glide().start((1.0, 2.0, heading))
-    return replace(state, velocity=np.array(velocity), memory=Refusing(refused))
+    return replace(state, velocity=np.array(velocity), memory=Duty("glide", None, "", refused))
 
 
 def aimed(wish, seconds, state, aim=Aim(), yaw=0.0):

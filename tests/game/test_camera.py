@@ -11,7 +11,10 @@ from hypothesis import strategies as st
 from gambol.controllers.body.rotations import wrap
 from gambol.game.camera.arm import angles, forward
 from gambol.game.camera.dolly import dolly, fixed, on_rail
-from gambol.game.camera.held import BESIDE, CUT, CameraSettings, Follow, Free, between, cycled
+from gambol.game.camera.arm import CameraSettings
+from gambol.game.camera.fly_camera import Free
+from gambol.game.camera.follow_camera import BESIDE, Follow
+from gambol.game.camera.player_camera import CUT, between, cycled
 from gambol.game.camera.line_of_sight import FLOOR, MARGIN, above_floor, free_way, outside
 from gambol.game.input import Wish
 from gambol.game.scene.scene import Box, Goal, Pillar

@@ -120,7 +120,7 @@ def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monk
     """A folder is in the way of each; whoever would simulate, draw or build fails loudly."""
     def never(*args, **kwargs):
         raise AssertionError("worked in vain")
-    for work in ("gambol.game.scenario.film.run", "gambol.controllers.locomotion.build_library.build_library", "gambol.controllers.locomotion.coverage.report"):
+    for work in ("gambol.game.scenario.run", "gambol.controllers.locomotion.build_library", "gambol.controllers.locomotion.report"):
         monkeypatch.setattr(work, never)
     monkeypatch.setattr(hosts, "Offscreen", never)
     short.write_text(SHORT + '[[actors]]\nname = "B"\n')
@@ -133,7 +133,7 @@ def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monk
 
 
 def test_a_picture_of_a_library_goes_into_a_new_folder(tmp_path, monkeypatch):
-    monkeypatch.setattr("gambol.controllers.locomotion.coverage.picture", lambda library, path: path.write_bytes(b"drawn"))
+    monkeypatch.setattr("gambol.controllers.locomotion.picture", lambda library, path: path.write_bytes(b"drawn"))
     done = gambol("library", "report", "--picture", tmp_path / "new" / "a.png")
     assert done.exit_code == 0 and (tmp_path / "new" / "a.png").exists()
 

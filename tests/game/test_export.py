@@ -106,7 +106,7 @@ class Stage:
 
     def __init__(self, *people):
         from types import SimpleNamespace as S
-        self.characters = [S(name=name, controller=S(skeleton=human()), tint=(1, 1, 1), state=S(
+        self.characters = [S(name=name, controller=S(skeleton=human(), body=None), tint=(1, 1, 1), state=S(
             pose=Pose(np.array([x, 1.0, 0.0]), np.broadcast_to(np.eye(3), (22, 3, 3))), contacts=np.ones(4, bool)))
             for name, x in people]
 

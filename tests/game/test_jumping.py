@@ -14,7 +14,7 @@ from gambol.game.explain.jump import LAYERS, explained
 from gambol.game.explain.jump_preview import CAN, CANNOT, aimed, previewed
 from gambol.game.input.script import jumping
 from gambol.game.input.wish import Wish
-from gambol.game.output.strip import strip
+from gambol.game.output.pose_strip import strip
 from gambol.game.render.sketches import sketched
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import ScenarioError, load
@@ -70,7 +70,7 @@ def same_run(played, monkeypatch):
     def run(wanted, controller):
         assert wanted == scenario, "at another rate it would be another run"
         return iter(frames)
-    monkeypatch.setattr("gambol.game.output.strip.run", run)
+    monkeypatch.setattr("gambol.game.output.pose_strip.run", run)
     return scenario
 
 
@@ -112,7 +112,7 @@ def test_a_child_is_as_large_as_it_is(played):
     _, frames = played
     adult, child, _ = frames[0].before.characters
     assert child.state.pose.root[1] / adult.state.pose.root[1] == pytest.approx(1.2 / 1.741, abs=0.02)
-    assert child.controller.controllers["jump"].physique.mass == 24
+    assert child.controller.parts["jump"].physique.mass == 24
 
 
 def test_a_jump_that_nobody_can_make_is_told_and_the_run_goes_on(played):
@@ -183,7 +183,7 @@ def beyond(somebody):
 
 def test_where_a_jump_is_refused_the_nearest_place_is_one_that_can_be_jumped_to(beyond, somebody):
     timeline, seen = beyond
-    who, jump = timeline.now.after.characters[0], somebody.controllers["jump"]
+    who, jump = timeline.now.after.characters[0], somebody.parts["jump"]
     state = who.controller.active(who.state)[1]
     assert seen.fault and seen.nearest is not None
     assert not previewed(jump, state, Leap(seen.nearest), ()).fault
@@ -197,7 +197,7 @@ def test_where_a_jump_is_refused_the_nearest_place_is_one_that_can_be_jumped_to(
 def test_the_nearest_place_is_not_sought_anew_while_one_aims_the_same_way(beyond, somebody, monkeypatch):
     timeline, seen = beyond
     sought = []
-    monkeypatch.setattr(type(somebody.controllers["jump"]), "nearest", lambda jump, start, place, *_: sought.append(place))
+    monkeypatch.setattr(type(somebody.parts["jump"]), "nearest", lambda jump, start, place, *_: sought.append(place))
     again, = previews(timeline.now, (seen,))
     assert again.nearest is seen.nearest and not sought
     turned = replace(seen, nearest=seen.stand + [0.5, 0.0, 1.5])
@@ -286,7 +286,7 @@ def test_the_ground_pushes_whoever_stands_or_walks_and_nobody_in_the_air(played)
     for frame in frames[:240]:
         new = frame.after.characters[2]
         if jumping(new.state) is None:
-            push = pushed(new, new.controller.controllers["jump"].physique, 9.81)
+            push = pushed(new, new.controller.parts["jump"].physique, 9.81)
             grounded = bool(new.state.contacts.any())
             assert grounded or not push.any()
             shares.append(push[1] / (73.0 * 9.81))

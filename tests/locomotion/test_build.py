@@ -11,7 +11,7 @@ from gambol.controllers.body import human
 from gambol.controllers.body.clip import mirror_index
 from gambol.controllers.body.rotations import log
 from gambol.controllers.locomotion import Library, LibraryError, Locomotion
-from gambol.controllers.locomotion.build_library import Source, build_library, gather, mirrored, read_recipe
+from gambol.controllers.locomotion.library_build import Source, build_library, gather, mirrored, read_recipe
 from gambol.controllers.locomotion.cycles import SAMPLES, cut, track
 from gambol.controllers.mocap import write_bvh
 from playing import FPS, hold, mean_velocity, play
