@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gambol.controllers.body import Pose, Skeleton, exp, human, log, settle
-from gambol.controllers.contract import CharacterState, Intent, Status
+from gambol.controllers.body import Pose, exp, human, log, settle
+from gambol.controllers.contract import CharacterState, Controller, Intent, Status
 from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
 
@@ -42,15 +42,10 @@ class Memory:
     rate: np.ndarray
 
 
-class Wave:
+class Wave(Controller):
     """Lifts the right arm and waves, for as long as it is asked for; everything else stays as it was."""
 
-    kind = "wave"
-
-    @property
-    def skeleton(self) -> Skeleton:
-        """What it moves."""
-        return human()
+    skeleton = human()
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """Better than walking (0.5), for one who stands still and is asked to."""
@@ -90,7 +85,7 @@ class Wave:
 
 def waving_person() -> Supervisor:
     """A person who can wave, too."""
-    return Supervisor({**person().controllers, "wave": Wave()})
+    return Supervisor({**person().parts, "wave": Wave()})
 
 
 def wishes(seconds):
@@ -107,10 +102,9 @@ def main(seconds=8.0, out=None):
     state, duty, poses = somebody.start(), [], []
     for intent in wishes(seconds):
         state, pose = somebody.step(state, intent, 1 / RATE)
-        active, _ = somebody.active(state)
-        if not duty or duty[-1] != active:
-            print(f"{len(duty) / RATE:4.1f} s  {active}: {state.memory.why}")
-        duty.append(active)
+        if not duty or duty[-1] != state.active:
+            print(f"{len(duty) / RATE:4.1f} s  {state.active}: {state.memory.why}")
+        duty.append(state.active)
         poses.append(pose)
     if out:
         film(poses, somebody.skeleton, out)

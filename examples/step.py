@@ -23,12 +23,11 @@ def main(seconds=6.0):
         if tick >= seconds * RATE / 2 and not jumped:
             intent = Intent(intent.velocity, leap=Leap(ahead(state.ground, 1.2)))
         state, pose = somebody.step(state, intent, 1 / RATE)
-        active, _ = somebody.active(state)
-        jumped = jumped or active == "jump"
+        jumped = jumped or state.active == "jump"
         if tick % (RATE // 2) == 0:
             x, z, heading = state.ground
             print(f"{tick / RATE:4.1f} s  at {x:5.2f} {z:5.2f} m, heading {np.degrees(heading):4.0f}°, "
-                  f"pelvis {pose.root[1]:.2f} m high, {active}")
+                  f"pelvis {pose.root[1]:.2f} m high, {state.active}")
     return state
 
 
