@@ -118,6 +118,32 @@ class Unable(ValueError):
     """A controller can't do what is asked from here; the message says why."""
 
 
+LONGEST = 0.1
+"""A step is this long at most [s]."""
+
+
+def seconds(dt: Any) -> float:
+    """The length of a step as a plain number, for kernels are compiled anew for every other kind of number.
+
+    ValueError unless 0 < dt ≤ 0.1; of single precision, too.
+    """
+    plain = float(dt)
+    if not 0.0 < plain < LONGEST * (1.0 + 1e-6):
+        raise ValueError(f"dt must be in (0, {LONGEST:g}] s, got {dt}")
+    return plain
+
+
+HIGHEST = 1e5
+"""No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
+
+
+def level(floor: Any) -> Any:
+    """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±1e5 m."""
+    if not np.all(np.abs(np.asarray(floor, float)) <= HIGHEST):
+        raise ValueError(f"a floor must be a finite height within ±{HIGHEST:g} m, got {floor!r}")
+    return floor
+
+
 class Controller(Protocol):
     """What the world asks of a controller. Whoever inherits from it has the null answers below, and gives what follows them.
 
@@ -155,7 +181,7 @@ class Controller(Protocol):
         ...
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of `dt` seconds."""
+        """One step of `dt` seconds. ValueError unless 0 < dt ≤ 0.1, see `seconds`."""
         ...
 
     def status(self, state: CharacterState) -> Status:

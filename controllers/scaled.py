@@ -8,12 +8,13 @@ where an adult walks.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil
 from typing import Any
 
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import CharacterState, Controller, Intent, Status
+from .contract import LONGEST, CharacterState, Controller, Intent, Status, seconds
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +58,11 @@ class Scaled(Controller):
         return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of `dt` seconds."""
-        new, _ = self.controller.step(self._shrunk(state), self._asked(intent), dt / self.factor**0.5)
+        """One step of `dt` seconds (0 < dt ≤ 0.1; ValueError otherwise)."""
+        own, asked = seconds(dt) / self.factor**0.5, self._asked(intent)
+        new, count = self._shrunk(state), ceil(own / LONGEST - 1e-6)  # a small body's own time may be too long for one
+        for _ in range(count):
+            new, _ = self.controller.step(new, asked, own / count)
         new = self._grown(new)
         return new, new.pose
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from .body import Pose, Skeleton
-from .contract import CharacterState, Controller, Duty, Intent, Status, Unable
+from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, seconds
 
 
 class Supervisor(Controller):
@@ -58,7 +58,8 @@ class Supervisor(Controller):
         return replace(state, memory=Duty(self.first, state.memory, "it starts here"))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of dt seconds by whoever is best for it now."""
+        """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise) by whoever is best for it now."""
+        dt = seconds(dt)
         duty = state.memory
         own = replace(state, memory=duty.memory)
         duty, own = self._choose(duty, own, intent)

@@ -36,7 +36,7 @@ def ready(extra: str = "") -> Path:
 
     Exits with one clear line where that can't be done.
     """
-    if sys.version_info < (3, 11):
+    if sys.version_info < (3, 11):  # noqa: UP036, who has an older one is told so
         sys.exit(f"Gambol needs Python 3.11 or newer; this is {platform.python_version()}")
     _install(extra)
     if platform.system() == "Linux":

@@ -21,7 +21,7 @@ def main() -> int:
         return code
     options, others = for_film(sys.argv[1:])
     print(f"There is no display here, so the demo is filmed into {FILM}"
-          + (f" (where {' '.join(others)} means nothing)" if others else ""), flush=True)
+          + (f" (where {' '.join(others)} means nothing)" if others else "") + ": three minutes or so", flush=True)
     code = _setup.run("-P", "-m", "gambol.game.cli", "render", "demo", "-o", FILM, "--fps", "30", *options)
     if code == 0:
         print(f"Done: copy {FILM} to where you can watch it", flush=True)

@@ -1,4 +1,6 @@
-"""What all tests share: no law is timed, and where the recorded motion lies that some of them read.
+"""What all tests share: which examples laws are tried on, and where the recorded motion lies that some of them read.
+
+The examples are the same in every run; `scripts/seek.py` seeks new ones.
 
 The recorded motion is no part of the project.
 """
@@ -9,16 +11,18 @@ import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, is_hypothesis_test, settings
 
-settings.register_profile("gambol", deadline=None)  # a busy machine breaks no law
+for name, same in (("gambol", True), ("seek", False)):  # a busy machine breaks no law, and fixtures here are values
+    settings.register_profile(name, derandomize=same, database=None, deadline=None, print_blob=True,
+                              suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 settings.load_profile("gambol")
 for library in ("OPENBLAS", "OMP"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")  # threads cost small matrices far more than they save
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
-REHEARSALS = ("-m", "gambol.controllers.jump.warm_up"), ("tests/rehearsal.py",)
+REHEARSALS = ("-c", "from gambol.controllers.jump import Jump, rehearse; rehearse(Jump())"), ("tests/rehearsal.py",)
 
 
 @pytest.fixture(scope="session")
@@ -29,11 +33,24 @@ def shared() -> Path:
     return SHARED
 
 
+def pytest_addoption(parser):
+    parser.addoption("--times", type=int, default=1, help="try each law on so many times the examples")
+
+
+def pytest_collection_modifyitems(config, items):
+    laws = {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}
+    for law in laws if config.option.times > 1 else ():
+        own = law._hypothesis_internal_use_settings
+        law._hypothesis_internal_use_settings = settings(own, max_examples=own.max_examples * config.option.times)
+
+
 def pytest_sessionstart(session):
     """Before tests run on several cores, two programs compile what most of them need: else each core would do it for itself."""
+    if not getattr(session.config.option, "numprocesses", None) or hasattr(session.config, "workerinput"):
+        return
     from gambol.controllers.compiled import cold
 
-    if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput") and cold():
+    if cold():
         print("compiling the motion, once: a minute", flush=True)
         for program in [subprocess.Popen([sys.executable, *one], cwd=ROOT) for one in REHEARSALS]:
             program.wait()

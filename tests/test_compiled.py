@@ -1,4 +1,4 @@
-"""Compiled kernels: as fast the second time, and never those of other sources."""
+"""Compiled kernels: as fast the second time, wherever the sources lie, and never those of other sources or damaged ones."""
 
 import os
 import shutil
@@ -17,8 +17,8 @@ SOURCE = Path(compiled.__file__)
 @pytest.fixture
 def package(tmp_path):
     """A package of two files with kernels, one calling the other, compiled as ours are."""
-    home = tmp_path / "pack"
-    home.mkdir()
+    home = tmp_path / "code" / "pack"
+    home.mkdir(parents=True)
     (home / "__init__.py").write_text("")
     shutil.copy(SOURCE, home / "compiled.py")
     (home / "inner.py").write_text("from .compiled import kernel\n\n@kernel\ndef inner(x):\n    return x + 1\n")
@@ -27,16 +27,40 @@ def package(tmp_path):
     return home
 
 
-def call(package, code="print(outer(1.0), sum(outer.stats.cache_hits.values()))"):
+@pytest.fixture(autouse=True)
+def kept(tmp_path, monkeypatch):
+    """A folder of the tests' own for what is compiled."""
+    monkeypatch.setenv("GAMBOL_CACHE", str(tmp_path / "kept"))
+    return tmp_path / "kept"
+
+
+CALLED = "print(outer(1.0), sum(outer.stats.cache_hits.values()))"
+
+
+def begun(package, code=CALLED):
+    """A new process that has the package and runs some code."""
+    return subprocess.Popen([sys.executable, "-c", f"from pack.outer import outer\nimport pack.compiled as c\n{code}"],
+                            cwd=package.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def call(package, code=CALLED):
     """What some code prints in a new process that has the package."""
-    done = subprocess.run([sys.executable, "-c", f"from pack.outer import outer\nimport pack.compiled as c\n{code}"],
-                          cwd=package.parent, capture_output=True, text=True, timeout=100)
-    assert done.returncode == 0, done.stderr
-    return done.stdout.split()
+    program = begun(package, code)
+    said, fault = program.communicate()
+    assert program.returncode == 0, fault
+    return said.split()
 
 
-def folders(package):
-    return sorted(p.name for p in (package / "__pycache__").glob("kernels-*"))
+def folders(kept):
+    return sorted(kept.glob("kernels-*"))
+
+
+def changed(path, before, after):
+    """Another text in a file, a second later, or Python's own cache would not see it."""
+    text, then = path.read_text(), path.stat().st_mtime_ns + 10**9
+    assert before in text
+    path.write_text(text.replace(before, after))
+    os.utime(path, ns=(then, then))
 
 
 def test_a_kernel_is_compiled_once_for_all_constants(package):
@@ -46,46 +70,94 @@ def test_a_kernel_is_compiled_once_for_all_constants(package):
     assert call(package, "from pack.inner import inner; print(outer(1.0), len(inner.signatures))") == ["8", "1"]
 
 
-def touch(path, text):
-    """Rewrite a file so that its time differs, as an editor would."""
-    before = path.stat().st_mtime_ns
-    path.write_text(text)
-    os.utime(path, ns=(before + 10**9, before + 10**9))
-
-
-def test_kernels_are_kept_and_found_again(package):
+def test_kernels_are_kept_and_found_again(package, kept):
     assert call(package) == ["20.0", "0"]
-    first = folders(package)
-    assert len(first) == 1 and list((package / "__pycache__" / first[0]).rglob("*.nbi"))
+    first, = folders(kept)
+    assert len(list(first.glob("*.nbc"))) == 2 and len(list(first.iterdir())) == 2, "and nothing half written"
     assert call(package) == ["20.0", "1"], "found in the cache"
-    assert folders(package) == first
+    assert folders(kept) == [first]
 
 
-def test_a_change_in_another_file_is_seen(package):
-    """The callee changes and the caller does not: numba alone would run the old one."""
+def test_copies_with_other_times_share_one_cache(package, kept, tmp_path):
+    """A checkout, an installation and the tests: what counts is what the files hold."""
     call(package)
-    touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 1", "x + 2"))
+    other = shutil.copytree(package, tmp_path / "elsewhere" / "pack")
+    for n, path in enumerate(other.glob("*.py")):
+        os.utime(path, (10.0**9 + n, 10.0**9 + n))
+    assert call(other) == ["20.0", "1"]
+    assert len(folders(kept)) == 1
+
+
+def test_a_change_in_another_file_is_seen(package, kept):
+    """The callee changes by one byte and the caller does not: numba alone would run the old one."""
+    call(package)
+    changed(package / "inner.py", "x + 1", "x + 2")
     assert call(package) == ["30.0", "0"]
-    assert len(folders(package)) == 2
+    assert len(folders(kept)) == 2
 
 
-def test_folders_that_nobody_used_for_a_day_go_and_younger_ones_stay(package):
-    """A younger one may belong to a program that still compiles into it."""
+@pytest.mark.parametrize("damage", (lambda data: b"", lambda data: data[:3], lambda data: data[:len(data) // 2],
+                                    lambda data: b"garbage" * 1000, lambda data: data[:-100] + bytes(100),
+                                    lambda data: b"\0\0\0\0"),
+                         ids=("emptied", "torn off at once", "torn in two", "garbage", "a block of zeros", "only zeros"))
+def test_what_is_damaged_is_compiled_anew(package, kept, damage):
     call(package)
-    first, = folders(package)
-    touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 1", "x + 2"))
-    call(package)
-    assert first in folders(package)
-    aged(package / "__pycache__" / first)
-    touch(package / "inner.py", (package / "inner.py").read_text().replace("x + 2", "x + 3"))
-    call(package)
-    assert first not in folders(package)
+    files = sorted(folders(kept)[0].glob("*.nbc"))
+    for path in files:
+        path.write_bytes(damage(path.read_bytes()))
+    assert call(package) == ["20.0", "0"], "not found, and not fatal"
+    assert call(package) == ["20.0", "1"], "and whole again"
+    assert sorted(folders(kept)[0].glob("*.nbc")) == files
 
 
-def aged(folder):
-    """A folder as if nobody had touched it for two days."""
-    then = time.time() - 2 * 86400.0
-    os.utime(folder, (then, then))
+def test_several_programs_may_compile_the_same_at_once(package, kept):
+    programs = [begun(package) for _ in range(4)]
+    for program in programs:
+        said, fault = program.communicate()
+        assert program.returncode == 0 and said.startswith("20.0"), fault
+    assert len(list(folders(kept)[0].iterdir())) == 2
+    assert call(package) == ["20.0", "1"]
+
+
+def test_where_nothing_can_be_kept_it_runs_all_the_same(package, kept, tmp_path):
+    """And leaves nothing behind."""
+    kept.write_text("a file stands where the folder should be")
+    folder, *ran = call(package, f"print(c.cache_home())\n{CALLED}")
+    assert ran == ["20.0", "0"] and not Path(folder).exists()
+
+
+def test_a_full_disk_keeps_nothing_and_ends_nothing(package, kept):
+    assert call(package, f"import os\ndef full(*paths): raise OSError(28, 'no space left')\nc.os.replace = full\n{CALLED}") == [
+        "20.0", "0"]
+    assert list(folders(kept)[0].iterdir()) == []
+
+
+def versions(package, kept, count):
+    """The folders of so many versions of the sources, of which all but the last were used days ago, the first first."""
+    found = []
+    for n in range(count):
+        changed(package / "inner.py", f"x + {n + 1}", f"x + {n + 2}")
+        call(package)
+        found += [folder for folder in folders(kept) if folder not in found]
+    for n, folder in enumerate(found[:-1]):
+        then = time.time() - (20 - n) * 86400.0
+        os.utime(folder, (then, then))
+    return found
+
+
+def test_old_versions_that_nobody_used_go_but_for_the_last_few(package, kept):
+    found = versions(package, kept, 5)
+    call(package)
+    assert set(folders(kept)) == set(found[-3:])
+
+
+def test_versions_that_were_used_today_stay(package, kept):
+    """One may belong to a program that still runs; and to use one is enough, nothing need be compiled for it."""
+    found = versions(package, kept, 5)
+    for n in range(5, 1, -1):  # back to the first version
+        changed(package / "inner.py", f"x + {n + 1}", f"x + {n}")
+    assert call(package)[1] == "1"
+    assert found[0] in folders(kept)
 
 
 def names(package, *changes):
@@ -98,14 +170,15 @@ def names(package, *changes):
 
 
 def test_the_folder_is_named_after_all_sources(package):
-    deep = package / "room" / "deep.py"
+    deep, moved = package / "room" / "deep.py", package / "room" / "deeper.py"
 
     def add():
         deep.parent.mkdir()
         deep.write_text("")
-    found = names(package, add, lambda: touch(deep, "# same length"), lambda: touch(deep, "# SAME length"), deep.unlink)
-    assert len(set(found[:4])) == 4, "added, changed in length, changed in time"
-    assert found[4] == found[0], "and taken away again"
+    found = names(package, add, lambda: deep.write_text("# same length"), lambda: deep.write_text("# SAME length"),
+                  lambda: deep.rename(moved), moved.unlink)
+    assert len(set(found[:5])) == 5, "added, changed in length, changed in content, renamed"
+    assert found[5] == found[0], "and taken away again"
 
 
 def test_what_is_no_source_does_not_matter(package):
@@ -119,27 +192,22 @@ def test_another_numba_has_another_folder(package):
     assert one != other
 
 
-def test_installations_that_cant_be_written_to_keep_their_kernels_at_home_apart(package, tmp_path):
-    """Each clears what is old of its own, and nothing of another."""
-    other = shutil.copytree(package, tmp_path / "elsewhere" / "pack")
-    home = tmp_path / "home"
-
-    def cached(package):
-        found, = call(package, f"""
-c.os.access = lambda *a: False
-c.Path.home = lambda: c.Path({str(home)!r})
-c.cache_folder.cache_clear()
-c.cache_folder().mkdir(parents=True, exist_ok=True)
-print(c.cache_folder())""")
-        return Path(found)
-    mine, theirs = cached(package), cached(other)
-    assert mine.is_dir() and theirs.is_dir() and mine != theirs
-    assert home / ".cache" / "gambol" in mine.parents and home / ".cache" / "gambol" in theirs.parents
-    aged(mine)
-    aged(theirs)
-    touch(package / "inner.py", "# another\n" + (package / "inner.py").read_text())
-    newer = cached(package)
-    assert newer.is_dir() and not mine.exists() and theirs.is_dir()
+@pytest.mark.parametrize("platform, places, expected", (
+    ("linux", {}, "~/.cache/gambol"),
+    ("linux", {"XDG_CACHE_HOME": "/cache/mine"}, "/cache/mine/gambol"),
+    ("linux", {"XDG_CACHE_HOME": "relative"}, "~/.cache/gambol"),
+    ("darwin", {}, "~/Library/Caches/gambol"),
+    ("win32", {"LOCALAPPDATA": "/C/Local"}, "/C/Local/gambol"),
+    ("win32", {"GAMBOL_CACHE": "/D/mine"}, "/D/mine"),
+    ("linux", {"GAMBOL_CACHE": "~/mine"}, "~/mine"),
+))
+def test_it_lies_where_programs_keep_such_things(monkeypatch, platform, places, expected):
+    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "GAMBOL_CACHE"):
+        monkeypatch.delenv(name, raising=False)
+    for name, place in places.items():
+        monkeypatch.setenv(name, place)
+    monkeypatch.setattr(compiled.sys, "platform", platform)
+    assert compiled.usual_home() == Path(expected).expanduser()
 
 
 def test_the_setting_of_others_is_left_as_it_was(package):

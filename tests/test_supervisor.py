@@ -1,14 +1,20 @@
 """The supervisor picks, keeps and falls back, and nobody sees the hand-over."""
 
+import re
+import sys
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from gambol.controllers.body import Pose, forward_kinematics, human
 from gambol.controllers.contract import CharacterState, Controller, Intent, Leap, Status, Unable
+from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.controller import Jump
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.locomotion.memory import Settings
+from gambol.controllers.scaled import Scaled
 from gambol.controllers.supervisor import Supervisor
 
 FPS = 60
@@ -125,6 +131,62 @@ def test_walking_jumping_and_walking_on_are_one_motion(person, speed, far):
     acceleration = np.linalg.norm(jumped[4:] - 2.0 * jumped[2:-2] + jumped[:-4], axis=-1) * (FPS / 2) ** 2
     usual = person.parts["locomotion"].library.accelerations["run" if speed > 2.0 else "walk"][arms]
     assert (acceleration < 4.0 * usual).all()
+
+
+def compiled():
+    """For how many kinds of arguments each kernel was compiled."""
+    return {f"{name}.{key}": len(value.signatures) for name, module in list(sys.modules.items()) if "controllers" in name
+            for key, value in vars(module).items() if hasattr(value, "signatures")}
+
+
+def leaping(someone, dt, airtime=None):
+    """Somebody takes a step and leaps, all in steps of dt seconds."""
+    state, active = someone.start(), set()
+    for k in range(60):
+        leap = Leap(np.array([0.0, 0.0, 0.05]), airtime) if 2 < k < 12 else None
+        state, _ = someone.step(state, Intent(leap=leap), dt)
+        active.add(state.memory.active)
+    assert active == {"locomotion", "jump"}, state.memory.refused
+    return state
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64, np.float16, np.array, Fraction])
+def test_a_step_of_any_kind_of_number_compiles_nothing_anew(person, kind):
+    dt, airtime = kind(0.0625), kind(0.5)
+    plain = leaping(person, 0.0625, 0.5)
+    before = compiled()
+    assert sum(before.values()) > 20
+    odd = leaping(person, dt, airtime)
+    assert compiled() == before
+    np.testing.assert_array_equal(odd.pose.rotations, plain.pose.rotations)
+    assert type(odd.elapsed) is float
+
+
+def test_bodies_and_settings_of_whole_numbers_compile_nothing_anew():
+    def someone(physique, settings):
+        return Supervisor({"locomotion": Locomotion.load().tuned(settings), "jump": Jump(physique)})
+    leaping(someone(Physique(80.0, strength=2.0), Settings(acceleration=4.0)), 1 / 60)
+    before = compiled()
+    leaping(someone(Physique(80, strength=np.float32(2)), Settings(acceleration=4, footing=1, breath=0)), 1 / 60)
+    assert compiled() == before
+
+
+@pytest.mark.parametrize("dt", [0, 1, -1, 0.0, -0.1, 0.1001, np.nan, np.inf, np.float32(np.nan), np.float32(0.11)])
+def test_a_step_that_is_none_is_refused_at_the_door(person, dt):
+    leap = Intent(leap=Leap(np.array([0.0, 0.0, 0.5])))
+    for someone in (person, Scaled(person.controllers["locomotion"], 0.7)):
+        with pytest.raises(ValueError, match=re.escape("dt must be in (0, 0.1] s, got ")):
+            someone.step(someone.start(), leap, dt)
+
+
+@pytest.mark.parametrize("dt", [0.1, np.float32(0.1)])
+def test_the_longest_step_is_one_for_bodies_of_all_sizes(person, dt):
+    for size in (0.3, 0.7, 1.0, 1.5):
+        child = Scaled(person.controllers["locomotion"], size)
+        state = child.start()
+        for _ in range(20):
+            state, pose = child.step(state, Intent(np.array([0.5, 0.0, 0.0])), dt)
+        assert np.isfinite(pose.root).all() and state.ground[1] > 0.5
 
 
 def test_nothing_changes_the_state_that_was_stepped(person):

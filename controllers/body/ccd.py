@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import kernel
+from .damped_least_squares import chain_kernel, distance_kernel, together_kernel
 from .rotation_kernels import exp_kernel, log_kernel
 
 ITERATIONS = 100
@@ -42,7 +43,8 @@ class Reach(NamedTuple):
 def reach(root: np.ndarray, base: np.ndarray, bones: np.ndarray, turns: np.ndarray, goal: np.ndarray,
           lower: np.ndarray, upper: np.ndarray, *, iterations: int = ITERATIONS,
           tolerance: float = TOLERANCE) -> Reach:
-    """Turn the joints of a chain so that its end comes as near to `goal` (..., 3) [m] as it can.
+    """Turn the joints of a chain so that its end comes as near to `goal` (..., 3) [m] as it can:
+    nearer than `tolerance` [m] to every place to which its limits let it.
 
     root: (..., 3) [m] the first joint. base: (..., 3, 3) the orientation of what it turns against.
     bones: (N, 3) [m] from each joint to the next, the last to the end, in the joint's own frame.
@@ -82,8 +84,8 @@ def ccd_kernel(root, base, bones, lower, upper, goal, iterations, tolerance, tur
     for k in range(n):
         for i in range(3):
             turns[k, i] = min(max(turns[k, i], lower[k, i]), upper[k, i])
-    _place(root, base, bones, turns, joints, orientations, 0)
-    gap = _apart(joints[n], goal)
+    chain_kernel(root, base, bones, turns, joints, orientations, 0)
+    gap = distance_kernel(joints[n], goal)
     best, least = turns.copy(), gap
     last, longer = np.empty((n, 3)), np.empty((n, 3))
     e, d = np.empty(3), np.empty(3)
@@ -104,8 +106,8 @@ def ccd_kernel(root, base, bones, lower, upper, goal, iterations, tolerance, tur
                         e[i] += parent[m, i] * (joints[n, m] - joints[k, m])
                         d[i] += parent[m, i] * (goal[m] - joints[k, m])
                 if _turn_joint(e, d, lower[k], upper[k], turns[k]):
-                    _place(root, base, bones, turns, joints, orientations, k)
-            gap = _apart(joints[n], goal)
+                    chain_kernel(root, base, bones, turns, joints, orientations, k)
+            gap = distance_kernel(joints[n], goal)
             # nearly straight chains creep, ever in the same direction: see where that leads
             size = 0.0
             for k in range(n):
@@ -117,13 +119,13 @@ def ccd_kernel(root, base, bones, lower, upper, goal, iterations, tolerance, tur
                 for k in range(n):
                     for i in range(3):
                         longer[k, i] = min(max(turns[k, i] + ahead * (turns[k, i] - last[k, i]), lower[k, i]), upper[k, i])
-                _place(root, base, bones, longer, joints, orientations, 0)
-                there = _apart(joints[n], goal)
+                chain_kernel(root, base, bones, longer, joints, orientations, 0)
+                there = distance_kernel(joints[n], goal)
                 if there < gap:
                     turns[:] = longer
                     gap = there
                 else:
-                    _place(root, base, bones, turns, joints, orientations, 0)
+                    chain_kernel(root, base, bones, turns, joints, orientations, 0)
             step = size
             if before - gap < 0.01 * tolerance:
                 break
@@ -139,12 +141,11 @@ def ccd_kernel(root, base, bones, lower, upper, goal, iterations, tolerance, tur
                 else:
                     bent = 0.5 * (max(lower[k, i], -math.pi) + min(upper[k, i], math.pi))
                 turns[k, i] = min(max(bent, lower[k, i]), upper[k, i])
-        _place(root, base, bones, turns, joints, orientations, 0)
-        gap = _apart(joints[n], goal)
-    if gap > least:
-        turns[:] = best
-        _place(root, base, bones, turns, joints, orientations, 0)
-    return min(gap, least)
+        chain_kernel(root, base, bones, turns, joints, orientations, 0)
+        gap = distance_kernel(joints[n], goal)
+    if least >= tolerance:
+        least = together_kernel(root, base, bones, lower, upper, goal, tolerance, best, least, turns, joints, orientations)
+    return least
 
 
 @kernel
@@ -152,23 +153,6 @@ def _reach_all(root, base, turns, goal, bones, lower, upper, iterations, toleran
     for n in range(len(root)):
         gaps[n] = ccd_kernel(root[n], base[n], bones, lower, upper, goal[n], iterations, tolerance, turns[n],
                              joints[n], orientations[n])
-
-
-@kernel
-def _place(root, base, bones, turns, joints, orientations, first):
-    """Forward kinematics of a chain from joint `first` on."""
-    own = np.empty((3, 3))
-    for k in range(first, len(bones)):
-        parent = base if k == 0 else orientations[k - 1]
-        if k == 0:
-            joints[0, 0], joints[0, 1], joints[0, 2] = root[0], root[1], root[2]
-        exp_kernel(turns[k, 0], turns[k, 1], turns[k, 2], own)
-        for i in range(3):
-            joints[k + 1, i] = joints[k, i]
-            for m in range(3):
-                orientations[k, i, m] = (parent[i, 0] * own[0, m] + parent[i, 1] * own[1, m] + parent[i, 2] * own[2, m])
-            for m in range(3):
-                joints[k + 1, i] += orientations[k, i, m] * bones[k, m]
 
 
 @kernel
@@ -287,11 +271,6 @@ def _search(own, d, lower, upper, turn):
             if value > best:
                 best, where = value, guess
         turn[i] = where
-
-
-@kernel
-def _apart(a, b):
-    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
 @kernel

@@ -77,7 +77,7 @@ def forward_kinematics(skeleton: Skeleton, root: np.ndarray, rotations: np.ndarr
         raise ValueError(f"rotations of shape {rotations.shape} do not fit {count} joints: "
                          f"expected (..., {count}, 3, 3)")
     local = np.ascontiguousarray(rotations.reshape(-1, count, 3, 3))
-    start = np.ascontiguousarray(np.broadcast_to(root, batch + (3,)).reshape(-1, 3), local.dtype)
+    start = np.array(np.broadcast_to(root, batch + (3,)).reshape(-1, 3), local.dtype, order="C")  # a view would compile anew
     positions, orientations = np.empty((len(local), count, 3), local.dtype), np.empty_like(local)
     _kinematics(skeleton.parents, skeleton.offsets.astype(local.dtype), start, local,
                 positions, orientations)

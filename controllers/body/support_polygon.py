@@ -94,7 +94,7 @@ def hull_kernel(points, count, out):
     for i in range(count):
         size = max(size, abs(points[i, 0] - points[0, 0]), abs(points[i, 1] - points[0, 1]))
     if count == 0 or size == 0.0:
-        for i in range(min(count, 1)):
+        for _ in range(min(count, 1)):
             out[0, 0], out[0, 1] = points[0, 0], points[0, 1]
         return min(count, 1)
     flat = 1e-12 * size * size  # turns by less are rounding

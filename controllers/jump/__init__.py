@@ -2,11 +2,11 @@
 flight, landing, and take-offs from a run. A jump is planned whole, then played; see `planner`.
 """
 
-from . import warm_up
 from .body import GRAVITY, Physique
 from .controller import FRESH, RUNNING, Jump, Jumping
 from .feasibility import Refused
+from .warm_up import rehearse
 
 __all__ = [
-    "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "warm_up",
+    "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "rehearse",
 ]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
-from ..contract import CharacterState, Controller, Intent, Status
+from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from ..navigation import floor_at, gap
 from .body import FLAT, GRAVITY, Physique, Start, along, landing_feet, soles, vectors
 from .feasibility import HANDS, Refused, fault
@@ -31,6 +31,8 @@ CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
 """For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
 FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
+PULLS = 0.1, 100.0
+"""How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
 MOST_HITS = 3
@@ -56,7 +58,7 @@ class Jumping:
 class Jump(Controller):
     """Jumps to where `intent.leap` says, from rest, a walk or a run.
 
-    physique: whose body. gravity: (3,) [m/s²].
+    physique: whose body. gravity: (3,) [m/s²], see PULLS. ValueError for another.
     Pre-condition: both feet stand, or one of a runner has just struck; the target is within reach
     (path, strength, room). Post-condition: it stands on both feet over the target, or still moves
     forward over them with the velocity that the state says. Expected performance: nothing comes in
@@ -66,9 +68,9 @@ class Jump(Controller):
     def __init__(self, physique: Physique = Physique(), gravity=GRAVITY):
         self.physique = physique
         self.gravity = np.asarray(gravity, float)
-        if self.gravity.shape != (3,) or not np.isfinite(self.gravity).all() or not self.gravity[1] < -0.1 \
+        if self.gravity.shape != (3,) or not np.isfinite(self.gravity).all() or not PULLS[0] <= -self.gravity[1] <= PULLS[1] \
                 or np.hypot(self.gravity[0], self.gravity[2]) > 1e-9:
-            raise ValueError(f"gravity must pull straight down by 0.1 m/s² or more, got {gravity!r}")
+            raise ValueError(f"gravity must pull straight down by {PULLS[0]:g} … {PULLS[1]:g} m/s², got {gravity!r}")
 
     @property
     def skeleton(self) -> Skeleton:
@@ -99,7 +101,7 @@ class Jump(Controller):
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
         """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
         leap = intent.leap
-        start, floor = self.start_of(state), float(state.floor)
+        start, floor = self.start_of(state), float(level(state.floor))
         here = self.middle(start, floor)
         place = here if leap.place is None else np.asarray(leap.place, float)
         if place.shape != (3,) or not np.isfinite(place).all():
@@ -222,8 +224,8 @@ class Jump(Controller):
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
-        if not 0.0 < dt <= 0.1:
-            raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
+        dt = seconds(dt)
+        level(state.floor)
         jumping: Jumping = state.memory
         made, time = jumping.plan, min(jumping.time + dt, jumping.plan.duration)
         pose = made.at(time)

@@ -1,4 +1,4 @@
-"""A jump of nobody: `python -m gambol.controllers.jump.warm_up` compiles the jump's kernels, beside what else compiles."""
+"""A jump of nobody, which compiles the jump's kernels."""
 
 from __future__ import annotations
 
@@ -19,6 +19,3 @@ def rehearse(jump: Jump) -> None:
     jump.step(jump.enter(state, intent), intent, 1.0 / 60.0)
     measures(jump.physique, low_arms=True)  # found once a body
 
-
-if __name__ == "__main__":
-    rehearse(Jump())

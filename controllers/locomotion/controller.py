@@ -12,12 +12,12 @@ import numpy as np
 from gambol import assets
 
 from ..body import Pose, Skeleton
-from ..contract import CharacterState, Controller, Intent, Status
+from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from .control_space import ControlSpace
 from .entry import entered
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
-from .memory import Settings, legs_of, memory_dtype, put
+from .memory import Settings, legs_of, memory_dtype, plain, put
 from .step import step_kernel
 from .velocity_correction import space_of
 
@@ -33,12 +33,12 @@ class Locomotion(Controller):
 
     def __init__(self, library: Library, settings: Settings = Settings()):
         self.library = library
-        self.settings = settings
+        self.settings = plain(settings)
         self.walk = space_of(library, "walk")
         runs = library.family("run")
         self.run = space_of(library, "run")
         if self.run is None:  # no runs recorded: walking serves at any speed
-            self.settings = settings._replace(run_above=np.inf)
+            self.settings = self.settings._replace(run_above=np.inf)
         self.tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
                         space_tables(self.run, runs) if self.run else
                         space_tables(self.walk, library.family("walk")),
@@ -54,7 +54,7 @@ class Locomotion(Controller):
     def tuned(self, settings: Settings) -> Locomotion:
         """The same controller under other settings; all that was built from the library is shared."""
         other = copy(self)
-        other.settings = settings if self.run else settings._replace(run_above=np.inf)
+        other.settings = plain(settings if self.run else settings._replace(run_above=np.inf))
         return other
 
     def space(self, family: str) -> ControlSpace | None:
@@ -69,6 +69,7 @@ class Locomotion(Controller):
     def start(self, ground=(0.0, 0.0, 0.0), floor=0.0) -> CharacterState:
         """A character at rest at ground (..., 3) x, z [m], heading [rad], on a floor (...) [m] high.
         ValueError unless finite."""
+        level(floor)
         ground = np.asarray(ground, float)
         if ground.shape[-1:] != (3,) or not np.isfinite(ground).all():
             raise ValueError(f"ground must be finite (..., 3) x, z, heading; got {ground!r}")
@@ -99,8 +100,8 @@ class Locomotion(Controller):
         turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
         turns or side-steps less.
         """
-        if not 0.0 < dt <= 0.1:
-            raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
+        dt = seconds(dt)
+        level(state.floor)
         memory = self._memory(state).reshape(-1)
         shape = state.memory.shape
         wish = np.empty((len(memory), 3))

@@ -11,8 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.ndimage import uniform_filter1d
 
 from ..body import CONTACT_HEIGHT, Clip, advance, compose, contact_points, relative, rotations as rot, screw
 
@@ -75,6 +73,8 @@ class Track:
 
 def track(clip: Clip) -> Track:
     """Ground frame and foot points of a clip that already is on the standard human."""
+    from scipy.ndimage import uniform_filter1d  # here, as below: only who builds a library needs these parts of scipy
+
     acceleration = joint_acceleration(clip.kinematics()[0], clip.frame_time)
     clip = clip.resample(RATE)
     positions, orientations = clip.kinematics()
@@ -139,6 +139,8 @@ def cut(track: Track, family: str) -> list[Cycle]:
 
 def _labels(track: Track, feet: np.ndarray, family: str) -> np.ndarray:
     """How much each point stands (T, 4) in 0 … 1: edges softened over 60 ms, gone in the swing."""
+    from scipy.ndimage import uniform_filter1d
+
     low = track.points[..., 1] < CONTACT_HEIGHT + CONTACT_GATE
     point = low & (track.speeds < STANDING_SPEED[family]) & np.repeat(feet, 2, axis=1)
     return uniform_filter1d(point.astype(float), int(0.06 * RATE), axis=0)
@@ -164,6 +166,8 @@ def warp(events: np.ndarray, canonical: np.ndarray, phase: np.ndarray) -> tuple[
 
     events, canonical: (4,) when the events fall in this cycle and on the common phase.
     """
+    from scipy.interpolate import PchipInterpolator
+
     turns = np.arange(-2, 3)[:, None]
     curve = PchipInterpolator((canonical + turns).ravel(), (events + turns).ravel())
     return curve(phase), curve(phase, 1)

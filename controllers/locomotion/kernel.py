@@ -151,7 +151,7 @@ def query_kernel(space, velocity, start, correct, b, target, moved):
     for i in range(3):
         target[i] = velocity[i] / SCALE[i]
     inner_kernel(space, target, moved)
-    simplex = locate_kernel(space, target, moved, start, b)
+    simplex = locate_kernel(space, target, moved, np.int64(start), b)  # a game keeps it as int32
     for _ in range(correct):
         for i in range(3):
             moved[i] = target[i]

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..body import Skeleton, human, rotations as rot
+from ..files import ordinary, whole
 from .cycles import Cycle
 
 # what the columns of a coefficient array are, for J joints
@@ -81,10 +82,8 @@ class Library:
         """
         about = {"format": 1, "height": float(self.skeleton.offsets[0, 1]),
                  "primitives": [asdict(p) for p in self.primitives], "provenance": self.provenance}
-        part = Path(f"{path}.part")
-        with open(part, "wb") as file:
+        with whole(path) as part, open(part, "wb") as file:
             self._write(file, about)
-        part.replace(path)
 
     def _write(self, file, about: dict) -> None:
         np.savez_compressed(file, velocities=self.velocities, reference=self.reference,
@@ -97,7 +96,7 @@ class Library:
     def load(path: str | Path) -> Library:
         """Read a library. LibraryError names the file if it is missing or not one."""
         try:
-            with np.load(path, allow_pickle=False) as file:
+            with np.load(ordinary(path), allow_pickle=False) as file:
                 about = json.loads(bytes(file["about"]).decode())
                 standard = human()
                 skeleton = human() if abs(about["height"] - standard.offsets[0, 1]) < 1e-9 else \
@@ -112,7 +111,8 @@ class Library:
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
                 RuntimeError, tokenize.TokenError, zipfile.BadZipFile, zlib.error) as error:  # all a damaged zip has in store
             # numpy takes a file of any other kind for its own and speaks of that
-            reason = error if isinstance(error, OSError) or zipfile.is_zipfile(path) else "no .npz file at all"
+            reason = getattr(error, "strerror", None) or error
+            reason = reason if isinstance(error, OSError) or zipfile.is_zipfile(path) else "no .npz file at all"
             raise LibraryError(f"{path}: not a gait library ({reason})") from None
         library._check(path)
         return library

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotations as rot
-from ..mocap import MotionFileError, calibrate, load, retarget
+from ..files import contents
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
@@ -54,13 +54,15 @@ class Source:
 def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
     try:
-        recipe = tomllib.loads(Path(path).read_text("utf-8"))
+        recipe = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
         sources = [Source(**{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()})
                    for s in recipe.get("source", [])]
         for number, source in enumerate(sources, 1):
             source.check(number)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError, ValueError) as error:
-        raise LibraryError(f"{path}: not a library recipe: {error}") from None
+        raise LibraryError(f"{path}: not a library recipe: {getattr(error, 'strerror', None) or error}") from None
+    except RecursionError:
+        raise LibraryError(f"{path}: not a library recipe: brackets are nested too deeply") from None
     if not sources:
         raise LibraryError(f"{path}: a recipe needs at least one [[source]]")
     return sources, recipe.get("provenance", "")
@@ -72,6 +74,8 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
 
     Clips on the same skeleton are calibrated together. Each comes with its source and its actor.
     """
+    from ..mocap import MotionFileError, calibrate, load, retarget  # who walks by a library needs no files of motion
+
     found: dict[tuple[int, str], list[Path]] = {}
     for number, source in enumerate(sources):
         for path in sorted(folder.glob(source.glob)):

@@ -43,6 +43,11 @@ class Settings(NamedTuple):
     breath: float = 0.012
 
 
+def plain(settings: Settings) -> Settings:
+    """The same settings, each of its own kind of number: kernels are compiled anew for any other, 1 for 1.0."""
+    return Settings(*(type(usual)(value) for usual, value in zip(Settings(), settings)))
+
+
 class Legs(NamedTuple):
     """What the step must know of body and library: joint numbers (hip: (2,), left and right;
     shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive."""

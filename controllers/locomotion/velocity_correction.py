@@ -45,7 +45,7 @@ def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velociti
     for n in range(memory.shape[0]):
         m = memory[n]
         wraps, turned = 0, 0.0
-        for step in range(int((CYCLES + 2) * 4.0 / dt)):
+        for _ in range(int((CYCLES + 2) * 4.0 / dt)):
             before, heading = m.phase, m.ground[2]
             advance_phase(m, wish, dt)
             blend_series(m, settings, table, fresh, legs, dt)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..body import Clip, Skeleton
-from .bvh_header import Joint, read_header
+from ..files import whole
+from .bvh_header import read_header
+from .joint_names import carriers
 from .parsing import fail, read_bytes, table, turns
 
 
@@ -19,9 +22,11 @@ def read_bvh(path) -> Clip:
 
     Rotation channels may come in any order and number, joint by joint. The root's place is its
     position channels alone, its OFFSET stays in skeleton.offsets[0] (see `load`, which judges
-    whether to add it); without position channels it is the OFFSET. Another joint's position
-    channels, unless all are zero, replace its OFFSET by their median over time, because the bones
-    of a Clip are rigid; a warning says so where they vary by more than 1 % of the longest bone.
+    whether to add it); without position channels it is the OFFSET. Where another joint carries the
+    whole body, as the hips do below a reference joint, its position channels, unless all are zero,
+    move the root. Any other joint's, unless all are zero, replace its OFFSET by their median over
+    time, because the bones of a Clip are rigid; a warning says so where they vary by more than 1 %
+    of the longest bone.
     MotionFileError, naming file and line, for anything that is not sound BVH.
     """
     data = read_bytes(path)
@@ -35,36 +40,59 @@ def read_bvh(path) -> Clip:
     for c, (j, kind, axis) in enumerate(channels):
         if kind == "position" and j == 0:
             root[:, axis] = values[:, c]
-    _settle(joints, channels, values, offsets, path)
     turning = np.array([(c, j, axis) for c, (j, kind, axis) in enumerate(channels) if kind == "rotation"],
                        np.int64).reshape(-1, 3)
-    values *= np.pi / 180.0
-    quaternions = turns(values, turning[:, 0], turning[:, 1], np.eye(3)[turning[:, 2]], len(joints))
+    quaternions = turns(values * (np.pi / 180.0), turning[:, 0], turning[:, 1], np.eye(3)[turning[:, 2]], len(joints))
     ends = [(j, end) for j, joint in enumerate(joints) for end in joint.ends]
     skeleton = Skeleton(tuple(joint.name for joint in joints),
                         np.array([joint.parent for joint in joints]), offsets,
                         np.array([j for j, _ in ends], np.int64), np.array([end for _, end in ends]))
+    if places := _places(channels, values, offsets):
+        whole = carriers(skeleton)
+        root += _travel(skeleton, whole, places, quaternions)
+        skeleton = _settled(skeleton, {j: track for j, track in places.items() if j not in whole}, path)
     return Clip(Path(path).stem, skeleton, frame_time, root, quaternions)
 
 
-def _settle(joints: list[Joint], channels, values: np.ndarray, offsets: np.ndarray, path) -> None:
-    """Let the position channels of joints other than the root replace their offsets, in place."""
-    longest = np.linalg.norm(offsets[1:], axis=-1).max(initial=0.0)
-    stretching = []
+def _places(channels, values: np.ndarray, offsets: np.ndarray) -> dict[int, np.ndarray]:
+    """Where (T, 3) the position channels of joints below the root put them; none that are all zero."""
+    places = {}
     for j in sorted({j for j, kind, _ in channels if kind == "position" and j > 0}):
         mine = [(c, axis) for c, (i, kind, axis) in enumerate(channels) if i == j and kind == "position"]
         track = values[:, [c for c, _ in mine]]
         if track.any():
-            offsets[j, [axis for _, axis in mine]] = np.median(track, axis=0)
-            if np.ptp(track, axis=0).max() > 0.01 * longest:
-                stretching.append(joints[j].name)
+            places[j] = np.tile(offsets[j], (len(values), 1))
+            places[j][:, [axis for _, axis in mine]] = track
+    return places
+
+
+def _travel(skeleton: Skeleton, whole: tuple[int, ...], places: dict[int, np.ndarray], quaternions: np.ndarray) -> np.ndarray:
+    """How far (T, 3) the carriers of the whole body move it beside the root: all below them is where the file says."""
+    travel, turn = np.zeros((len(quaternions), 3)), Rotation.from_quat(quaternions[:, 0])
+    for j in whole[1:]:
+        if j in places:
+            travel += turn.apply(places[j] - skeleton.offsets[j])
+        turn = turn * Rotation.from_quat(quaternions[:, j])
+    return travel
+
+
+def _settled(skeleton: Skeleton, places: dict[int, np.ndarray], path) -> Skeleton:
+    """The skeleton with the offsets of some joints replaced by the median of their places."""
+    offsets = skeleton.offsets.copy()
+    longest = np.linalg.norm(offsets[1:], axis=-1).max()
+    stretching = []
+    for j, track in places.items():
+        offsets[j] = np.median(track, axis=0)
+        if np.ptp(track, axis=0).max() > 0.01 * longest:
+            stretching.append(skeleton.names[j])
     if stretching:
         warnings.warn(f"{path}: the bones to {', '.join(stretching)} change their length; a clip's "
                       "bones are rigid, so the median over time is taken", stacklevel=3)
+    return replace(skeleton, offsets=offsets)
 
 
 def write_bvh(clip: Clip, path, order: str = "ZXY", unit: float = 0.01) -> None:
-    """Write a clip as BVH.
+    """Write a clip as BVH; the file appears whole or not at all.
 
     order: in which order the three rotation channels stand, which is the order of the intrinsic
     turns. unit: metres in one unit of the file; 0.01 writes centimetres. White space and braces in
@@ -83,7 +111,8 @@ def write_bvh(clip: Clip, path, order: str = "ZXY", unit: float = 0.01) -> None:
     row = " ".join(["%.6f"] * values.shape[1])
     lines += ["MOTION", f"Frames: {len(clip)}", f"Frame Time: {clip.frame_time:.9g}"]
     lines += [row % tuple(frame) for frame in values.tolist()]
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with whole(path) as part:
+        part.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _hierarchy(skeleton: Skeleton, order: str, unit: float) -> tuple[list[str], list[int]]:

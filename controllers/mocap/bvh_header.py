@@ -10,6 +10,8 @@ import numpy as np
 from .parsing import decode, fail, number, numbers, whole
 
 CHANNELS = {f"{axis}{kind}": (kind, i) for kind in ("rotation", "position") for i, axis in enumerate("xyz")}
+LONGEST = 60.0
+"""The longest time between two frames [s]: what is farther apart is no motion, and would be filled with millions of frames."""
 _LAST_LINE = re.compile(rb"^[ \t]*frame[ \t]+time\b[^\n]*\n?", re.IGNORECASE | re.MULTILINE)
 _COLON = re.compile(r"^(\s*(?:frames|frame\s+time)\s*:)", re.IGNORECASE | re.MULTILINE)
 
@@ -70,8 +72,8 @@ def read_header(data: bytes, path) -> tuple[list[Joint], int, float, int]:
     words.expect("Frame")
     words.expect("Time:" if words.peek().endswith(":") else "Time")
     frame_time = number(words.take().lstrip(":"), path, words.line)
-    if frame_time <= 0:
-        words.fail(f"the Frame Time must be above zero seconds, not {frame_time}")
+    if not 0.0 < frame_time <= LONGEST:
+        words.fail(f"the Frame Time must be above zero and at most {LONGEST:g} seconds, not {frame_time:g}")
     if words.peek():
         words.fail(f"{_quote(words.take())} after the Frame Time: the frames begin on the next line")
     return joints, frames, frame_time, body

@@ -206,7 +206,7 @@ def _from_motion(skeleton, source, part, zero, motions, corrections):
     """Corrections without a standing zero pose; `corrections` is filled in place."""
     limbs = part.limbs
     turns, tops = [], []
-    for positions, orientations in motions:
+    for positions, _ in motions:
         across = positions[:, limbs["LeftUpLeg"]] - positions[:, limbs["RightUpLeg"]]
         turns.append(yaw(heading_of(np.cross(across, [0.0, 1.0, 0.0]))))
         middle = (positions[:, limbs["LeftUpLeg"]] + positions[:, limbs["RightUpLeg"]]) / 2

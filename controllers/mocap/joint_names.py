@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..body import Skeleton
 
 # our name → what it is called elsewhere, the best first. Order matters: a name goes to the first
@@ -77,6 +79,21 @@ def roles(skeleton: Skeleton) -> Roles:
     head = _path(skeleton, found["Head"])
     return Roles(found, _chain(skeleton, _path(skeleton, chest), found["Hips"], chest),
                  _chain(skeleton, head, max(i for i in head if i in above), found["Head"]))
+
+
+def carriers(skeleton: Skeleton) -> tuple[int, ...]:
+    """The joints that carry the whole body: from the root to the lowest one above both legs and the head.
+
+    Of what is no human, down to the first that branches; the root alone where none does.
+    """
+    try:
+        limbs = roles(skeleton).limbs
+    except ValueError:
+        children = np.bincount(skeleton.parents[1:], minlength=len(skeleton))
+        last = int(np.argmax(children > 1))
+        return tuple(_path(skeleton, last))
+    paths = [_path(skeleton, limbs[part]) for part in ("LeftUpLeg", "RightUpLeg", "Head")]
+    return tuple(j for j in paths[0] if j in paths[1] and j in paths[2])
 
 
 def _path(skeleton, joint):

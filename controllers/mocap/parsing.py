@@ -6,11 +6,11 @@ Nothing is allocated by what a header claims, only by what the file really holds
 
 from __future__ import annotations
 
-from pathlib import Path
 
 import numpy as np
 
 from ..compiled import kernel
+from ..files import contents
 
 _TENS = 10.0 ** np.arange(23)  # exactly representable: one division or product rounds only once
 LIMIT = 1e15
@@ -31,13 +31,13 @@ def fail(path, line: int | None, problem: str):
 def read_bytes(path) -> bytes:
     """A file's bytes with \\n at least between lines and no byte-order mark; never empty."""
     try:
-        data = Path(path).read_bytes()
+        data = contents(path)
     except FileNotFoundError:
         fail(path, None, "there is no such file")
     except IsADirectoryError:
         fail(path, None, "this is a directory: name one file in it")
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        fail(path, None, f"can't be opened: {error}")
+        fail(path, None, f"can't be opened: {getattr(error, 'strerror', None) or error}")
     data = data.removeprefix(b"\xef\xbb\xbf")
     if not data.strip():
         fail(path, 1, "the file is empty")

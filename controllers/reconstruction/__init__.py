@@ -1,6 +1,6 @@
 """Whole bodies from a few points: motion databases, local regression and the pose that explains the points best (Mousas 2014)."""
 
-from . import control_points, pose_vector
+from . import control_points
 from .control_points import NAMES, SETS, ControlPoints, parse
 from .controller import Reconstruction, towards
 from .database import Database, DatabaseError, build
@@ -9,6 +9,5 @@ from .pose_vector import HEIGHT, JOINTS, SKELETON, WIDTH, encode
 
 __all__ = [
     "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "ControlPoints", "Database", "DatabaseError",
-    "Neighbourhood", "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse",
-    "pose_vector", "towards",
+    "Neighbourhood", "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse", "towards",
 ]

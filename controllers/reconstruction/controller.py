@@ -15,7 +15,7 @@ import numpy as np
 
 from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, contact_height, contact_points, damp,
                     forward_kinematics, heading_of, human, settle, wrap)
-from ..contract import CharacterState, Controller, Intent, Status, Unable
+from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from .control_points import ControlPoints
 from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved
 from .pose_vector import SKELETON, decode
@@ -108,7 +108,7 @@ class Reconstruction(Controller):
         """The state with the body about to follow. Unable, with the reason, if the points are none of this body's."""
         if isinstance(state.memory, Following):
             return state
-        level = float(state.floor)
+        level = float(sound_level(state.floor))
         seen = self._seen(intent, level)
         pose = self._shrunk(state.pose, level)
         away = self._possible(seen, self._points(pose))
@@ -126,6 +126,7 @@ class Reconstruction(Controller):
 
         Both NaN where not known. Unable if no point is seen, or none of this body's; it needs `starts`.
         """
+        sound_level(floor)
         nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
         seen = self._seen(Intent(points=points), floor)
         self._possible(seen, seen)
@@ -151,8 +152,8 @@ class Reconstruction(Controller):
         than it follows ends it: the body coasts for this step, and `status` says why. No foot is deep in the floor,
         and contacts are with it; `state.floor` may be set to another from step to step.
         """
-        if not 0.0 < dt <= 0.1:
-            raise ValueError(f"dt must be in (0, 0.1] s, got {dt}")
+        dt = seconds(dt)
+        sound_level(state.floor)
         if not isinstance(state.memory, Following):
             raise ValueError("this state's memory is not of a reconstruction: enter it first")
         following = state.memory

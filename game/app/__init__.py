@@ -2,8 +2,11 @@
 
 from .app import Play
 from .capture import OUT, Capture, log_file
+from .hints import Teacher
+from .opening import Opening
+from .preparing import Preparing
 from .views import filmed, frames
 
 __all__ = [
-    "OUT", "Capture", "Play", "filmed", "frames", "log_file",
+    "OUT", "Capture", "Opening", "Play", "Preparing", "Teacher", "filmed", "frames", "log_file",
 ]

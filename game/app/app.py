@@ -24,6 +24,8 @@ from ..session import (ACTIONS, Log, LogWriter, Look, SessionState, Timeline, be
 from ..world import DT, FixedStep, Methods, World
 from .capture import Capture
 from .held_points import HeldPoints
+from .hints import Teacher
+from .preparing import Preparing
 from .recordings import Recordings
 from .views import Previews, previews, scenes
 
@@ -42,16 +44,20 @@ class Play:
     look: how one looks back; None while one plays. panels: what is shown of `PANELS`. kept: what
     is kept of it all. tape: a log that is watched, until somebody walks. clock, held: the time that was
     dropped, and spent in help, past or halt [s]. held_points: what pointer and stream do with the points of a comparison.
+    preparing: what is compiled meanwhile; None where everything is.
+    teacher: who shows hints; None shows none.
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
                  log: LogWriter | None = None, capture: Capture | None = None, tape: Log | None = None,
-                 learnt: Methods | None = None, stream: Any = None):
+                 learnt: Methods | None = None, stream: Any = None, preparing: Preparing | None = None,
+                 teacher: Teacher | None = None):
         self.timeline = Timeline(opening(controller, players, learnt) if world is None else
                                  begin(world, players, learnt))
-        self.bindings, self.kept, self.tape = bindings, Recordings(log, capture), tape
+        self.bindings, self.kept, self.tape, self.teacher = bindings, Recordings(log, capture), tape, teacher
         self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
         self.held_points = HeldPoints(self.now.methods, stream)
+        self.preparing, self.refused = preparing, False
         self.done = self.helping = self.full_screen = self.wants_picture = self.halted = self.strayed = False
         self.keyboard, self.pads = Keyboard(), [None] * PADS
         self.pending: dict[int, Wish] = {}
@@ -80,6 +86,11 @@ class Play:
         return (*islice(past, len(past) - behind), self._back(behind))
 
     @property
+    def jumps(self) -> bool:
+        """Whether a jump would not halt the game."""
+        return self.preparing is None or self.preparing.jumps
+
+    @property
     def players(self) -> int:
         """How many play."""
         return len(self.now.players)
@@ -96,6 +107,8 @@ class Play:
 
     def handle(self, event: Event) -> None:
         """Take one event from the host; those that mean nothing here are ignored."""
+        if self.teacher is not None:
+            self.teacher.heard(event)
         if self.panels and self.hud is not None and self.hud.handle(event):
             return
         rewound = self.look is not None
@@ -205,6 +218,8 @@ class Play:
         seconds = seconds if 0.0 <= seconds < math.inf else 0.0
         self.undrawn = self.undrawn + seconds if self.panels else 0.0
         self.kept.tend(seconds)
+        if self.preparing is not None:
+            self.preparing.tend(self.now.after.characters[0].controller)
         if due := self.held_points.learnt():
             self._ask(due, 0) if not due.startswith("!") else self.kept.say(due[1:])
         if self.helping:
@@ -215,6 +230,8 @@ class Play:
             for _ in range(due):
                 self._tick()
             self.held += (due - (self.now.number - number)) * DT
+            if self.teacher is not None and self._taught and not self.now.paused:
+                self.teacher.tick(self.now, seconds)
         self.kept.save_sometimes(seconds, self.now)
 
     def _tick(self) -> None:
@@ -231,7 +248,7 @@ class Play:
             self._advance(asked_for)
         elif self._pushed():
             self._take_over("you play on from here")
-        elif not self.halted:
+        elif not self.halted and self.jumps:  # a log may jump at once
             self._play_back(self.tape)
 
     def _advance(self, asked_for: tuple[Wish, ...]) -> None:
@@ -266,7 +283,15 @@ class Play:
         held = wishes(self.keyboard, self.pads, self.players, self.bindings)
         asked_for = tuple(wish.merged(self.pending.get(who, Wish())).rounded() for who, wish in enumerate(held))
         self.pending.clear()
-        return asked_for
+        return asked_for if self.jumps else self._grounded(asked_for)
+
+    def _grounded(self, asked_for: tuple[Wish, ...]) -> tuple[Wish, ...]:
+        """The wishes without jumps, which nobody can make yet; whoever asks is told so."""
+        asked = any(wish.jump for wish in asked_for)
+        if asked and not self.refused:
+            self.kept.say("no jump yet: it is being prepared")
+        self.refused = asked
+        return tuple(replace(wish, jump=False) for wish in asked_for)
 
     # --- looking back
 
@@ -329,6 +354,8 @@ class Play:
             views = (replace(views[0], sheet=sheet), *views[1:])
         elif self.wants_picture:  # nothing is written on a screenshot
             views = tuple(replace(view, text=()) for view in views)
+        elif self.teacher is not None and self._taught:
+            views = (replace(views[0], hint=self.teacher.hint()), *views[1:])
         if self.panels and not self.helping:
             views = (self._with_panels(views[0], size), *views[1:])
         elif self.overlays.errors and not self.helping and (lines := rows(moment.after)):
@@ -350,6 +377,11 @@ class Play:
         # the strip tells of looking back, pause and slow motion
         text = (view.text[0], *self.kept.notices) if view.text else ()
         return replace(view, ink=ink, text=text, figures=view.figures + self.hud.ghosts(view.figures, moment))
+
+    @property
+    def _taught(self) -> bool:
+        """Whether somebody plays whom hints could help: nobody looks back or watches."""
+        return self.look is None and self.tape is None
 
     def _shown(self, alpha: float) -> tuple[SessionState, float, tuple[Camera, ...]]:
         """The moment to draw, how far it is between its worlds, and from where each player sees it."""
@@ -375,6 +407,8 @@ class Play:
             lines.append(f"paused: {self._key('pause')} goes on, {self._key('step')} makes one step")
         if moment.slow > 1:
             lines.append(f"slow motion 1/{moment.slow}")
+        if self.preparing is not None:
+            lines += self.preparing.said
         told = (*lines, *self.held_points.status(moment, self._key), *self.kept.status(self.now), *self.kept.notices, f"{self._key('help')} help")
         return ((*own[0], *told), *own[1:])
 

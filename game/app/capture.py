@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files import OutputError, named, output_file, output_folder
+from ..files import OutputError, named, output_file, output_folder, whole
 from ..session import SUFFIX, SessionState
 
 OUT = Path("out")
@@ -118,16 +118,18 @@ class Capture:
     def _made(self, suffix: str, write: Callable[[Path], Any]) -> Path:
         """The path of a file that a thread writes. What goes wrong there `tend` tells."""
         path = stamped(output_folder(self.folder), suffix)
+        taken = path.with_stem(f"{path.stem}.part")
         with named(path):
-            path.touch(exist_ok=False)  # the name is taken from now on
+            taken.touch(exist_ok=False)  # the name is taken from now on
 
         def run() -> None:
             try:
-                with named(path):
-                    write(path)
+                with whole(path) as part:
+                    write(part)
             except OutputError as error:
-                path.unlink(missing_ok=True)
                 self._said.append(str(error))
+            finally:
+                taken.unlink(missing_ok=True)
         self._threads = [thread for thread in self._threads if thread.is_alive()]
         self._threads.append(threading.Thread(target=run))
         self._threads[-1].start()

@@ -1,6 +1,6 @@
 """Characters to wear: any GLB human in, Gambol's own in any size and build, GLB out."""
 
-from . import gltf, materials, twotone
+from . import gltf, materials
 from .bind import load
 from .gltf import CharacterError
 from .tailor import Build, BuildError, tailored
@@ -8,5 +8,5 @@ from .write import Actor, Motion, joints_of, write
 
 __all__ = [
     "Actor", "Build", "BuildError", "CharacterError", "Motion", "gltf", "joints_of", "load", "materials", "tailored",
-    "twotone", "write",
+    "write",
 ]

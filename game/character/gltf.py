@@ -17,6 +17,8 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from gambol.controllers.files import ordinary
+
 LARGEST = 256 << 20
 """The largest file that is read [bytes]."""
 SUFFIXES = (".glb", ".gltf", ".vrm")
@@ -112,7 +114,7 @@ def read(path: str | Path) -> Document:
 
 def _bytes(path: Path) -> bytes:
     try:
-        if path.stat().st_size > LARGEST:
+        if ordinary(path).stat().st_size > LARGEST:
             raise CharacterError(f"{path}: holds {path.stat().st_size >> 20} MiB; a character has at most "
                                  f"{LARGEST >> 20} MiB: export it with smaller pictures and a lighter mesh")
         return path.read_bytes()

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import functools
+import gc
+import math
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
-from enum import Enum
+from contextlib import contextmanager
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args, get_type_hints
 
 import typer
 
@@ -27,11 +31,12 @@ def _told(wanted: bool) -> None:
 
 
 @app.callback()
-def _common(version: Annotated[bool, typer.Option("--version", is_eager=True, callback=_told, help="Say which version this is, and leave.")] = False) -> None:
+def _common(version: Annotated[bool, typer.Option("--version", is_eager=True, callback=_told,
+                                                  help="Say which version this is, and leave.")] = False) -> None:
     pass
 
 
-class Preset(str, Enum):
+class Preset(StrEnum):
     """How much light and shadow is drawn."""
 
     full = "full"
@@ -55,6 +60,7 @@ def plainly(command):
     @functools.wraps(command)
     def wrapped(*args, **kwargs):
         try:
+            _check_finite(command, kwargs)
             return command(*args, **kwargs)
         except BrokenPipeError:  # whoever read our words has had enough: no mistake, and typer ends quietly
             raise
@@ -70,30 +76,56 @@ def plainly(command):
     return wrapped
 
 
+def _check_finite(command: Any, given: dict[str, Any]) -> None:
+    """Mistake for an option with a bound that is no finite number: nan is on no side of it, and inf is beyond none."""
+    for name, value in given.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            option = get_args(get_type_hints(command, include_extras=True)[name])[-1]
+            if option.min is not None:  # others are judged where they are used
+                said = [word for word in (f"--{name}", option.default, *(option.param_decls or ())) if str(word).startswith("--")]
+                raise Mistake(f"{said[-1]} {value}: needs a finite number")
+
+
+@contextmanager
+def unswept():
+    """Nobody looks for garbage meanwhile: while modules are loaded there is none, and to look takes an eighth of the time."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()  # nor is it looked for among them later
+        gc.enable()
+
+
 def say(text: str) -> None:
     """Tell the user something that is no result: it goes to the standard error."""
     typer.echo(text, err=True)
 
 
 def person_of(library: Path | None, character: Path | None = None) -> Any:
-    """Who moves, with a gait library (the shipped one by default), in a character's body if one is named."""
+    """Who moves, with a gait library (the shipped one by default), in a character's body if one is named; all of it
+    is compiled first, where it never was."""
     from gambol.controllers.compiled import cold
     from gambol.controllers.contract import Intent
     from gambol.controllers.locomotion import Locomotion
-    from gambol.controllers.locomotion import DEFAULT_LIBRARY
-    from gambol.controllers.locomotion import Library as Gaits
-    from gambol.controllers.person import person, rehearse
+    from gambol.controllers.person import person, preparing, rehearse
 
-    gaits = Gaits.load(library or DEFAULT_LIBRARY)
+    walker = Locomotion.load(library)
     beside = None
     if cold():
         say("compiling the motion, once: half a minute")
-        beside = subprocess.Popen([sys.executable, "-P", "-m", "gambol.controllers.jump.warm_up"], stdin=subprocess.DEVNULL)
-    somebody = person(Locomotion(gaits))
+        beside = subprocess.Popen([sys.executable, "-P", "-c", "from gambol.controllers.jump import Jump, rehearse; rehearse(Jump())"], stdin=subprocess.DEVNULL)
+    somebody = person(walker)
     if beside is not None:
         somebody.step(somebody.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
         beside.wait()
     rehearse(somebody)
+    preparing.done(walker)
+    return in_body(somebody, character)
+
+
+def in_body(somebody: Any, character: Path | None) -> Any:
+    """Somebody in a character's body, if one is named."""
     if character is None:
         return somebody
     from ..character import load
@@ -113,6 +145,8 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     if not wanted:
         return
     with progress_bar() as bar:
+        if not bar.console.is_terminal:
+            say("learning to make bodies of a few points, once: a minute or less")
         tasks: dict[str, Any] = {}
 
         def progress(what: str, done: int, total: int) -> None:
@@ -133,8 +167,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
 
 def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
     """An input log and who moves in it; what its comparisons need is learnt. LogError for one that can't be played."""
-    from ..session import of_library, performer_of, read
-    from ..session import wanted
+    from ..session import of_library, performer_of, read, wanted
 
     log = read(file)
     performer = performer_of(log, controller)
@@ -146,7 +179,7 @@ def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
 def pixels_of(text: str) -> tuple[int, int]:
     """Width and height from "WIDTHxHEIGHT". Mistake for anything else."""
     width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
+    if not (re.fullmatch("[0-9]{2,4}", width) and re.fullmatch("[0-9]{2,4}", height) and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
         raise Mistake(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
     return int(width), int(height)
 
@@ -167,5 +200,5 @@ def progress_bar() -> Any:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    return Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
+    return Progress(TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(),
                     console=Console(stderr=True))

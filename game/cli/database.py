@@ -18,11 +18,10 @@ app.add_typer(database, name="database")
 @plainly
 def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AMC files.")],
           out: Annotated[Path, typer.Option("-o", "--out", help="The .gambolmotion file to write.")] = Path("database.gambolmotion"),
-          fps: Annotated[float, typer.Option(help="Frames a second.")] = 60.0,
+          fps: Annotated[float, typer.Option(min=1.0, max=1000.0, help="Frames a second.")] = 60.0,
           mirrors: Annotated[bool, typer.Option("--mirrors/--no-mirrors", help="Add the mirror image of every take.")] = True) -> None:
     """Put every motion file of a folder onto one skeleton, into one file."""
-    from gambol.controllers.reconstruction.database import SUFFIX
-    from gambol.controllers.reconstruction.database import build as build_database
+    from gambol.controllers.reconstruction.database import SUFFIX, build as build_database
 
     from ..files import named, output_file
 

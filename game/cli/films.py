@@ -51,11 +51,12 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
                 raise Mistake(f"{option} means nothing for {out}: BVH holds the motion, not pictures of it")
         write_motion(film, out, person_of(library, character))
         return
-    from ..scenario import scenes
-    from ..scenario import overlays
+    from ..output import recorder
+    from ..scenario import overlays, scenes
 
     film = film if size is None else film.at_size(pixels_of(size))
     shown = None if overlay is None else overlays(overlays_of(overlay))
+    target = recorder(out, film.size, film.fps)  # a name that can't be is told of before anything is learnt
     controller = person_of(library, character)
     learn(film.wanted, film.database)
     refused: dict[str, None] = {}
@@ -64,15 +65,16 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
         for frame, made in scenes(film, controller, shown):
             refused.update(dict.fromkeys(frame.refused))
             yield made
-    _draw(drawn(), film.frames, film.title, out, film.size, film.fps, preset, background)
+    _draw(drawn(), film.frames, film.title, target, film.size, film.fps, preset, background)
     for line in refused:
         say(f"gambol: {line}")
 
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
               preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
-    from ..scenario import overlays
     from ..app import filmed, frames
+    from ..output import recorder
+    from ..scenario import overlays
 
     log, controller = replayed(file, controller)
     start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
@@ -83,22 +85,22 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
     def stray() -> None:
         say(f"gambol: {file} was played with another version of Gambol, which walks another way: "
             "the film is not quite what was played")
-    _draw(filmed(log, controller, fps, start, end, shown, stray), frames(log, fps, start, end), file.name, out, size, fps,
-          preset, background)
+    _draw(filmed(log, controller, fps, start, end, shown, stray), frames(log, fps, start, end), file.name,
+          recorder(out, size, fps), size, fps, preset, background)
 
 
-def _draw(scenes, frames: int, title: str, out: str, size: tuple[int, int], fps: int, preset: Preset | None,
+def _draw(scenes, frames: int, title: str, target, size: tuple[int, int], fps: int, preset: Preset | None,
           background: bool) -> None:
-    """Draw scenes into a film or a folder."""
-    from ..output import recorder
-
-    target = recorder(out, size, fps)
-
+    """Draw scenes into a film or a folder, by a `gambol.game.output.recorder.Recorder`."""
     from ..hosts import GraphicsError, Offscreen
 
     try:
         with Offscreen(size, (preset or Preset.full).value) as stage, target, progress_bar() as bar:
-            for scene in _told(scenes, frames) if background else bar.track(scenes, frames, description=title):
+            if background or not bar.console.is_terminal:  # a bar that nobody sees move tells nothing
+                scenes = _told(scenes, frames, 1 if background else max(frames // 10, 1))
+            else:
+                scenes = bar.track(scenes, frames, description=title)
+            for scene in scenes:
                 target.write(stage.frame(scene))
     except BaseException as error:
         if target.count:
@@ -123,11 +125,10 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     """Draw a motion as a strip of poses, one picture beside the other."""
     from PIL import Image
 
-    from ..scenario import scenario as scenarios
+    from ..files import output_file, whole
     from ..hosts import GraphicsError, Offscreen
-    from ..files import named, output_file
-    from ..scenario import overlays
     from ..output import strip as poses
+    from ..scenario import overlays, scenario as scenarios
 
     output_file(out, ".png")
     film = scenarios.load(scenario)
@@ -138,17 +139,18 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     made = poses(film, controller, count, overlays(overlays_of(overlay)), pixels,
                  start, end, actor)
     try:
-        with Offscreen(pixels, Preset.full.value) as stage, named(out):
-            Image.fromarray(stage.frame(made)[..., :3]).save(out)
+        with Offscreen(pixels, Preset.full.value) as stage, whole(out) as part:
+            Image.fromarray(stage.frame(made)[..., :3]).save(part)
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     say(f"{out}: {count} poses, {pixels[0]} × {pixels[1]}")
 
 
-def _told(scenes, frames: int):
-    """The scenes, with a line of progress for each: whoever began this in the background reads them."""
+def _told(scenes, frames: int, every: int):
+    """The scenes, with a line of progress for `every` so many: whoever began this in the background reads them."""
     for number, scene in enumerate(scenes, 1):
-        say(f"{number} of {frames}")
+        if number % every == 0:
+            say(f"{number} of {frames}")
         yield scene
 
 

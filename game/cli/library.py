@@ -49,15 +49,13 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
            picture: Annotated[Path | None, typer.Option(help="Draw the coverage into this PNG, too.")] = None,
            primitives: Annotated[bool, typer.Option("--primitives", help="List every primitive and its clip.")] = False) -> None:
     """What a library covers, and where its primitives come from."""
-    from gambol.controllers.locomotion import DEFAULT_LIBRARY
-    from gambol.controllers.locomotion import Library as GaitLibrary
+    from gambol.controllers.locomotion import DEFAULT_LIBRARY, Library as GaitLibrary
 
     made = GaitLibrary.load(file or DEFAULT_LIBRARY)
 
-    from gambol.controllers.locomotion import picture as draw
-    from gambol.controllers.locomotion import report as in_words
+    from gambol.controllers.locomotion import picture as draw, report as in_words
 
-    from ..files import named, output_file
+    from ..files import output_file, whole
 
     if picture:
         output_file(picture, ".png")
@@ -71,8 +69,8 @@ def report(file: Annotated[Path | None, typer.Argument(help="A library file; the
                        f"{f', mean of {one.averaged}' if one.averaged > 1 else ''}")
     if picture:
         try:
-            with named(picture):
-                draw(made, picture)
+            with whole(picture) as part:
+                draw(made, part)
         except ImportError:
             raise Mistake('--picture needs matplotlib: .venv/bin/pip install -e ".[report]"') from None
         say(str(picture))

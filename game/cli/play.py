@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, Wearing, app, learn, person_of, pixels_of, plainly, replayed, say
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, in_body, learn, person_of, pixels_of, plainly, replayed,
+                   say, unswept)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -21,18 +22,21 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          bindings: Hands = None,
          players: Annotated[int, typer.Option(min=1, max=2, help="How many play; a second one may also join later.")] = 1,
          record: Annotated[Path | None, typer.Option(help="Keep the input log in this new .gambol file; by default in out/.")] = None,
-         replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None) -> None:
+         replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
+         hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    from ..input import load as load_bindings
+    with unswept():
+        from gambol.controllers.locomotion import Locomotion
+        from gambol.controllers.person import person
+
+        from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
+        from ..input import load as load_bindings
+        from ..session import LogWriter
+        from ..world import methods
 
     pixels, hands = pixels_of(size), load_bindings(bindings)
-    controller = person_of(library, character)
-
-    from ..session import LogWriter
-    from ..world import methods
-    from ..app import Play
-    from ..app import OUT, Capture, log_file
-
+    walker = Locomotion.load(library)
+    controller = in_body(person(walker), character)
     tape, clip, database = None, None, None
     if replay is not None:
         tape, controller = replayed(replay, controller)
@@ -40,13 +44,18 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     log = LogWriter(log_file(record), controller, players, clip, database)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
-    game = Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database))
-    show(game, pixels, preset, log, capture)
+    preparing = Preparing(walker, library)
+
+    def begun() -> Play:
+        return Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
+                    preparing=preparing, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)))
+    show(Opening(begun, preparing), pixels, preset, log, capture)
 
 
 def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:
-    """Run a game in a window until it is over; exit code NO_DISPLAY where none can be opened."""
-    from ..hosts import DisplayError, run_window
+    """Run a game, or what opens one, in a window until it is over; exit code NO_DISPLAY where none can be opened."""
+    with unswept():
+        from ..hosts import DisplayError, run_window
 
     try:
         run_window(game, pixels, preset.value)
@@ -56,7 +65,7 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
     finally:
         game.close()
         if log is not None and log.begun:
-            say(f"{log.path}: {game.now.number / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
+            say(f"{log.path}: {log.ticks / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
         if capture is not None:
             capture.finish(say)
 
@@ -75,13 +84,10 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
+    from ..app import OUT, Capture, Play, log_file
     from ..input import load as load_bindings
-    from ..session import LogWriter
-    from ..world import methods
-    from ..app import Play
-    from ..world import Recorded
-    from ..app import OUT, Capture, log_file
-    from ..session import Comparison
+    from ..session import Comparison, LogWriter
+    from ..world import Recorded, methods
 
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
@@ -96,8 +102,8 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
 def bindings(file: Hands = None,
              write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
     """Print the keys, buttons and sticks in force, as a file to edit."""
+    from ..files import output_file, whole
     from ..input import as_toml, load
-    from ..files import named, output_file
 
     text = as_toml(load(file))
     if write is None:
@@ -105,6 +111,6 @@ def bindings(file: Hands = None,
         return
     if write.exists():
         raise Mistake(f"{write}: is there already; name another file")
-    with named(output_file(write, ".toml")):
-        write.write_text(text, encoding="utf-8")
+    with whole(output_file(write, ".toml")) as part:
+        part.write_text(text, encoding="utf-8")
     say(str(write))

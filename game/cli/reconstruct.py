@@ -29,6 +29,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
                 stream: Annotated[str | None, typer.Option(help="Listen to live trackers instead of reading a clip: osc (VMC protocol, VRChat's trackers).")] = None,
                 port: Annotated[int | None, typer.Option(min=1, max=65535, help="Where to listen; 39539 by default.")] = None,
+                host: Annotated[str | None, typer.Option(help="Whom to listen to: 127.0.0.1, programs on this machine, by default; 0.0.0.0, trackers on other machines, too.")] = None,
                 trackers: Annotated[Path | None, typer.Option("--map", help="A TOML file that says which tracker is on which point.")] = None,
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None) -> None:
@@ -37,7 +38,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         raise Mistake("reconstruct needs either a motion file or --stream osc")
     if stream not in (None, "osc"):
         raise Mistake(f"--stream {stream!r}: only osc is understood")
-    live = (("--port", port), ("--map", trackers), ("--seconds", seconds), ("--height", height))
+    live = (("--port", port), ("--host", host), ("--map", trackers), ("--seconds", seconds), ("--height", height))
     recorded = (("--noise", noise or None), ("--seed", seed or None))
     for option, given in live if stream is None else recorded:
         if given is not None:
@@ -64,11 +65,11 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         else:
             _clip(clip, names, out, method, database, noise / 100.0, seed)
         return
-    from gambol.controllers.reconstruction.live import PORT, Stream, read_map, usual_map
+    from gambol.controllers.reconstruction.live import HOST, PORT, Stream, read_map, usual_map
 
     worn = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn.values())
-    with Stream(worn, port or PORT) as source:
+    with Stream(worn, port or PORT, HOST if host is None else host) as source:
         if out is None:
             source.placement = _placement(source, height)
             watch(method, names, database, stream=source)
@@ -86,8 +87,7 @@ def _known(method: str) -> str:
 
 def _named(text: str) -> str:
     """Points by name, a set of the paper spelt out. Mistake for a point that there is not."""
-    from gambol.controllers.reconstruction import SKELETON
-    from gambol.controllers.reconstruction import parse
+    from gambol.controllers.reconstruction import SKELETON, parse
 
     try:
         return ",".join(parse(text, SKELETON).names)
@@ -167,6 +167,8 @@ def _figures(clip: Any, poses: list) -> list[str]:
 
 def _record(source: Any, controller: Any, out: Path, height: float | None, seconds: float | None) -> None:
     """Record what a stream says until the time is up or somebody stops it; what there is by then is written."""
+    import numpy as np
+
     from gambol.controllers.contract import Intent
     from gambol.controllers.locomotion import Locomotion
     from gambol.controllers.reconstruction import towards
@@ -183,6 +185,8 @@ def _record(source: Any, controller: Any, out: Path, height: float | None, secon
             for now in _ticks(seconds):
                 seen = source.at(now)
                 if state is None:
+                    if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
+                        continue
                     state = someone.enter(controller.begin(seen), Intent())
                 intent = Intent(towards(state, seen), points=seen)
                 state, pose = someone.step(state, intent, 1 / FPS)
@@ -209,7 +213,7 @@ def _placement(source: Any, height: float | None) -> Any:
     from gambol.controllers.reconstruction.live import Standing, placed
 
     names = source.controls.names
-    say(f"listening at port {source.port}: stand upright for a second, in T-pose or with the arms down")
+    say(f"listening at {source.host}, port {source.port}: stand upright for a second, in T-pose or with the arms down")
     standing, told = Standing(), -_TELL / 2
     for now in _ticks(None):
         seen = source.at(now)
@@ -223,6 +227,8 @@ def _placement(source: Any, height: float | None) -> Any:
         if now - told > _TELL:
             missing = [name for name, there in zip(names, np.isfinite(seen).all(-1)) if not there]
             say(f"waiting for {', '.join(missing)}" if missing else "waiting for somebody who stands still")
+            if not source.heard and source.local:
+                say("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
             if source.unknown:
                 say(f"on no point: {', '.join(source.unknown)}; --map says where they are")
             told = now

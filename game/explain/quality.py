@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from gambol.controllers.body import (Skeleton, contact_height, contact_points, detect_contacts, foot_drift,
                                      forward_kinematics)
@@ -109,6 +108,8 @@ def quality_of(worlds: Sequence[World], who: int) -> Quality:
 def running(hips: np.ndarray, dt: float) -> np.ndarray:
     """In which of N frames the hips (N, 3) [m] are a runner's, (N,) bool; N ≥ 2."""
     frames = max(1, round(AROUND / dt))
+    from scipy.ndimage import uniform_filter1d  # here, as below: a game starts without
+
     velocity = uniform_filter1d(np.gradient(hips[:, [0, 2]], dt, axis=0), frames, axis=0)
     return np.linalg.norm(velocity, axis=-1) > RUNNING
 
@@ -119,6 +120,8 @@ def _roughest(skeleton: Skeleton, positions: np.ndarray, runs: np.ndarray, dt: f
     stride = max(1, round(1 / (ACCELERATION_RATE * dt)))
     if not natural or "walk" not in natural or len(positions) <= 2 * stride:
         return float("nan"), ""
+    from scipy.ndimage import maximum_filter1d
+
     runs = maximum_filter1d(runs, 2 * round(AROUND / dt) + 1)  # who sets off or stops is as rough as who runs
     limit = np.where(runs[:, None], natural.get("run", natural["walk"]), natural["walk"])
     # frames are left out and not averaged, so every phase of the leaving out counts

@@ -2,8 +2,8 @@
 
 from . import toml
 from .did_you_mean import did_you_mean, meant
-from .paths import OutputError, named, output_file, output_folder, whole
+from .paths import OutputError, exclusive, named, output_file, output_folder, whole
 
 __all__ = [
-    "OutputError", "did_you_mean", "meant", "named", "output_file", "output_folder", "toml", "whole",
+    "OutputError", "did_you_mean", "exclusive", "meant", "named", "output_file", "output_folder", "toml", "whole",
 ]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from gambol.controllers import files
 
 
 class OutputError(ValueError):
@@ -44,17 +47,21 @@ def output_folder(path: str | Path) -> Path:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Where to write a file that is to appear whole or not at all; it takes its place when nothing went wrong.
+    """`files.whole`: where to write a file that is to appear whole or not at all. OutputError as of `named`."""
+    with named(path), files.whole(path) as part:
+        yield part
 
-    OutputError as of `named`.
-    """
-    part = path.with_name(f"{path.name}.part")
-    with named(path):
+
+def exclusive(path: Path) -> Path:
+    """A new, empty file that nobody else writes: PATH, or PATH-2, PATH-3, … where that is there already. OSError."""
+    for number in range(1, 10_000):
+        name = path.with_stem(f"{path.stem}-{number}") if number > 1 else path
         try:
-            yield part
-            os.replace(part, path)
-        finally:
-            part.unlink(missing_ok=True)
+            name.touch(exist_ok=False)
+            return name
+        except FileExistsError:
+            continue
+    raise FileExistsError(errno.EEXIST, "is there already, and so are all names like it", str(path))
 
 
 @contextmanager

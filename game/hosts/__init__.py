@@ -4,12 +4,11 @@ Both draw the same scenes with the same renderer; neither knows what is simulate
 package opens nothing.
 """
 
-from . import offscreen
 from .events import PADS, App, Event, Focus, KeyEvent, MouseMove, PadState, Resize, Scroll
 from .offscreen import GraphicsError, Offscreen, offscreen_context
 from .window import DisplayError, run_window
 
 __all__ = [
     "PADS", "App", "DisplayError", "Event", "Focus", "GraphicsError", "KeyEvent", "MouseMove", "Offscreen", "PadState",
-    "Resize", "Scroll", "offscreen", "offscreen_context", "run_window",
+    "Resize", "Scroll", "offscreen_context", "run_window",
 ]

@@ -6,9 +6,11 @@ of their own. Importing this loads ImGui, so whoever may never open a panel impo
 
 from . import legend, plots, quality_meter, sliders, space_panel, style, time_strip
 from .decision import reason
+from .filmed import Filmed
 from .legend import Legend
 from .panels import Hud
 
 __all__ = [
-    "Hud", "Legend", "legend", "plots", "quality_meter", "reason", "sliders", "space_panel", "style", "time_strip",
+    "Filmed", "Hud", "Legend", "legend", "plots", "quality_meter", "reason", "sliders", "space_panel", "style",
+    "time_strip",
 ]

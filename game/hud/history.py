@@ -48,10 +48,14 @@ class Trace:
 
     def read(self, moments: Sequence[SessionState], who: int = 0) -> Signals:
         """The signals of character `who` up to the last of the moments, of which there is one at least."""
+        return self.of(recent(moments), who)
+
+    def of(self, worlds: Sequence[World], who: int = 0) -> Signals:
+        """The same of the last STEPS worlds of an unbroken run, oldest first."""
         if who != self.who:
             self.rows, self.who = {}, who
         kept = {}
-        for world in recent(moments):
+        for world in tuple(worlds)[-STEPS:]:
             known = self.rows.get(id(world))
             # the world is kept beside its row, so that no other can have its id
             kept[id(world)] = known if known is not None else (world, _row(world, who))

@@ -22,7 +22,7 @@ GOOD, FAIR = 0.03, 0.06
 
 
 class Legend:
-    """Draws the legend alone, over films. No context is made before the first."""
+    """Draws the legend alone, over a game without panels. No context is made before the first."""
 
     def __init__(self):
         self.canvas: Canvas | None = None
@@ -32,13 +32,7 @@ class Legend:
         if self.canvas is None:
             self.canvas = Canvas()
         self.canvas.begin(size, 1.0 / 60.0)
-        scale = self.canvas.scale
-        imgui.set_next_window_pos(imgui.ImVec2(size[0] - (WIDTH + MARGIN) * scale, MARGIN * scale), imgui.Cond_.always)
-        imgui.set_next_window_size(imgui.ImVec2(WIDTH * scale, 0.0), imgui.Cond_.always)
-        imgui.begin("##legend", None, imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize
-                    | imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_nav | imgui.WindowFlags_.no_inputs)
-        draw(rows, scale, title)
-        imgui.end()
+        window(rows, size, self.canvas.scale, title)
         return self.canvas.end()
 
     def release(self) -> None:
@@ -46,6 +40,17 @@ class Legend:
         if self.canvas is not None:
             self.canvas.release()
             self.canvas = None
+
+
+def window(rows: Sequence[Row], size: tuple[int, int], scale: float, title: str = "", left: bool = False) -> None:
+    """The legend as a window in the top-right corner of a picture of `size` pixels, or in the top-left one."""
+    across = MARGIN * scale if left else size[0] - (WIDTH + MARGIN) * scale
+    imgui.set_next_window_pos(imgui.ImVec2(across, MARGIN * scale), imgui.Cond_.always)
+    imgui.set_next_window_size(imgui.ImVec2(WIDTH * scale, 0.0), imgui.Cond_.always)
+    imgui.begin("##legend", None, imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize
+                | imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_nav | imgui.WindowFlags_.no_inputs)
+    draw(rows, scale, title)
+    imgui.end()
 
 
 def draw(rows: Sequence[Row], scale: float, title: str = "") -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from itertools import groupby
 from typing import Any
 
@@ -20,7 +20,7 @@ DIAL = 0.5
 """How much of a setting's line is its slider; the rest has its digits."""
 
 
-@lru_cache(maxsize=None)
+@cache
 def meaning(owner: type, field: str) -> str:
     """What a class's docstring says of one of its fields: "one, other: …", or the sentence that names it."""
     text = " ".join((owner.__doc__ or "").split())

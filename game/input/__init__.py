@@ -5,21 +5,20 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from . import devices, key_names
 from .aim import Aim
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
                       player_of, wheel_wish, wishes)
 from .help import help_sheet
-from .key_names import PAD_BUTTONS, key_label
+from .key_names import MOUSE, PAD_BUTTONS, button_label, key_label
 from .pilot import STEERING, Command, Pace, Pilot
-from .remap import as_toml, load
+from .remap import as_toml, load, user_file
 from .script import Jump, Move, Script, jumping
 from .wish import STEPS, Wish
 
 __all__ = [
-    "DEFAULT", "HOLDING", "JOINING", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
+    "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
     "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "Pace", "Pilot", "Script", "Sticks", "Wish", "as_toml",
-    "dead_zone", "devices", "drivers", "help_sheet", "jumping", "key_label", "key_names", "load", "mode_of",
-    "mouse_wish", "pad_held", "pad_pressed", "pad_wish", "player_of", "wheel_wish", "wishes",
+    "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "load", "mode_of", "mouse_wish",
+    "pad_held", "pad_pressed", "pad_wish", "player_of", "user_file", "wheel_wish", "wishes",
 ]

@@ -23,6 +23,8 @@ PAD_BUTTONS = ("A", "B", "X", "Y", "LB", "RB", "BACK", "START", "GUIDE", "LS", "
 TRIGGERS = ("LT", "RT")
 """The triggers, which count as buttons where they are pulled far enough."""
 BUTTONS = frozenset(PAD_BUTTONS + TRIGGERS)
+KINDS = {"keys": KEYS, "buttons": BUTTONS}
+"""The tables of a bindings file that give names, and the names that there are."""
 
 _ARROWS = {"UP": "↑", "DOWN": "↓", "LEFT": "←", "RIGHT": "→"}
 _KEYS = _ARROWS | {

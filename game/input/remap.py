@@ -11,16 +11,12 @@ import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
-
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from ..files import did_you_mean, toml
 from .bindings import DEFAULT, Binding, Bindings, Mouse, Sticks
-from .key_names import BUTTONS, KEYS
+from .key_names import KINDS
 
 FILE = "bindings.toml"
-KINDS = {"keys": KEYS, "buttons": BUTTONS}
 HEAD = """\
 # Gambol's keys, buttons, sticks and mouse. Leave out what is to stay as it is; [] unbinds.
 # Read with `gambol play --bindings FILE`, or always if it lies at
@@ -42,50 +38,6 @@ ABOUT = {
 
 class BindingsError(ValueError):
     """A bindings file that cannot be used; the message names file, action and key, a line for each fault."""
-
-
-def _names(value: Any) -> Any:
-    """One name is a list of one; small letters are as good as capitals."""
-    value = [value] if isinstance(value, str) else value
-    return [v.strip().upper().removeprefix("KEY_") if isinstance(v, str) else v for v in value] \
-        if isinstance(value, list) else value
-
-
-Names = Annotated[tuple[str, ...], BeforeValidator(_names)]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class _Sticks(_Table):
-    walk: Literal["left", "right"] = Sticks.walk
-    dead_zone: Annotated[float, Field(ge=0, lt=0.9)] = Sticks.dead_zone
-    full: Annotated[float, Field(gt=0, le=1)] = Sticks.full
-    curve: Annotated[float, Field(ge=0.25, le=4)] = Sticks.curve
-    trigger_dead_zone: Annotated[float, Field(ge=0, lt=0.9)] = Sticks.trigger_dead_zone
-    invert_x: bool = Sticks.invert_x
-    invert_y: bool = Sticks.invert_y
-
-    @model_validator(mode="after")
-    def _in_order(self):
-        for name in ("dead_zone", "trigger_dead_zone"):
-            if not getattr(self, name) < self.full:
-                raise ValueError(f"{name} = {getattr(self, name):g} needs to be less than full = {self.full:g}")
-        return self
-
-
-class _Mouse(_Table):
-    turn: Annotated[float, Field(ge=0.1, le=50)] = Mouse.turn
-    invert_x: bool = Mouse.invert_x
-    invert_y: bool = Mouse.invert_y
-
-
-class _File(_Table):
-    keys: dict[str, Annotated[Names, Field(strict=False)]] = {}
-    buttons: dict[str, Annotated[Names, Field(strict=False)]] = {}
-    sticks: _Sticks = _Sticks()
-    mouse: _Mouse = _Mouse()
 
 
 def user_file(environment: Mapping[str, str] = os.environ, system: str = sys.platform) -> Path:
@@ -111,10 +63,12 @@ def load(file: str | Path | None = None) -> Bindings:
         if not file.exists():
             return DEFAULT
     tables = toml.read(file, BindingsError)
+    from .remap_table import TableError, checked  # slow to load, for those only who have a file
+
     try:
-        table = _File.model_validate(tables)
-    except ValidationError as error:
-        raise BindingsError("\n".join(_fault(file, fault) for fault in error.errors())) from None
+        table = checked(tables)
+    except TableError as error:
+        raise BindingsError("\n".join(f"{file}: {fault}" for fault in error.faults)) from None
     faults = [*_unknown("keys", table.keys), *_unknown("buttons", table.buttons)]
     if not faults:
         changed = remapped(DEFAULT, table.keys, table.buttons)
@@ -149,7 +103,7 @@ def clashes(bindings: Bindings, kind: str = "keys", blamed: Iterable[str] = ()) 
 def as_toml(bindings: Bindings) -> str:
     """The whole table as a file that `load` reads."""
     lines = [HEAD.format(place=user_file())]
-    for kind, known in KINDS.items():
+    for kind in KINDS:
         lines.append(f"[{kind}]")
         rows = [row for row in bindings if row.can_have(kind)]
         wide = max(len(row.action) for row in rows)
@@ -187,17 +141,3 @@ def _unknown(kind: str, table: Mapping[str, tuple[str, ...]]) -> Iterable[str]:
 def _near(name: str, known: Iterable[str]) -> str:
     """What somebody may have meant, in words."""
     return did_you_mean(name, known) or "; `gambol bindings` shows the names"
-
-
-def _fault(file: str | Path, fault: Mapping[str, Any]) -> str:
-    """One line about one fault of type: file, field, what would be right."""
-    where = ".".join(str(part) for part in fault["loc"] if not isinstance(part, int))
-    text = fault["msg"].removeprefix("Value error, ")
-    if fault["type"] == "extra_forbidden":
-        tables = {"": _File, "sticks": _Sticks, "mouse": _Mouse}
-        text = "unknown; choose from " + ", ".join(tables[".".join(map(str, fault["loc"][:-1]))].model_fields)
-    elif len(fault["loc"]) == 1 and fault["type"] != "value_error":
-        text = f"needs to be a table, [{where}]"
-    elif fault["loc"][0] in KINDS:
-        text = f'needs names of {fault["loc"][0]} in quotes, such as ["W", "UP"]'
-    return f"{file}: {where}: {text[0].lower() + text[1:]}"

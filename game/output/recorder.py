@@ -1,7 +1,7 @@
 """Recording: frames to a film or to pictures, motion to BVH.
 
-A film is written in fragments into `NAME.part.mp4`, which plays whenever the program is killed,
-and becomes `NAME.mp4` when it is complete. Pictures appear one by one, each whole.
+A film is written in fragments into `NAME.part.mp4` (`NAME.part-2.mp4` where that is there already), which plays
+whenever the program is killed, and becomes `NAME.mp4` when it is complete. Pictures appear one by one, each whole.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import Clip, Pose, Skeleton
 
-from ..files import named, output_file, output_folder, whole
+from ..files import exclusive, named, output_file, output_folder, whole
 
 PICTURE = re.compile(r"frame_\d{5,}\.png")
 
@@ -69,7 +69,7 @@ class Film:
 
     def __init__(self, path: str | Path, size: tuple[int, int], fps: int):
         self.path = output_file(path, ".mp4")
-        self.part = self.path.with_name(f"{self.path.stem}.part{self.path.suffix}")
+        self.part = self.path.with_stem(f"{self.path.stem}.part")
         self.size, self.fps, self.count = size, fps, 0
         self._even = size[0] - size[0] % 2, size[1] - size[1] % 2
         self._container: Any = None
@@ -79,6 +79,7 @@ class Film:
         from av.video.reformatter import ColorRange, Colorspace
 
         with named(self.part):
+            self.part = exclusive(self.part)
             self._container = av.open(str(self.part), "w", format="mp4", options={
                 "movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"})
         self._stream = self._container.add_stream("libx264", rate=Fraction(self.fps))
@@ -115,7 +116,7 @@ class Film:
                 self._close()
             return
         self._close()
-        _whole(self.part, self.path)
+        _completed(self.part, self.path)
 
     def _close(self) -> None:
         with named(self.part):
@@ -163,27 +164,21 @@ def write_motion(clip: Clip, path: str | Path) -> None:
     """Write a clip as BVH; the file appears whole or not at all. OutputError where it can't be written."""
     from gambol.controllers.mocap import write_bvh
 
-    with whole(output_file(path, ".bvh")) as part:
-        write_bvh(clip, part)
+    with named(path := output_file(path, ".bvh")):
+        write_bvh(clip, path)
 
 
-def _whole(part: Path, path: Path) -> None:
+def _completed(part: Path, path: Path) -> None:
     """Rewrite a fragmented film as an ordinary one with its index in front, without coding it anew."""
     import av
 
-    done = path.with_name(f"{path.stem}.done{path.suffix}")
-    with named(path):
-        try:
-            with av.open(str(part)) as source, av.open(str(done), "w", format="mp4",
-                                                       options={"movflags": "faststart"}) as target:
-                stream = target.add_stream_from_template(source.streams.video[0])
-                for packet in source.demux(video=0):
-                    if packet.dts is not None:
-                        packet.stream = stream
-                        target.mux(packet)
-            os.replace(done, path)
-        finally:
-            done.unlink(missing_ok=True)
+    with whole(path) as done, av.open(str(part)) as source, av.open(str(done), "w", format="mp4",
+                                                                    options={"movflags": "faststart"}) as target:
+        stream = target.add_stream_from_template(source.streams.video[0])
+        for packet in source.demux(video=0):
+            if packet.dts is not None:
+                packet.stream = stream
+                target.mux(packet)
     part.unlink()
 
 

@@ -4,7 +4,7 @@
 pixels, `blit` shows them elsewhere. Importing this package touches no GL; hosts make the context.
 """
 
-from . import gl, mesh, occlusion, overlays, skin, sun, text, view
+from . import gl, occlusion, skin, view
 from .mesh import Body, Mesh, mannequin, pack
 from .presets import FAST, FULL, PRESETS, Preset, preset
 from .renderer import Renderer
@@ -14,5 +14,5 @@ from .wear import leg_length, worn
 
 __all__ = [
     "FAST", "FULL", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "gl", "leg_length", "look_at",
-    "mannequin", "mesh", "occlusion", "overlays", "pack", "preset", "scale_of", "skin", "sun", "text", "view", "worn",
+    "mannequin", "occlusion", "pack", "preset", "scale_of", "skin", "view", "worn",
 ]

@@ -27,7 +27,7 @@ DIAL = 2.6
 
 
 @dataclass
-class _Pen:
+class Pen:
     """Collects rows as of `layout`."""
 
     font: Atlas
@@ -57,7 +57,7 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
     the radius of the corners and the width of the rim [px]; of a letter −1 and the strength of its shadow.
     """
     font = atlas(letters)
-    unit, inner = font.line, _Pen(font)
+    unit, inner = font.line, Pen(font)
     width, tall, bottom = 0.0, 0.0, 1.6 * unit
     for table in sheet.tables:
         left = width + (BETWEEN * unit if width else 0.0)
@@ -78,7 +78,7 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
         bottom += 0.5 * unit * bool(sheet.pads)
         inner.write(sheet.note, 0.0, bottom, DIM)
         bottom += unit
-    outer = _Pen(font)
+    outer = Pen(font)
     margin = MARGIN * unit
     whole = width + 2 * margin, bottom + 2 * margin
     outer.shape(-margin, -margin, *whole, SHEET, 0.5 * unit)
@@ -88,7 +88,7 @@ def layout(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[np.ndarra
     return rows, whole
 
 
-def _table(pen: _Pen, table: tuple[Row, ...], left: float, top: float) -> float:
+def _table(pen: Pen, table: tuple[Row, ...], left: float, top: float) -> float:
     """Write a table; its width [px]."""
     font, unit = pen.font, pen.font.line
     count = max(len(line.cells) for line in table)
@@ -105,7 +105,7 @@ def _table(pen: _Pen, table: tuple[Row, ...], left: float, top: float) -> float:
     return whole
 
 
-def _pad(pen: _Pen, pad: Pad, left: float, top: float) -> float:
+def _pad(pen: Pen, pad: Pad, left: float, top: float) -> float:
     """Draw a pad: dials, bars and lamps; where it ends [px]."""
     unit, thin = pen.font.line, max(1.0, pen.font.line / 16)
     end = pen.write(pad.caption, left, top)
@@ -157,23 +157,29 @@ def letters_for(sheet: Sheet, size: tuple[int, int]) -> int:
     return min(letters, 96)
 
 
-class SheetPass:
-    """Draws a help sheet; made once per context."""
+class RowsPass:
+    """Draws rows as of `layout` over a picture; made once per context."""
 
     def __init__(self, ctx: Any):
         self.ctx, self.program = ctx, gl.program(ctx, "sheet.vert", "sheet.frag")
-        self.stream, self.texture, self.letters = gl.Stream(ctx), None, 0
-        self.fitted: tuple | None = None
+        self.stream, self.texture, self.drawn = gl.Stream(ctx), None, 0
         self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f 2f/i", "place", "cell", "tint", "edge")])
 
-    def draw(self, sheet: Sheet, target: Any) -> None:
-        """Draw over the middle of a framebuffer."""
+    def rows(self, rows: np.ndarray, letters: int, target: Any) -> None:
+        """Draw rows in letters of a size [px] over a framebuffer."""
         ctx, size = self.ctx, target.size
+        if letters != self.drawn:
+            if self.texture is not None:
+                self.texture.release()
+            pixels = atlas(letters).pixels
+            self.texture = ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
+            self.texture.filter = ctx.NEAREST, ctx.NEAREST
+            self.drawn = letters
         target.viewport = (0, 0, *size)
         target.use()
         ctx.enable_only(ctx.BLEND)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
-        rows, _ = layout(sheet, size, self._letters(sheet, size))
+        rows = rows.copy()
         rows[:, 4:8] /= np.tile(self.texture.size, 2)
         self.stream.write(rows.tobytes())
         self.texture.use(0)
@@ -181,20 +187,24 @@ class SheetPass:
         self.array.render(mode=ctx.TRIANGLE_STRIP, vertices=4, instances=len(rows))
         ctx.disable(ctx.BLEND)
 
-    def _letters(self, sheet: Sheet, size: tuple[int, int]) -> int:
-        words = [line.cells for table in sheet.tables for line in table], [pad.caption for pad in sheet.pads], sheet.note
-        if self.fitted != (size, words):  # what lights up changes no size
-            self.fitted, letters = (size, words), letters_for(sheet, size)
-            if letters != self.letters:
-                if self.texture is not None:
-                    self.texture.release()
-                pixels = atlas(letters).pixels
-                self.texture = self.ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
-                self.texture.filter = self.ctx.NEAREST, self.ctx.NEAREST
-                self.letters = letters
-        return self.letters
-
     def release(self) -> None:
         for part in (self.array, self.program, self.stream, self.texture):
             if part is not None:
                 part.release()
+
+
+class SheetPass(RowsPass):
+    """Draws a help sheet; made once per context."""
+
+    def __init__(self, ctx: Any):
+        super().__init__(ctx)
+        self.fitted: tuple | None = None
+        self.letters = 0
+
+    def draw(self, sheet: Sheet, target: Any) -> None:
+        """Draw over the middle of a framebuffer."""
+        size = target.size
+        words = [line.cells for table in sheet.tables for line in table], [pad.caption for pad in sheet.pads], sheet.note
+        if self.fitted != (size, words):  # what lights up changes no size
+            self.fitted, self.letters = (size, words), letters_for(sheet, size)
+        self.rows(layout(sheet, size, self.letters)[0], self.letters, target)

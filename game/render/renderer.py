@@ -13,6 +13,7 @@ from .draw_list_pass import InkPass
 from .figures import Figures, drawable
 from .ground import Ground, touched_floor
 from .help_pass import SheetPass
+from .hint_pass import HintPass
 from .occlusion import Occluders
 from .overlays import OverlayPass
 from .presets import Preset, preset
@@ -46,7 +47,7 @@ class Renderer:
         self.occluders = Occluders(ctx)
         self.figures, self.solids, self.goals = Figures(ctx, body), Solids(ctx, floor), Goals(ctx)
         self.ground, self.overlays, self.text = Ground(ctx, floor), OverlayPass(ctx), TextPass(ctx)
-        self.sheet, self.ink = SheetPass(ctx), InkPass(ctx)
+        self.sheet, self.hint, self.ink = SheetPass(ctx), HintPass(ctx), InkPass(ctx)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -74,6 +75,8 @@ class Renderer:
             self._part(scene, framed, inside)
         for sheet in [scene.sheet for scene in scenes if scene.sheet is not None][-1:]:
             self.sheet.draw(sheet, self.target.masked())
+        for hint in [scene.hint for scene in scenes if scene.hint is not None][-1:]:
+            self.hint.draw(hint, self.target.masked())
         self.target.resolve()
         for ink in [scene.ink for scene in scenes if scene.ink is not None]:  # sharp enough without samples
             self.ink.draw(ink, self.target.resolved)
@@ -83,7 +86,7 @@ class Renderer:
         ctx, camera, size = self.ctx, scene.camera, inside[2:]
         origin = view.origin_of(camera)
         eye = np.asarray(camera.eye, float) - origin
-        figures = tuple(figure for figure in scene.figures if drawable(figure))
+        figures = tuple(figure for figure in scene.figures if figure.opacity > 0.0 and drawable(figure))
         solids = tuple(prop for prop in scene.props if not isinstance(prop, Goal))
         shown = figures if scene.overlays.mesh else ()
         bodies = tuple(figure for figure in shown if figure.opacity >= 1.0)  # ghosts darken nothing
@@ -131,7 +134,7 @@ class Renderer:
 
     def release(self) -> None:
         """Give back all that was made on the graphics card."""
-        for part in (self.figures, self.solids, self.goals, self.ground, self.overlays, self.text, self.sheet, self.ink,
+        for part in (self.figures, self.solids, self.goals, self.ground, self.overlays, self.text, self.sheet, self.hint, self.ink,
                      self.occluders, self.figures_map, self.solids_map, self.frame, self.target):
             part.release()
 

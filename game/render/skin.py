@@ -11,10 +11,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gambol.controllers.body import forward_kinematics, human
+from gambol.controllers.body import human
 
 STANDARD = human()
-REST, _ = forward_kinematics(STANDARD, STANDARD.offsets[0], np.broadcast_to(np.eye(3), (len(STANDARD), 3, 3)))
+REST = np.array(STANDARD.offsets, float)  # no kinematics, which the first start ever would have to compile first
+for _joint, _parent in enumerate(STANDARD.parents[1:], 1):
+    REST[_joint] += REST[_parent]
 """The standard human's joints (22, 3) [m] at T-pose, in which the mesh is modelled."""
 
 _SWINGS = (("LeftArm", 0), ("RightArm", 0), ("LeftForeArm", 0), ("RightForeArm", 0),

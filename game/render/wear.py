@@ -63,7 +63,7 @@ def worn(body: Body, positions: np.ndarray, orientations: np.ndarray
     hips = 0.5 * (positions[:, _UP[0]] + positions[:, _UP[1]]) - np.einsum(
         "nij,nj->ni", orientations[:, 0], middle * scale[:, None])
     lower_sole = scale * high - ankle_height(positions)
-    for k, (up, knee, foot) in enumerate(zip(_UP, _KNEES, _FEET)):
+    for up, knee, foot in zip(_UP, _KNEES, _FEET):
         at = _placed(hips, bones, orientations)
         # the sole, not the ankle, has to be where the figure's is
         target = positions[:, foot] + orientations[:, foot, :, 1] * lower_sole[:, None]

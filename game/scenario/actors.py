@@ -184,7 +184,8 @@ class ActorTable(Table):
     """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
 
     body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
-    points it follows instead of moves of its own. ghost: one sees through it.
+    points it follows instead of moves of its own. ghost: one sees through it. enters, leaves: when it is there [s], from
+    the beginning to the end by default; its moves begin as it enters. Who follows an actor comes and goes with it.
     """
 
     name: FileName = "A"
@@ -194,15 +195,24 @@ class ActorTable(Table):
     start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
     body: BodyTable | None = None
     gravity: Gravity | None = None
+    enters: Moment = 0.0
+    leaves: Seconds | None = None
     moves: tuple[MoveTable, ...] = ()
 
     @model_validator(mode="after")
     def _own_will_or_points(self):
         if self.follows is not None:
-            for name in ("start", "body", "gravity", "moves"):
+            for name in ("start", "body", "gravity", "enters", "leaves", "moves"):
                 if name in self.model_fields_set:
                     raise ValueError(f"who follows points has no {name}: that is the performer's")
+        if self.leaves is not None and self.leaves <= self.enters:
+            raise ValueError(f"`enters` comes before `leaves`; got {self.enters:g} and {self.leaves:g}")
         return self
+
+    @property
+    def stay(self) -> dict[str, float]:
+        """When it is there [s], as the world has it."""
+        return {"enters": self.enters, "leaves": math.inf if self.leaves is None else self.leaves}
 
     @property
     def colour(self) -> tuple[float, float, float]:

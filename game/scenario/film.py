@@ -7,6 +7,7 @@ films the same motion from the same places.
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
@@ -14,6 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from gambol.controllers.body import damp
+from gambol.controllers.contract import Intent
 from gambol.controllers.jump import GRAVITY
 from gambol.controllers.navigation import floor_at, in_world
 from gambol.controllers.person import built
@@ -36,6 +38,8 @@ FADE = 0.5
 LOOK_HALFLIFE = 0.15
 REFUSED = 4.0
 """How long is said why a jump was not made [s]."""
+PLOTTED = 10 * RATE
+"""So many steps back the plots over a film show."""
 EARTH = float(GRAVITY[1])
 HANDS_OFF = Wish()
 
@@ -70,7 +74,7 @@ def opening(scenario: Scenario, controller: Any) -> World:
                 someone = built(controller, jumper.physique, jumper.gravity)
             x, z, heading = actor.start
             state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
-            cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor))
+            cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor), **actor.stay)
     clips = {table.performer: table.clip for _, table in scenario.followers if table.clip is not None}
     for name, clip in clips.items():
         someone = Recorded.load(clip, controller)
@@ -79,7 +83,8 @@ def opening(scenario: Scenario, controller: Any) -> World:
         performer, follows = cast[table.performer], table.follows()
         someone = follower_of(performer.controller, table.method, table.points, methods(scenario.database))
         state = beginning(someone, performer.state, follows.beside)
-        cast[actor.name] = Character(actor.name, someone, tint=actor.colour, state=state, follows=follows, opacity=_opacity(actor))
+        cast[actor.name] = Character(actor.name, someone, tint=actor.colour, state=state, follows=follows, opacity=_opacity(actor),
+                                     enters=performer.enters, leaves=performer.leaves)
     order = [actor.name for actor in scenario.actors] + list(clips)
     return World(tuple(cast[name] for name in order), props)
 
@@ -109,7 +114,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
     scripts += (Script(()),) * (len(world.characters) - len(scripts))
     while True:
         yield Act(world, scripts)
-        moves = [script.step(character.state, DT) for script, character in zip(scripts, world.characters)]
+        moves = [script.step(character.state, DT) if character.there(world.number) else (script, Intent())
+                 for script, character in zip(scripts, world.characters)]
         scripts = tuple(script for script, _ in moves)
         world = world.step([intent for _, intent in moves])
 
@@ -132,8 +138,9 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
     shown: replaces the overlays of the scenario and all its shots.
     """
     told: dict[str, float] = {}
-    legend: Any = None
-    for number, (first, old), (second, new), alpha in _sampled(takes(scenario, controller), scenario):
+    filmed: Any = None
+    lately: deque[World] = deque(maxlen=PLOTTED if any(shot.panels for shot in scenario.shots) else 1)
+    for number, (first, old), (second, new), alpha in _sampled(_kept(takes(scenario, controller), lately), scenario):
         before, after = first.world, second.world
         frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused)
         for line in first.refused:
@@ -152,15 +159,17 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
             text = ((title,) if title else ()) + (why if not made else ())
             people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
             made.append(Scene(camera, people, after.props, over, text, caption=caption if corner else None, part=part))
-        if any(scene.overlays.errors for scene in made) and (lines := rows(before)):
-            if legend is None:
-                from ..hud import Legend  # loads ImGui, for those only who show errors
+        lines = rows(before) if any(scene.overlays.errors for scene in made) else ()
+        if lines or old.shot.panels:
+            if filmed is None:
+                from ..hud import Filmed  # loads ImGui, for those only who show panels or errors
 
-                legend = Legend()
-            made[0] = replace(made[0], ink=legend.ink(lines, scenario.size))
+                filmed = Filmed(scenario.size)
+            about = old.crew[0].watched[0]
+            made[0] = replace(made[0], ink=filmed.ink(old.shot.panels, lately, about, lines, 1.0 / scenario.fps))
         yield frame, tuple(made)
-    if legend is not None:
-        legend.release()
+    if filmed is not None:
+        filmed.release()
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,6 +266,13 @@ def _sampled(ticks: Iterator[T], scenario: Scenario) -> Iterator[tuple[int, T, T
         while reached < wanted:
             before, after, reached = after, next(ticks), reached + 1
         yield number, before, after, rest / scenario.fps
+
+
+def _kept(ticks: Iterator[tuple[Act, Take]], worlds: deque[World]) -> Iterator[tuple[Act, Take]]:
+    """The same ticks, their worlds kept as they come."""
+    for act, take in ticks:
+        worlds.append(act.world)
+        yield act, take
 
 
 def _middle(world: World, watched: tuple[int, ...], height: float) -> np.ndarray:

@@ -13,6 +13,8 @@ from .fields import Degrees, Length, Moment, Point3, Table
 Shown = tuple[Literal[OVERLAYS], ...]
 Names = Annotated[tuple[str, ...], BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), Field(min_length=1)]
 Part = tuple[float, float, float, float]
+FILMED = ("space", "plots")
+"""The panels that films show: those that tell of an actor, and ask for no hands."""
 _NEEDS = {"follow": (), "orbit": (), "fixed": ("eye",), "dolly": ("path",)}
 _TAKES = {"follow": {"actor", "height", "distance", "around", "above", "swing"},
           "orbit": {"actor", "target", "height", "distance", "around", "above", "turn"},
@@ -78,12 +80,13 @@ class ShotTable(CameraTable):
     """What is seen from `at` seconds on: a camera, or several `views` side by side.
 
     caption, under: a large line and a smaller one, shown for some seconds. overlays: drawn
-    instead of the scenario's own.
+    instead of the scenario's own. panels: over the right of the picture, about the actor of its (first) camera.
     """
 
     at: Moment = 0.0
     caption: str = ""
     under: str = ""
+    panels: tuple[Literal[FILMED], ...] = ()
     views: Annotated[tuple[ViewTable, ...], Field(min_length=2, max_length=9)] | None = None
 
     @model_validator(mode="after")

@@ -4,10 +4,11 @@ help sheet.
 
 from .draw_list import PANELS, VERTEX, Ink, Stroke
 from .help_sheet import Bar, Dial, Lamp, Pad, Row, Sheet
-from .scene import (OVERLAYS, TINT, Arrow, Box, Camera, Caption, Dot, Figure, Goal, Line, Overlays, Patch, Pillar, Prop,
-                    Scene, Sketch)
+from .scene import (OVERLAYS, TINT, Arrow, Box, Camera, Caption, Dot, Figure, Goal, Hint, Line, Overlays, Patch, Pillar,
+                    Prop, Scene, Sketch)
 
 __all__ = [
     "OVERLAYS", "PANELS", "TINT", "VERTEX", "Arrow", "Bar", "Box", "Camera", "Caption", "Dial", "Dot", "Figure", "Goal",
-    "Ink", "Lamp", "Line", "Overlays", "Pad", "Patch", "Pillar", "Prop", "Row", "Scene", "Sheet", "Sketch", "Stroke",
+    "Hint", "Ink", "Lamp", "Line", "Overlays", "Pad", "Patch", "Pillar", "Prop", "Row", "Scene", "Sheet", "Sketch",
+    "Stroke",
 ]

@@ -92,7 +92,8 @@ class Figure:
     tint: (3,) linear RGB. contacts: (4,) bool, left heel, left ball, right heel, right ball.
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
     body: what it wears (`gambol.game.render.mesh.Body`); None for Gambol's mannequin. sketches: what
-    explains its motion, each in a layer of its own. opacity: less than 1 for a ghost, which casts no shadow.
+    explains its motion, each in a layer of its own. opacity: less than 1 for a ghost, which casts no shadow; 0 for
+    somebody of whom nothing is seen, sketches neither.
     """
 
     positions: np.ndarray
@@ -148,6 +149,14 @@ class Caption:
 
 
 @dataclass(frozen=True)
+class Hint:
+    """A line in the middle below that teaches. parts: words, and names of keys (True) among them. opacity: 0 … 1."""
+
+    parts: tuple[tuple[str, bool], ...]
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True)
 class Overlays:
     """What to draw beside the bodies."""
 
@@ -172,7 +181,7 @@ class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
     text: lines for the top-left corner. sheet: the help sheet, in the middle of the whole picture.
-    ink: panels, over the whole picture.
+    hint: in the middle below, of the whole picture. ink: panels, over the whole picture.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
 
@@ -183,5 +192,6 @@ class Scene:
     text: tuple[str, ...] = ()
     caption: Caption | None = None
     sheet: Sheet | None = None
+    hint: Hint | None = None
     ink: Ink | None = None
     part: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)

@@ -14,8 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gambol.controllers.reconstruction import control_points as controls
-
 from ..input import Wish
 from ..world import METHODS, NAMES, TINTS, Character, Follows, Methods, World, beginning, follower_of
 from .settings import SettingError
@@ -56,6 +54,8 @@ class Comparison:
     @property
     def count(self) -> int:
         """How many points there are."""
+        from gambol.controllers.reconstruction import control_points as controls  # a game without a study starts without
+
         return len(controls.SETS.get(self.points, self.points.split(",")))
 
     @property
@@ -139,7 +139,7 @@ def pinned(comparison: Comparison, action: str, world: World) -> tuple[Compariso
         pins = tuple(_read(action, place) for place in places)
     else:
         number, colon, place = text.partition(":")
-        if comparison.pins is None or not colon or not number.isdecimal() or int(number) >= count:
+        if comparison.pins is None or not colon or not (number.isascii() and number.isdecimal()) or len(number) > 9 or int(number) >= count:
             raise SettingError(f"{action}: needs a point's number below {count}, a colon and its place, once points are held")
         pins = tuple(_read(action, place) if n == int(number) else pin for n, pin in enumerate(comparison.pins))
     if comparison.pins is None:

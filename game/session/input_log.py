@@ -8,6 +8,7 @@ log that plays; a last line that was torn off is left out.
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import zlib
 from collections.abc import Iterator, Sequence
@@ -18,21 +19,22 @@ from typing import Any
 
 import numpy as np
 
-from ..files import named
-from ..input import STEPS, Wish
+from gambol.controllers.files import contents, printable
+
+from ..files import OutputError, named
+from ..input import Wish
 from ..world import RATE, Recorded, methods
 from .comparison import wanted
+from .log_lines import BLOCK, FORMAT, ROOM, LogError, Ticks, escaped, head, packed, plain, unpacked
 from .settings import SettingError
 from .state import SessionState, opening
 from .tick import Timeline
 
-FORMAT = 1
 SUFFIX = ".gambol"
-_ESCAPES = ((b"\x1b", b"\x1be"), (b"\n", b"\x1bn"))
-
-
-class LogError(ValueError):
-    """A log that can't be played; the message names the file, and the line where there is one."""
+LARGEST = 64 << 20
+"""The largest log that is read [bytes]: days of play."""
+LONGEST = 12 * 3600 * RATE
+"""The longest log that is read or written [ticks]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +49,7 @@ class Log:
     players: int
     library: str
     character: str
-    ticks: tuple[tuple[Wish, ...], ...]
+    ticks: Sequence[tuple[Wish, ...]]
     prints: dict[int, int] = field(default_factory=dict)
     path: Path = Path("log")
     clip: str = ""
@@ -78,7 +80,8 @@ def fingerprint(moment: SessionState) -> int:
 
 
 class LogWriter:
-    """Keeps a log as it is played; the file begins with the first `flush` that has something to write.
+    """Keeps a log as it is played; the file begins with the first `flush` that has something to write. ticks: so many
+    were added.
 
     clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
     where it can't be written.
@@ -86,11 +89,13 @@ class LogWriter:
 
     def __init__(self, path: Path, controller: Any, players: int, clip: str | Path | None = None,
                  database: str | Path | None = None):
-        self.path, self._file = Path(path), None
+        self.path, self._file, self.ticks = Path(path), None, 0
         needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file}
         self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
-                      "library": digest(controller), "character": "" if controller.body is None else controller.body.name, **needs}
+                      "library": digest(controller),
+                      "character": "" if controller.body is None else printable(controller.body.name, 100), **needs}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
+        self._count = 0
 
     @property
     def begun(self) -> bool:
@@ -99,22 +104,26 @@ class LogWriter:
 
     def add(self, wishes: Sequence[Wish]) -> None:
         """One tick more; the wishes must be `rounded`."""
-        if self._waiting and len(self._waiting[0]) != len(wishes):  # somebody has joined
+        if self._waiting and (len(self._waiting[0]) != len(wishes) or len(self._waiting) == BLOCK):  # somebody has joined
             self.flush()
         self._waiting.append(tuple(wishes))
+        self.ticks += 1
 
     def flush(self, moment: SessionState | None = None) -> None:
         """Write what was added since the last time. moment: what it led to."""
         if not self._waiting:
             return
-        block = _packed(self._waiting, None if moment is None else fingerprint(moment))
+        self._count += len(self._waiting)
+        if self._count > LONGEST:
+            raise OutputError(f"{self.path}: is {LONGEST / RATE / 3600:g} hours long, and no log is longer")
+        block = packed(self._waiting, None if moment is None else fingerprint(moment))
         data = self._packer.compress(block) + self._packer.flush(zlib.Z_SYNC_FLUSH)
         with named(self.path):
             if self._file is None:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
                 self._file = open(self.path, "xb", buffering=0)
                 self._file.write(json.dumps(self._head).encode() + b"\n")
-            self._file.write(b"%08x %s\n" % (zlib.crc32(data), _escaped(data)))
+            self._file.write(b"%08x %s\n" % (zlib.crc32(data), escaped(data)))
         self._waiting = []
 
     def close(self) -> None:
@@ -127,82 +136,42 @@ def read(path: str | Path) -> Log:
     """A log from its file. LogError says what is wrong with it."""
     path = Path(path)
     try:
-        first, *lines = path.read_bytes().split(b"\n")
+        data = contents(path, LARGEST)
     except OSError as error:
         raise LogError(f"{path}: {error.strerror or error}") from None
-    head = _head(path, first)
-    ticks, prints, unpacker = [], {}, zlib.decompressobj()
-    for number, line in enumerate(lines[:-1], 2):  # what follows the last line's end was torn off
+    lines = io.BytesIO(data)
+    about = head(path, lines.readline())
+    blocks: list[tuple[np.ndarray, dict]] = []
+    count, prints, unpacker = 0, {}, zlib.decompressobj()
+    for number, line in enumerate(lines, 2):
+        last = data.find(b"\n", lines.tell()) < 0  # what follows the last line's end was torn off
+        if last and not line.endswith(b"\n"):
+            break
         try:
-            crc, _, text = line.partition(b" ")
-            data = _plain(text)
-            if zlib.crc32(data) != int(crc, 16):
+            crc, _, text = line[:-1].partition(b" ")
+            part = plain(text)
+            if zlib.crc32(part) != int(crc, 16):
                 raise ValueError("checksum")
-            more, print_ = _unpacked(unpacker.decompress(data))
-        except (ValueError, zlib.error, LookupError, TypeError):
-            if number == len(lines):  # nothing whole comes after it: a power cut, say
+            block = unpacker.decompress(part, ROOM)
+        except (ValueError, zlib.error):
+            if last:  # nothing whole comes after it: a power cut, say
                 break
-            raise LogError(f"{path}: line {number} is damaged, {len(ticks) / RATE:.0f} s into the log; "
+            raise LogError(f"{path}: line {number} is damaged, {count / RATE:.0f} s into the log; "
                            f"delete it and what follows to keep what comes before") from None
-        ticks += more
+        try:
+            numbers, pressed, print_ = unpacked(block)
+            if count + len(numbers) > LONGEST:
+                raise LogError(f"with it the log is longer than {LONGEST / RATE / 3600:g} hours")
+        except LogError as error:
+            raise LogError(f"{path}: line {number}: {error}; delete it and what follows to keep what comes before") from None
+        blocks.append((numbers, pressed))
+        count += len(numbers)
         if print_ is not None:
-            prints[len(ticks)] = print_
-    if not ticks:
+            prints[count] = print_
+    if not blocks:
         raise LogError(f"{path}: nothing was played yet")
-    return Log(head["players"], head["library"], head["character"], tuple(ticks), prints, path, head.get("clip", ""),
-               head.get("database", ""))
-
-
-def _head(path: Path, line: bytes) -> dict:
-    try:
-        head = json.loads(line)
-        if head["gambol"] != "input log":
-            raise ValueError
-        if head["format"] != FORMAT:
-            raise LogError(f"{path}: line 1: a log of format {head['format']}; this Gambol reads format {FORMAT}")
-        names = head["library"], head["character"], head.get("clip", ""), head.get("database", "")
-        if head["players"] not in (1, 2) or not all(isinstance(name, str) for name in names):
-            raise ValueError
-    except LogError:
-        raise
-    except (ValueError, LookupError, TypeError):
-        raise LogError(f"{path}: line 1: not an input log of Gambol, as `gambol play` keeps") from None
-    return head
-
-
-def _escaped(data: bytes) -> bytes:
-    for plain, escape in _ESCAPES:
-        data = data.replace(plain, escape)
-    return data
-
-
-def _plain(data: bytes) -> bytes:
-    for plain, escape in reversed(_ESCAPES):
-        data = data.replace(escape, plain)
-    return data
-
-
-def _packed(ticks: Sequence[tuple[Wish, ...]], print_: int | None) -> bytes:
-    """A line of JSON, then every control's changes from tick to tick, bytes of equal weight together."""
-    pressed = [[t, who, list(wish.pressed)] for t, wishes in enumerate(ticks)
-               for who, wish in enumerate(wishes) if wish.pressed]
-    numbers = np.array([[wish.numbers() for wish in wishes] for wishes in ticks], "<i2")
-    numbers = numbers.reshape(len(ticks), -1)
-    changes = np.diff(numbers, axis=0, prepend=np.zeros_like(numbers[:1]))  # may wrap round; so does the sum
-    planes = np.ascontiguousarray(changes.T).view(np.uint8).reshape(-1, 2).T
-    return json.dumps([len(ticks), len(ticks[0]), print_, pressed]).encode() + b"\n" + planes.tobytes()
-
-
-def _unpacked(block: bytes) -> tuple[list[tuple[Wish, ...]], int | None]:
-    """What `_packed` packed. ValueError, LookupError or TypeError where it can't have."""
-    line, _, data = block.partition(b"\n")
-    count, players, print_, pressed = json.loads(line)
-    planes = np.frombuffer(data, np.uint8).reshape(2, -1)
-    changes = np.ascontiguousarray(planes.T).view("<i2").reshape(players * len(STEPS), count).T
-    numbers = np.cumsum(changes, axis=0, dtype="<i2").reshape(count, players, len(STEPS))
-    actions = {(t, who): tuple(names) for t, who, names in pressed}
-    return [tuple(Wish.of(row, actions.get((t, who), ())) for who, row in enumerate(rows))
-            for t, rows in enumerate(numbers.tolist())], print_
+    return Log(about["players"], about["library"], about["character"], Ticks(blocks), prints, path, about.get("clip", ""),
+               about.get("database", ""))
 
 
 def performer_of(log: Log, controller: Any) -> Any:
@@ -240,7 +209,7 @@ def replay(log: Log, controller: Any) -> Iterator[SessionState]:
                 raise SettingError(f"{len(wishes)} players instead of {len(timeline.now.players)}")
             timeline.advance(wishes)
         except SettingError as error:
-            raise LogError(f"{log.path}: {number / RATE:.1f} s into the log: {error}") from None
+            raise LogError(f"{log.path}: {number / RATE:.1f} s into the log: {printable(str(error), 1000)}") from None
         yield timeline.now
 
 

@@ -133,7 +133,7 @@ def backward(wishes: Sequence[Wish], past: Sequence[SessionState]) -> int:
     back = 0
     for action in (action for wish in wishes for action in wish.pressed if action.startswith("back=")):
         text = action.removeprefix("back=")
-        if not text.isdecimal() or int(text) < 1:
+        if not (text.isascii() and text.isdecimal() and len(text) < 10) or int(text) < 1:
             raise settings.SettingError(f"{action}: needs a whole number of steps, from 1")
         back = int(text)
     return min(back, len(past))

@@ -2,7 +2,6 @@
 few points of somebody, and the course that the game opens on.
 """
 
-from . import learnt_methods
 from .centre_of_mass import jump_of, physique_of
 from .course import COURSE, STAGES
 from .embodied import Embodied
@@ -14,5 +13,5 @@ from .world import DT, RATE, Character, FixedStep, World, figures, ground_betwee
 __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "STAGES", "TINTS", "Character", "Embodied", "Errors",
     "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "World", "beginning", "figures", "follower_of",
-    "ground_between", "jump_of", "lately", "learnt_methods", "methods", "physique_of", "pose_between",
+    "ground_between", "jump_of", "lately", "methods", "physique_of", "pose_between",
 ]

@@ -9,20 +9,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gambol.controllers.body import STATURE, Pose
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import floor_at
-from gambol.controllers.reconstruction import JOINTS, SKELETON, ControlPoints, Reconstruction
-from gambol.controllers.reconstruction.evaluation import position_error
 from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
 from .learnt_methods import Methods
 from .recorded import Recorded
+
+if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
+    from gambol.controllers.reconstruction import ControlPoints
 
 KEPT = 240
 """How many steps of errors are remembered."""
@@ -98,6 +99,9 @@ def errors(follows: Follows, found: tuple[np.ndarray, np.ndarray], truth: np.nda
     found: positions (J, 3) and orientations (J, 3, 3) of the follower. truth: (J, 3) of the performer; None where
     there is none. seen: (n, 3) the points that are followed, NaN where unseen. The mean is `metrics.position_error`.
     """
+    from gambol.controllers.reconstruction import JOINTS
+    from gambol.controllers.reconstruction.evaluation import position_error
+
     away = np.linalg.norm(follows.controls.on(*found) - seen, axis=-1)
     away = away[np.isfinite(away)]
     residual = float(away.mean()) if len(away) else math.nan
@@ -117,6 +121,8 @@ def carried(follows: Follows, state: CharacterState, truth: np.ndarray, around: 
     """
     if state.active != "reconstruction":
         return state
+    from gambol.controllers.reconstruction import SKELETON
+
     ankles = truth[[SKELETON.index("LeftFoot"), SKELETON.index("RightFoot")]]
     floor = min(floor_at(x, z, around, y) for x, y, z in ankles)
     return replace(state, floor=floor + float(follows.beside[1]))
@@ -127,6 +133,7 @@ def lately(told: np.ndarray) -> Errors | None:
     recent = told[-OVER:]
     if not len(recent):
         return None
+    from gambol.controllers.reconstruction import SKELETON
 
     def mean(column):
         known = column[np.isfinite(column)]
@@ -142,6 +149,8 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
 
     performer: the performer's controller. name, points: of one of the methods.
     """
+    from gambol.controllers.reconstruction import SKELETON, Reconstruction
+
     method, controls = methods(name, points)
     someone = performer.walker if isinstance(performer, Recorded) else performer
     walker = someone.parts.get("locomotion", someone)

@@ -13,13 +13,14 @@ import threading
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gambol.controllers.reconstruction import SKELETON, ControlPoints, encode, parse
-from gambol.controllers.reconstruction.database import Database
-from gambol.controllers.reconstruction.following import Starts
+if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
+    from gambol.controllers.reconstruction import ControlPoints
+    from gambol.controllers.reconstruction.database import Database
+    from gambol.controllers.reconstruction.following import Starts
 
 METHODS = ("ours", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
 """Ours; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
@@ -60,6 +61,8 @@ class Methods:
         """
         if name not in METHODS:
             raise ValueError(f"no method {name!r}: there are {', '.join(METHODS)}")
+        from gambol.controllers.reconstruction import SKELETON, parse
+
         controls = parse(points, SKELETON)
         if not self.knows(name, points):
             self.starts(points)
@@ -68,13 +71,16 @@ class Methods:
 
     def starts(self, points: str) -> Starts:
         """Where one begins from such points alone."""
+        from gambol.controllers.reconstruction import SKELETON, parse
+        from gambol.controllers.reconstruction.following import Starts
+
         if points not in self._starts:
             self._starts[points] = Starts.of(self.database(), parse(points, SKELETON))
         return self._starts[points]
 
     def database(self, progress: Progress | None = None) -> Database:
         """What they learn from."""
-        from gambol.controllers.reconstruction.database import default_database
+        from gambol.controllers.reconstruction.database import Database, default_database
 
         if self._database is None:
             told = progress or _silent
@@ -92,8 +98,8 @@ def methods(file: str | Path | None = None) -> Methods:
 
 def learnt(name: str, database: Database, controls: ControlPoints, progress: Progress | None = None) -> Any:
     """A method of `METHODS`, ready: nothing of it is compiled or read later. Rivals as they are best on recorded takes."""
-    from gambol.controllers.reconstruction.ours import ours
     from gambol.controllers.reconstruction.evaluation import baseline
+    from gambol.controllers.reconstruction.ours import ours
 
     method = ours(database, controls, progress=progress) if name == "ours" else baseline(name, database, controls)
     rehearse(method, controls)
@@ -106,6 +112,8 @@ def _silent(what: str, done: int, total: int) -> None:
 
 def rehearse(method: Any, controls: ControlPoints) -> None:
     """Two frames of nobody, so that what they compile or load halts no game."""
+    from gambol.controllers.reconstruction import SKELETON, encode
+
     still = np.broadcast_to(np.eye(3), (1, len(SKELETON), 3, 3))
     memory = method.begin(*encode(SKELETON.offsets[:1], still, 1 / 60))
     for _ in range(2):

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.body import (HEIGHT_GATE, WALK_SPEEDS, Clip, Pose, Skeleton, contact_height, contact_points,
+from gambol.controllers.body import (HEIGHT_GATE, WALK_SPEEDS, Clip, Pose, Skeleton, contact_height, contact_points, human,
                                      point_speeds, yaw)
 from gambol.controllers.contract import CharacterState, Controller, Intent, Status
-from gambol.controllers.mocap import MotionFileError, load, retarget
-from gambol.controllers.reconstruction import SKELETON, encode
 
 FPS = 60.0
+SKELETON = human()
 
 
 @dataclass(frozen=True)
@@ -34,6 +33,8 @@ class Recorded(Controller):
     """
 
     def __init__(self, clip: Clip, walker: Any):
+        from gambol.controllers.reconstruction import encode  # a game without a clip starts without
+
         self.clip, self.walker = clip, walker
         frames, self._track = encode(clip.root, clip.rotations, clip.frame_time)
         rotations = np.asarray(clip.rotations, float)
@@ -50,6 +51,8 @@ class Recorded(Controller):
     @staticmethod
     def load(path: str | Path, walker: Any) -> Recorded:
         """A .bvh or .amc file on the standard human, feet on the floor. MotionFileError, naming it, if it can't be used."""
+        from gambol.controllers.mocap import MotionFileError, load, retarget
+
         clip = load(path)
         if len(clip) < 4:
             raise MotionFileError(f"{path}: {len(clip)} frames are too few; a performance needs 4")

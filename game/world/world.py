@@ -6,6 +6,7 @@ rewinding, replaying and drawing in between need nothing more than keeping world
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -16,7 +17,6 @@ from scipy.spatial.transform import Rotation
 from gambol.controllers.body import Pose, forward_kinematics, wrap
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import drift
-from gambol.controllers.reconstruction import towards
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
@@ -43,6 +43,7 @@ class Character:
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
     follows: whose points it follows, None for somebody with a will. told: (N, 4) its `follow.errors`, oldest first.
     opacity: 1 for a body, less for a ghost. centre_of_mass: how its centre of mass is borne; None before its first step.
+    enters, leaves: when it is there [s]; before and afterwards it stays as it is, and nobody sees it.
     """
 
     name: str
@@ -55,6 +56,12 @@ class Character:
     told: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
     opacity: float = 1.0
     centre_of_mass: CentreOfMass | None = None
+    enters: float = 0.0
+    leaves: float = math.inf
+
+    def there(self, number: int) -> bool:
+        """Whether it is there after so many steps of the world."""
+        return round(RATE * self.enters) <= number < RATE * self.leaves - 0.5
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -83,6 +90,8 @@ class Character:
 
     def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
         """One step on of a follower, whose performer has made that step."""
+        from gambol.controllers.reconstruction import towards  # a game without a study starts without
+
         old, seen, truth = self, intent.points, None
         if performer is not None:
             there = performer.joints
@@ -117,7 +126,8 @@ class World:
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
         intents = [replace(intent, around=self.props) for intent in intents]
-        made = [None if one.follows else one.step(intent, number) for one, intent in zip(self.characters, intents)]
+        made = [one if not one.there(self.number) else None if one.follows else one.step(intent, number)
+                for one, intent in zip(self.characters, intents)]
         performers = {one.name: one for one in made if one is not None}
         return replace(self, number=number, characters=tuple(
             new or old.after(performers.get(old.follows.performer), intent, number)
@@ -198,5 +208,5 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         drawn.append(Figure(positions, orientations, new.tint, contacts,
                             np.concatenate([old.trail, here]),
                             np.stack([ahead[:, 0], np.full(len(ahead), lift), ahead[:, 1]], -1),
-                            new.controller.body, opacity=new.opacity))
+                            new.controller.body, opacity=new.opacity if new.there(before.number) else 0.0))
     return tuple(drawn)

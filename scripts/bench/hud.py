@@ -15,8 +15,8 @@ import numpy as np
 
 from gambol.controllers.locomotion import Locomotion
 from gambol.game.app import Play
-from gambol.game.scene import PANELS
 from gambol.game.hosts import KeyEvent, Offscreen
+from gambol.game.scene import PANELS
 
 
 def measured(game: Play, stage: Offscreen, size: tuple[int, int], frames: int) -> tuple[np.ndarray, float]:

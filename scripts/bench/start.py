@@ -1,16 +1,17 @@
-"""How long from nothing to a picture: a fresh process imports Gambol, loads the library and draws one frame.
+"""How long from nothing to a picture, to somebody who walks, and to jumps: a fresh process opens the game without a window.
 
     python scripts/bench/start.py [--runs 5]
 
-Cold: in a copy of the sources, where no kernel has been compiled yet. Warm: the same copy again.
-The processor time tells what a start costs where other programs were running too.
+Cold: with an empty folder for what is compiled, as on the first start ever. Warm: the same folder again.
+The processor time, of the programs that compile beside it as well once they have ended, tells what a start costs where
+other programs were running too.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import shutil
+import os
 import statistics
 import subprocess
 import sys
@@ -19,30 +20,48 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-START = """
-import json, sys, time
-began, done = float(sys.argv[1]), {}
-def after(what): done[what] = time.time() - began, time.process_time()
-after("interpreter")
-from gambol.game.cli.base import person_of
-from gambol.game.hosts import Offscreen
-from gambol.game.app.app import Play
-after("imports")
-controller = person_of(None)
-play = Play(controller)
-after("library")
-with Offscreen((1280, 720), "full") as host:
-    after("context and shaders")
-    play.tick(1.0 / 60.0)
-    host.frame(play.scene((1280, 720)))
-    after("first frame")
-print(json.dumps(done))
-"""
+SIZE = (1280, 720)
 
 
-def started(folder: Path) -> dict[str, list[float]]:
-    """Seconds from the start of a process in `folder` to the end of each phase, and processor time spent until then."""
-    run = subprocess.run([sys.executable, "-c", START, str(time.time())], cwd=folder, capture_output=True, text=True)
+def start(began: float) -> dict[str, tuple[float, float]]:
+    """Open the game; seconds since `began` to the end of each phase, and processor time spent until then."""
+    done = {}
+
+    def after(what: str) -> None:
+        spent = os.times()
+        done[what] = time.time() - began, spent.user + spent.system + spent.children_user + spent.children_system
+    after("interpreter")
+    from gambol.game.cli import unswept
+    with unswept():  # as the command does
+        from gambol.controllers.locomotion import Locomotion
+        from gambol.controllers.person import person
+        from gambol.game.app import Opening, Play, Preparing
+        from gambol.game.hosts import Offscreen
+    after("imports")
+    walker = Locomotion.load()
+    preparing = Preparing(walker)
+    opening = Opening(lambda: Play(person(walker), preparing=preparing), preparing)
+    with Offscreen(SIZE, "full") as host:
+        opening.tick(0.0)
+        host.frame(opening.scene(SIZE))
+        after("first picture")
+        while opening.game is None:
+            opening.tick(0.0)
+        opening.tick(1.0 / 60.0)
+        host.frame(opening.scene(SIZE))
+        after("somebody who walks")
+        while not preparing.jumps:
+            opening.tick(1.0 / 60.0)
+            time.sleep(0.02)
+        after("jumps")
+    opening.close()
+    return done
+
+
+def started(cache: str) -> dict[str, list[float]]:
+    """What `start` tells of a process of its own, with what lies compiled in a folder."""
+    run = subprocess.run([sys.executable, __file__, "--began", str(time.time())], cwd=ROOT, capture_output=True, text=True,
+                         env=os.environ | {"GAMBOL_CACHE": cache, "OPENBLAS_NUM_THREADS": "1"})
     if run.returncode:
         sys.exit(f"The start failed: {run.stderr.strip().splitlines()[-1]}")
     return json.loads(run.stdout.splitlines()[-1])
@@ -51,12 +70,15 @@ def started(folder: Path) -> dict[str, list[float]]:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--runs", type=int, default=5)
+    options.add_argument("--began", type=float, help=argparse.SUPPRESS)
     options = options.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        for part in ("controllers", "game", "assets"):
-            shutil.copytree(ROOT / part, Path(folder) / part, ignore=shutil.ignore_patterns("__pycache__"))
-        cold = started(Path(folder))
-        runs = [started(Path(folder)) for _ in range(options.runs)]
+    if options.began is not None:
+        sys.path.insert(0, str(ROOT))
+        print(json.dumps(start(options.began)))
+        return
+    with tempfile.TemporaryDirectory() as cache:
+        cold = started(cache)
+        runs = [started(cache) for _ in range(options.runs)]
     warm = {phase: [statistics.median(run[phase][k] for run in runs) for k in range(2)] for phase in cold}
     for name, times in (("cold", cold), ("warm", warm)):
         print(f"{name}: " + ", ".join(f"{phase} {wall:.2f} ({processor:.2f})" for phase, (wall, processor) in times.items())

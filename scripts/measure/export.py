@@ -81,9 +81,9 @@ def main() -> None:
     from dataclasses import replace
 
     from gambol.controllers.locomotion import Locomotion
+    from gambol.game.character import load
     from gambol.game.output import export
     from gambol.game.scenario import film, scenario
-    from gambol.game.character import load
 
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--scenario", default="demo")

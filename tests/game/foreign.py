@@ -142,7 +142,7 @@ def _resized(rest, positions, weights, scales):
         if parents[j] >= 0:
             new[j] = new[parents[j]] + (rest[j] - rest[parents[j]]) * scales.get(joint, 1.0)
     moved = np.zeros_like(positions)
-    for j, joint in enumerate(skin.STANDARD.names):
+    for j in range(len(skin.STANDARD)):
         grow = np.ones(3)
         for child in np.flatnonzero(parents == j):
             factor = scales.get(skin.STANDARD.names[child], 1.0)

@@ -11,7 +11,9 @@ from typer.testing import CliRunner
 
 from gambol.game import hosts
 from gambol.game import cli
+from gambol.game.app.hints import remember
 from gambol.game.character import Build
+from gambol.game.scenario.scenario import load
 from stand_in import Glide
 
 SHORT = """
@@ -55,6 +57,36 @@ def short(tmp_path, monkeypatch):
 
 def gambol(*arguments):
     return CliRunner().invoke(cli.app, [str(a) for a in arguments])
+
+
+def test_a_name_that_cannot_be_is_told_of_before_anything_is_learnt(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("gambol.game.cli.films.learn", lambda *_: pytest.fail("it began to learn"))
+    assert gambol("render", "reconstruct", "-o", "a.gif").exit_code == 2
+
+
+def test_progress_is_told_where_no_bar_can_be_seen(short, tmp_path):
+    done = gambol("render", short, "-o", tmp_path / "a.mp4", "--fps", 60)
+    frames = round(60 * load(short).duration)
+    told = [line for line in done.stderr.splitlines() if line.endswith(f" of {frames}")]
+    assert told == [f"{frames * part // 10} of {frames}" for part in range(1, 11)]
+
+
+def test_hints_are_for_who_plays_first_or_asks_for_them(short, tmp_path, monkeypatch):
+    games = []
+    monkeypatch.setattr("gambol.game.cli.play.show", lambda game, *_: games.append(game))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    monkeypatch.setenv("APPDATA", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    assert gambol("play").exit_code == 0
+    games[0].teacher.tick(games[0].now, 1.0)
+    remember(games[0].teacher.file, {"walk"})
+    for arguments in ((), ("--hints",), ("--no-hints",)):
+        assert gambol("play", *arguments).exit_code == 0
+    assert games[0].teacher.hints.done == frozenset() and games[1].teacher.hints.done == {"walk"}
+    assert games[2].teacher.hints.done == frozenset() and games[3].teacher is None
+    assert games[0].teacher.file.is_relative_to(tmp_path)
 
 
 def test_a_film(short, tmp_path):

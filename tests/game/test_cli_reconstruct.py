@@ -6,10 +6,6 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
-import time
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +20,8 @@ from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
 from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
 from gambol.controllers.reconstruction.live.placing import stances  # noqa: E402
 from gambol.game import cli  # noqa: E402
+from gambol.game.cli import reconstruct  # noqa: E402
+from test_stream import bundle, tracker  # noqa: E402
 
 WORN = "lwrist", "rwrist", "lankle", "rankle"
 
@@ -80,6 +78,8 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["{clip}", "--database", "{clip}", "-o", "o.bvh"], "is no motion database"),
     (["{clip}", "--database", "none.gambolmotion", "-o", "o.bvh"], "none.gambolmotion: can't be read"),
     (["{clip}", "--port", "9000", "-o", "o.bvh"], "--port goes with --stream"),
+    (["{clip}", "--host", "0.0.0.0", "-o", "o.bvh"], "--host goes with --stream"),
+    (["--stream", "osc", "--host", "", "-o", "o.bvh", "--database", "{database}", "--method", "nearest"], "host '' is no address of this machine"),
     (["--stream", "osc", "--noise", "1", "-o", "o.bvh"], "--noise goes with a motion file"),
     (["--stream", "osc", "--map", "none.toml", "-o", "o.bvh"], "none.toml: can't be read"),
     (["--stream", "osc", "--map", "m.toml", "--points", "4", "-o", "o.bvh"], "give one of them"),
@@ -101,57 +101,122 @@ def test_a_port_in_use_is_a_mistake(motion, tmp_path):
     assert done.exit_code == 2 and "can't be listened at" in done.output
 
 
+class Performer:
+    """Somebody 1.4 m tall who wears the trackers, and the clock of the program that hears them: when it waits, he moves on.
+
+    He stands in T-pose until `heard` says that it is recorded, and walks from 0.3 s after that on. `then(seconds)` is asked
+    what happens next, and whether he is seen, so long after the recording began.
+    """
+
+    def __init__(self, clip, port, heard, then=lambda seconds: True):
+        controls = parse("4", SKELETON)
+        self.standing, self.walk, self.to = stances(controls)[1], controls.extract(clip), ("127.0.0.1", port)
+        self.heard, self.then, self.began, self.now = heard, then, None, 1000.0
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+        if self.began is None and self.heard():
+            self.began = self.now
+        since = -1.0 if self.began is None else self.now - self.began
+        if self.then(since):
+            self.send(since)
+
+    def send(self, since):
+        points = self.standing if since < 0.3 else self.walk[min(int((since - 0.3) * 60), len(self.walk) - 1)]
+        there = 0.8 * points * [-1.0, 1.0, 1.0] + [0.3, 0.1, -0.2]
+        self.socket.sendto(bundle(*(tracker(name, place) for name, place in zip(WORN, there))), self.to)
+        self.socket.sendto(b"not OSC", self.to)
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+@pytest.fixture
+def stream(motion, tmp_path, monkeypatch):
+    """stream(then, …, held_up=…) → what `gambol reconstruct --stream osc` said of a performer, and the motion it wrote.
+
+    held_up: how long [s] the machine stood still as the recording began.
+    """
+    def streamed(then=lambda seconds: True, *more, held_up=0.0):
+        def say(line):
+            told.append(line)
+            performer.now += held_up if "recording" in line else 0.0
+        told, port = [], free_port()
+        performer = Performer(motion[2], port, lambda: any("recording" in line for line in told), then)
+        monkeypatch.setattr(reconstruct, "time", performer)
+        monkeypatch.setattr(reconstruct, "say", say)
+        with performer.socket:
+            done = gambol("reconstruct", "--stream", "osc", "--port", port, "--points", ",".join(WORN), "--method", "nearest",
+                          "--database", motion[0], "-o", tmp_path / "o.bvh", *more)
+        assert done.exit_code == 0, done.output
+        return told, load(tmp_path / "o.bvh")
+    return streamed
+
+
+def walked(made):
+    """Whether a body of standard size was recorded that stands on the floor."""
+    heights = made.kinematics()[0][..., 1]
+    return 1.3 < heights.max(1).mean() < 1.8 and heights.min() > -0.1
+
+
+ENDS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if os.name != "nt" and hasattr(signal, name)]
+
+
+@pytest.mark.parametrize("end", [None, *ENDS])
+def test_streams_are_recorded_until_they_are_ended_and_never_lost(stream, end):
+    """By Ctrl-C, by whoever ends the program from outside, and when the time is up."""
+    def then(seconds):
+        if end and seconds > 1.99:
+            signal.raise_signal(end)
+        return True
+    told, made = stream(then, *([] if end else ["--seconds", 2]))
+    assert "packets were broken" in told[-1] and walked(made)
+    assert len(made) == 120
+
+
+def test_a_stream_that_falls_silent_as_the_recording_begins_is_waited_for(stream):
+    told, made = stream(lambda seconds: not 0.0 <= seconds < 0.5, "--seconds", 2, held_up=0.2)
+    assert 85 < len(made) < 95 and walked(made)
+
+
+PROGRAM = """
+import sys
+from gambol.game.cli import main, reconstruct
+ticks = reconstruct._ticks
+def told(seconds):
+    for number, now in enumerate(ticks(seconds)):
+        print("tick", number, file=sys.stderr, flush=True)
+        yield now
+reconstruct._ticks = told
+main()
+"""
+
+
 @pytest.mark.skipif(os.name == "nt", reason="no signals of this kind there")
-def test_streams_are_recorded_until_they_are_ended_and_never_lost(motion, tmp_path):
-    """By Ctrl-C, by whoever ends the program from outside, and when the time is up: all three at once."""
-    with ExitStack() as stack:
-        free = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(3)]
-        for one in free:
-            one.bind(("127.0.0.1", 0))
-        ports = [one.getsockname()[1] for one in free]
-    ends, programs = (signal.SIGINT, signal.SIGTERM, None), []
-    for port, end in zip(ports, ends):
-        programs.append(subprocess.Popen(
-            [sys.executable, "-m", "gambol.game.cli", "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(WORN),
-             "--method", "nearest", "--database", str(motion[0]), "-o", str(tmp_path / f"{port}.bvh"), *([] if end else ["--seconds", "2"])],
-            stderr=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2],
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)))  # a shell's background jobs are deaf to Ctrl-C
-    with ThreadPoolExecutor(3) as pool:
-        for told in pool.map(lambda *given: performed(motion[2], *given), programs, ports, ends):
-            assert "packets were broken" in told
-    for port in ports:
-        made = load(tmp_path / f"{port}.bvh")
-        assert 60 <= len(made) <= 200
-        heights = made.kinematics()[0][..., 1]
-        assert 1.3 < heights.max(1).mean() < 1.8 and heights.min() > -0.1
-
-
-def performed(clip, program, port, end):
-    """What a program says to a performer 1.4 m tall who stands in T-pose and then walks; the body is of standard size."""
-    from test_stream import bundle, tracker
-
-    for line in program.stderr:
-        if "stand upright" in line:
-            break
-    controls = parse("4", SKELETON)
-    walk, told, size = controls.extract(clip), [], 0.8
-    listener = threading.Thread(target=lambda: told.extend(program.stderr))
-    listener.start()
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-        began = None
-        for _ in range(3000):
-            if began is None and any("recording" in line for line in list(told)):
-                began = time.monotonic()
-            since = 0.0 if began is None else time.monotonic() - began
-            if program.poll() is not None or (end and since > 2.0):
-                break
-            points = stances(controls)[1] if since < 0.3 else walk[min(int((since - 0.3) * 60), len(walk) - 1)]
-            there = size * points * [-1.0, 1.0, 1.0] + [0.3, 0.1, -0.2]
-            sender.sendto(bundle(*(tracker(name, place) for name, place in zip(WORN, there))), ("127.0.0.1", port))
-            sender.sendto(b"not OSC", ("127.0.0.1", port))
-            time.sleep(1 / 90)
-    if end:
-        program.send_signal(end)
-    assert program.wait(60) == 0, told
-    listener.join()
-    return "".join(told)
+def test_a_program_that_hears_a_stream_keeps_it_when_it_is_ended_from_outside(motion, tmp_path):
+    """By its own clock, however slow; whoever performs waits for nothing but what it says."""
+    port, out = free_port(), tmp_path / "o.bvh"
+    program = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, "reconstruct", "--stream", "osc", "--port", str(port), "--points", ",".join(WORN),
+         "--method", "nearest", "--database", str(motion[0]), "-o", str(out)], stderr=subprocess.PIPE, text=True,
+        cwd=Path(__file__).parents[2],
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # a shell's background jobs are deaf to Ctrl-C
+    performer, said, recorded = Performer(motion[2], port, lambda: "recording" in "".join(said)), [], 0
+    with performer.socket, program:
+        for line in program.stderr:
+            performer.sleep(1 / 60)
+            if not line.startswith("tick"):
+                said.append(line)
+            elif performer.heard():
+                recorded += 1
+                if recorded == 20:
+                    program.send_signal(signal.SIGINT)
+    assert program.returncode == 0, said
+    assert "packets were broken" in said[-1] and len(load(out)) >= 19

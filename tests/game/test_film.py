@@ -5,8 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import person
 from gambol.game.camera.line_of_sight import blocked
+from gambol.game.input.script import jumping
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load, shipped
 from gambol.game.scenario.shots import parts
@@ -136,6 +138,53 @@ def test_following_cameras_keep_out_of_walls(tmp_path):
     assert np.linalg.norm(eyes[0] - pictures[0][1][0].camera.target) < 3
 
 
+def test_an_actor_is_there_from_when_it_enters_until_it_leaves(tmp_path):
+    """Meanwhile it moves as it would from the beginning; before and afterwards nobody sees it and it costs nothing."""
+    text = HEAD + SHOTS + ACTORS
+    late = text.replace('start = [2, 0, 90]', 'start = [2, 0, 90]\nmoves = [{ for = 9, velocity = [1.1, 0.2, 0] }]')
+    _, early = filmed(tmp_path, late)
+    _, later = filmed(tmp_path, late.replace("[2, 0, 90]", "[2, 0, 90]\nenters = 3\nleaves = 7"))
+    grounds = [[frame.after.characters[1].state.ground for frame, _ in one] for one in (early, later)]
+    for (frame, scenes), ground in zip(later, grounds[1]):
+        there = 3.0 <= frame.time < 7.0
+        assert [figure.opacity > 0.0 for figure in scenes[0].figures] == [True, there]
+        assert np.array_equal(ground, grounds[1][0]) == (frame.time < 3.0)
+    assert np.array_equal(grounds[1][60:140], grounds[0][:80]), "three seconds later, to the bit"
+    assert all(np.array_equal(ground, grounds[1][140]) for ground in grounds[1][140:])
+    assert all(np.array_equal(a[0].after.characters[0].state.ground, b[0].after.characters[0].state.ground)
+               for a, b in zip(early, later)), "nobody else minds"
+
+
+PANELS = """
+[[shots]]
+actor = "B"
+[[shots]]
+at = 4
+actor = "B"
+panels = ["space", "plots"]
+[[shots]]
+at = 8
+"""
+
+
+def test_a_shot_shows_panels_about_its_actor_the_same_in_every_run(tmp_path, walker):
+    text = (HEAD + PANELS + ACTORS).replace("fps = 20", "fps = 10\nsize = [640, 360]").replace(
+        "start = [2, 0, 90]", "start = [2, 0, 90]\nmoves = [{ for = 12, velocity = [1.3, 0.4, 0], until = [2.6, -0.2, 0] }]")
+    runs = [list(film.scenes(load(written(tmp_path, text)), walker)) for _ in range(2)]
+    inks = [[scenes[0].ink for _, scenes in run] for run in runs]
+    assert [ink is not None for ink in inks[0]] == [False] * 40 + [True] * 40 + [False] * 40
+    for one, other in zip(*(run[40:80] for run in inks)):
+        assert np.array_equal(one.vertices, other.vertices) and np.array_equal(one.indices, other.indices)
+        assert one.size == (640, 360) and one.vertices["place"][:, 0].min() > 0.6 * 640
+    assert not np.array_equal(inks[0][40].vertices, inks[0][41].vertices), "they live"
+    alone = text.replace('panels = ["space", "plots"]', 'panels = ["plots"]')
+    fewer = [scenes[0].ink for _, scenes in film.scenes(load(written(tmp_path, alone)), walker)][40]
+    assert 0 < len(fewer.vertices) < len(inks[0][40].vertices)
+    other = text.replace('at = 4\nactor = "B"', 'at = 4\nactor = "A"')
+    about = [scenes[0].ink for _, scenes in film.scenes(load(written(tmp_path, other)), walker)][40]
+    assert not np.array_equal(about.vertices, inks[0][40].vertices), "about whom the shot is"
+
+
 @pytest.fixture(scope="module")
 def walker():
     return person()
@@ -165,8 +214,30 @@ def test_shipped_films_show_whom_they_are_about(name, walker, monkeypatch):
         for table, scene in zip(shot.cameras, scenes, strict=True):
             assert blocked(scene.camera.eye, scenario.stage(), 0.0) is None and scene.camera.eye[1] > 0.1
             aspect = scene.part[2] * scenario.size[0] / (scene.part[3] * scenario.size[1])
-            for actor in table.names or (scenario.actors[0].name,):
-                feet = scene.figures[frame.after.index(actor)].positions[0] * [1, 0.1, 1]
-                x, y = in_picture(feet, scene.camera, aspect)
-                seen, lost = seen + 1, lost + (max(abs(x), abs(y)) > 1)
+            inside = {}
+            for actor, figure in zip(frame.after.characters, scene.figures, strict=True):
+                x, y = in_picture(figure.positions[0] * [1, 0.1, 1], scene.camera, aspect)  # the feet
+                inside[actor.name] = figure.opacity > 0.0 and max(abs(x), abs(y)) <= 1
+            # a shot of a place is about anybody who is there
+            for there in [inside[name] for name in table.names] or [any(inside.values())]:
+                seen, lost = seen + 1, lost + (not there)
     assert lost <= 0.03 * seen, f"{lost} of {seen}"
+
+
+def test_the_demo_goes_as_it_is_told(walker, monkeypatch):
+    """Every jump is made, nobody walks through anybody or off a platform, and all are where the film needs them."""
+    monkeypatch.setattr(film, "follower_of", lambda performer, *_: walker)
+    scenario = load("demo").at_fps(20)
+    apart, jumped, frame = [], set(), None
+    for frame in film.run(scenario, walker):
+        people = {one.name: one for one in frame.after.characters if one.there(frame.after.number)}
+        if {"B", "C"} <= set(people):
+            apart.append(np.linalg.norm(people["B"].state.ground[:2] - people["C"].state.ground[:2]))
+        jumped |= {(name, round(float(one.state.floor), 2)) for name, one in people.items() if jumping(one.state) is not None}
+        for one in people.values():
+            x, z = one.state.ground[:2]
+            assert jumping(one.state) is not None or floor_at(x, z, scenario.stage()) == pytest.approx(float(one.state.floor)), \
+                f"{one.name} stands on nothing at {frame.time:.2f} s"
+    assert not frame.refused and len(apart) > 150 and min(apart) > 0.8
+    assert {("A", 0.3), ("A", 0.6), ("A", 0.0), ("P", 0.0), ("Child", 0.0), ("Adult", 0.0), ("Moon", 0.0)} <= jumped
+    assert np.linalg.norm(frame.after.characters[0].state.ground[:2] - [19.4, 35.2]) < 0.4, "in front of the last camera"

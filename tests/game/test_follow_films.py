@@ -117,6 +117,7 @@ FAULTS = [
     ("from = 1, to = 2", "from = 2, to = 1", "actors[1].follows.hidden[0]: `from` comes before `to`"),
     ("beside = [-1.5, 0, 0.25]", "beside = [-1.5, 0]", "actors[1].follows.beside[2]: is missing, and needed"),
     ('name = "shadow"\n', 'name = "shadow"\nstart = [1, 0, 0]\n', "actors[1]: who follows points has no start"),
+    ('name = "shadow"\n', 'name = "shadow"\nenters = 1\n', "actors[1]: who follows points has no enters"),
     ('name = "shadow"\n', 'name = "shadow"\nmoves = []\n', "actors[1]: who follows points has no moves"),
     ("duration = 3", 'duration = 3\ndatabase = "none.gambolmotion"', "database: there is no file 'none.gambolmotion'"),
 ]

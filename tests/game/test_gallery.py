@@ -128,8 +128,11 @@ def test_the_command_makes_what_is_missing(names, tmp_path, monkeypatch):
         def __init__(self, size, preset):
             super().__init__()
 
-        __enter__ = lambda self: self
-        __exit__ = lambda self, *error: None
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            return None
 
     monkeypatch.setattr(hosts, "Offscreen", Hidden)
     monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())

@@ -89,7 +89,7 @@ def walked(controller, seconds, *wishes):
 def test_who_opens_no_panel_never_loads_imgui():
     done = subprocess.run([sys.executable, "-c", "import gambol.game.app.app, gambol.game.hosts.window, gambol.game.render, sys\n"
                            "print('imgui_bundle' in sys.modules)"], cwd=Path(__file__).parents[2],
-                          capture_output=True, text=True, timeout=120)
+                          capture_output=True, text=True, timeout=600)
     assert done.stdout.split() == ["False"], done.stderr
 
 

@@ -121,7 +121,7 @@ def test_the_film_instead_follows_the_players_options(started, capsys):
     assert where is None and there is None, "paths are meant from where the user is"
     assert "filmed into out/demo.mp4 (where --loud means nothing)" in capsys.readouterr().out
     started()
-    assert "filmed into out/demo.mp4\n" in capsys.readouterr().out
+    assert "filmed into out/demo.mp4: three minutes or so\n" in capsys.readouterr().out
 
 
 def test_both_commands_know_what_is_handed_on():

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body.ground_frame import compose
@@ -12,7 +12,7 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import LibraryError, Locomotion
 from playing import FPS, WISHES, hold, mean_velocity, play, whims
 
-law = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+law = settings(max_examples=15, deadline=None)
 seeds = st.integers(0, 2**32 - 1)
 
 

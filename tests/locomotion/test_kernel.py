@@ -114,8 +114,8 @@ def test_series_of_any_length_agree_with_plain_arithmetic(library, harmonics):
     weights /= weights.sum()
     row = np.empty(COLUMNS, np.float32)
     for phase in (0.0, 0.25, 0.5, 0.99, *rng.random(5)):
-        series_kernel(series_table(short), weights, phase, row)
-        wanted = fourier.evaluate(np.tensordot(weights.astype(float), short.coefficients, 1), phase)
+        series_kernel(series_table(short), weights, np.float32(phase), row)
+        wanted = fourier.evaluate(np.tensordot(weights.astype(float), short.coefficients, 1), np.float32(phase))
         chart = row[:3 * LANES].reshape(3, LANES).T
         np.testing.assert_allclose(chart[:joints], wanted[:3 * joints].reshape(joints, 3), atol=1e-5)
         np.testing.assert_array_equal(chart[joints:], 0)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body import human
@@ -129,13 +129,13 @@ def test_foreign_files_are_refused_by_name(data, tmp_path):
     refused(data, tmp_path / "foreign.npz")
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, deadline=None)
 @given(share=st.floats(0, 1, exclude_max=True))
 def test_truncated_files_are_refused_by_name(sound, tmp_path, share):
     refused(sound[:int(share * len(sound))], tmp_path / "short.npz")
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=300, deadline=None)
 @given(changes=st.lists(st.tuples(st.one_of(st.integers(0, 400), st.integers(-700, -1), st.integers(0, 10**6)),
                                   st.integers(0, 255)), min_size=1, max_size=4))
 def test_damaged_files_are_refused_by_name_or_hold_sound_arrays(sound, tmp_path, changes):

@@ -2,17 +2,18 @@
 
 import itertools
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from motion_samples import BVH, named_points, random_clip, seeds
+from motion_samples import BVH, named_points, random_clip, seeds, standing
 from pymotion.io.bvh import BVH as OtherReader
 from pymotion.ops.skeleton import fk
 from scipy.spatial.transform import Rotation
 
-from gambol.controllers.mocap import read_bvh, write_bvh
+from gambol.controllers.mocap import load, read_bvh, retarget, write_bvh
 from gambol.controllers.mocap.parsing import parse_number
 
 ORDERS = ["".join(order) for order in itertools.permutations("XYZ")]
@@ -141,6 +142,61 @@ def test_places_of_other_joints(tmp_path):
             clip = read_bvh(path)
         np.testing.assert_array_equal(clip.skeleton.offsets[1], expected)
         assert bool(caught) == warned
+
+
+def below_a_reference(clip, path, still=False, all_joints=False):
+    """Write a clip's BVH with a joint `Reference` over its hips, which stands aside and turned, and leaves all travel to them.
+
+    all_joints: position channels for every joint, as MotionBuilder and Maya have it. still: the reference's own are 0.
+    """
+    plain = path.with_name("plain.bvh")
+    write_bvh(clip, plain)
+    head, body = plain.read_text().split("MOTION\n")
+    place, turn = np.array([0.0, 0, 0] if still else [120.0, 0, -40]), np.array([0.0, 0, 0] if still else [0.0, 0, 70])
+    skeleton = clip.skeleton
+    if all_joints:
+        head = head.replace("CHANNELS 3 ", "CHANNELS 6 Xposition Yposition Zposition ")
+    head = head.replace("ROOT Hips", "JOINT Hips").replace("HIERARCHY\n", "HIERARCHY\nROOT Reference\n{\nOFFSET 0 0 0\n"
+                        "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n")
+    rows = np.loadtxt(body.splitlines()[2:])
+    back = Rotation.from_euler("ZXY", turn, degrees=True).inv()
+    rows[:, :3] = back.apply(rows[:, :3] - place)
+    rows[:, 3:6] = (back * Rotation.from_euler("ZXY", rows[:, 3:6], degrees=True)).as_euler("ZXY", degrees=True)
+    if all_joints:
+        offsets = np.tile(skeleton.offsets[1:] * 100, (len(rows), 1, 1))
+        turns = rows[:, 6:].reshape(len(rows), -1, 3)
+        rows = np.hstack([rows[:, :6], np.concatenate([offsets, turns], -1).reshape(len(rows), -1)])
+    rows = np.hstack([np.tile(np.concatenate([place, turn]), (len(rows), 1)), rows])
+    path.write_text(head + "}\nMOTION\n" + "\n".join(body.splitlines()[:2]) + "\n"
+                    + "\n".join(" ".join(f"{value:.6f}" for value in row) for row in rows) + "\n")
+
+
+@pytest.mark.parametrize("still", [True, False])
+@pytest.mark.parametrize("all_joints", [True, False])
+def test_a_body_whose_hips_travel_below_a_reference_walks(tmp_path, still, all_joints):
+    """Every joint is where the file says, and what is made of it on Gambol's skeleton is the same walk."""
+    clip, path = standing(), tmp_path / "clip.bvh"
+    clip.root[:, [0, 2]] += np.linspace([0.0, 0.0], [0.7, 3.0], len(clip))
+    below_a_reference(clip, path, still, all_joints)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        back = load(path)
+    ours, theirs = named_points(clip)[0], named_points(back)[0]
+    for name in ours:
+        np.testing.assert_allclose(theirs[name], ours[name], atol=1e-5)
+    np.testing.assert_allclose(retarget(back).root, retarget(clip).root, atol=1e-4)
+
+
+def test_a_walker_that_is_no_human_walks_too(tmp_path):
+    """Without names to go by, the body hangs from the first joint that branches."""
+    clip, path = random_clip(3, 7, 5), tmp_path / "clip.bvh"
+    names = ("Hips", *clip.skeleton.names[1:])
+    parents = np.array([-1, 0, 0, 1, 1, 2, 2])
+    clip = replace(clip, skeleton=replace(clip.skeleton, names=names, parents=parents))
+    below_a_reference(clip, path)
+    ours, theirs = named_points(clip)[0], named_points(read_bvh(path))[0]
+    for name in ours:
+        np.testing.assert_allclose(theirs[name] * 0.01, ours[name], atol=1e-5)
 
 
 def test_writing_refuses_what_it_can_not_write(tmp_path):

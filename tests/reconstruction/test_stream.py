@@ -1,10 +1,11 @@
 """Points by OSC over a real socket: whoever sends, whatever comes, and however somebody stands at first."""
 
+import logging
 import socket
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 from pythonosc.osc_message_builder import OscMessageBuilder
@@ -120,7 +121,7 @@ def test_broken_packets_are_left_out_and_counted(stream, send, packet):
 
 
 @given(st.binary(max_size=200), st.sampled_from([b"", b"/VMC/Ext/Tra/Pos\0\0\0\0,sfff\0\0\0", b"#bundle\0" + b"\0" * 7 + b"\1"]))
-@settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=300)
 def test_no_packet_does_harm(noise, head):
     for _, _, place in understood(head + noise) or ():
         assert np.isfinite(place).all()
@@ -130,6 +131,42 @@ def test_trackers_on_no_point_are_told_of(stream, send):
     send(tracker("LHR-9", (0, 1, 0)), tracker("LHR-1", (0, 1, 0)))
     stream.at(0.0)
     assert stream.unknown == ["LHR-9"]
+
+
+def test_only_this_machine_is_heard_unless_somebody_says_so():
+    with Stream(WORN, 0) as stream, Stream(WORN, 0, "0.0.0.0") as open_:
+        assert stream.host == "127.0.0.1" and stream.local and open_.host == "0.0.0.0" and not open_.local
+
+
+@pytest.mark.parametrize("host", ["", "::1", "203.0.113.7", "a\0b", "..", "x" * 300])
+def test_an_address_that_is_none_of_this_machine_is_told_of(host):
+    with pytest.raises(StreamError, match="^host '.*' is no address of this machine .*127.0.0.1 .* 0.0.0.0") as error:
+        Stream(WORN, 0, host)
+    assert str(error.value).isprintable()
+
+
+def test_names_of_trackers_are_bounded_in_length_and_number_and_command_no_terminal(stream, send):
+    named = {*WORN, *WORN.values()}
+    send(tracker("x" * 101, (0, 1, 0)))
+    stream.at(0.0)
+    assert stream.broken == 1 and not stream.heard
+    for k in range(500):
+        send(tracker(f"\x1b]0;owned\x07\n[bold]{k}", (0, 1, 0)))
+        stream.at(0.1)
+    send(tracker("LHR-1", (0, 2, 0)))
+    assert stream.at(0.2)[0, 1] == 2 and "LHR-1" in stream.heard
+    assert len(stream.heard) <= 64 + 2 * len(named) and len(stream.unknown) >= 64
+    assert all(name.isprintable() and len(name) < 300 for name in stream.unknown)
+
+
+def test_a_broken_bundle_is_not_logged(caplog, capfd):
+    """The library shows all of it to whoever listens to any log."""
+    before = list(logging.getLogger().handlers)
+    good, nonsense = tracker("LHR-1", (0, 1, 0)).dgram, b"secret\x1b[2J" * 400
+    parts = b"".join(len(part).to_bytes(4, "big") + part for part in (good, nonsense))
+    understood(b"#bundle\0" + b"\0" * 7 + b"\1" + parts)
+    understood(b"/VMC/Ext/Tra/Pos\0\0\0\0,\x1bq\0")
+    assert not caplog.records and "secret" not in "".join(capfd.readouterr()) and logging.getLogger().handlers == before
 
 
 def test_a_port_that_is_in_use_is_told_of(stream):

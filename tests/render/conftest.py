@@ -54,11 +54,11 @@ def display():
         while not number.endswith(b"\n") and (more := os.read(read, 16)):
             number += more
         if not number.strip():
-            server.wait(5)
+            server.wait(600)
             pytest.skip("Xvfb did not start")
         yield f":{number.decode().strip()}"
         server.terminate()
-        server.wait(10)
+        server.wait(600)
         os.close(read)
     else:
         pytest.skip("no Xvfb here to open a window on")

@@ -4,7 +4,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,31 +14,29 @@ from gambol.game.hosts.window import Pads
 
 ROOT = Path(__file__).parents[2]
 APP = '''
-import sys, time
-import numpy as np
+import sys
 sys.path.insert(0, "tests/render")
 from poses import STRIDE, camera, figure
 from gambol.game.hosts import DisplayError, run_window
 from gambol.game.scene.scene import Scene
 
 class App:
-    done, time, events, sizes = False, 0.0, [], set()
+    done, time, shown, events, sizes = False, 0.0, 0, [], set()
     full_screen = mouse_captured = wants_picture = False
     def handle(self, event): self.events.append(event)
     def tick(self, seconds):
         self.time += seconds
-        self.done = self.time > {seconds}
     def scene(self, size):
         self.sizes.add(size)
+        self.shown += 1
+        self.done = self.shown == 30
         return Scene(camera(), (figure(**STRIDE),), text=("hello",))
 app = App()
-began = time.perf_counter()
 try:
-    frames = run_window(app, (320, 180), "fast", vsync=False, limit=20.0)
+    frames = run_window(app, (320, 180), "fast", vsync=False, limit=500.0)
 except DisplayError as error:
     print("refused:", error)
 else:
-    took = time.perf_counter() - began
     print("frames", frames, "simulated", round(app.time, 3), "events", [type(e).__name__ for e in app.events[:1]],
           "sizes", sorted(app.sizes), "paced", frames <= 62 * app.time + 2)
 '''
@@ -48,22 +45,20 @@ else:
 def run(code, **environment):
     kept = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     return subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=kept | environment, capture_output=True,
-                          text=True, timeout=60)
+                          text=True, timeout=600)
 
 
-def test_a_window_opens_runs_for_a_second_and_closes(display):
-    ran = run(APP.format(seconds=1.0), DISPLAY=display)
+def test_a_window_opens_runs_for_thirty_frames_and_closes(display):
+    ran = run(APP, DISPLAY=display)
     assert ran.returncode == 0, ran.stderr
-    assert "frames" in ran.stdout, ran.stdout
-    words = ran.stdout.split()
-    assert int(words[words.index("frames") + 1]) >= 5, ran.stdout
+    assert "frames 30 " in ran.stdout, ran.stdout
     assert "['Resize']" in ran.stdout and "[(320, 180)]" in ran.stdout and "paced True" in ran.stdout, ran.stdout
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux runs without a display server")
 @pytest.mark.parametrize("environment", [{}, {"DISPLAY": ":987"}])
 def test_without_a_display_the_error_says_what_to_do(environment):
-    ran = run(APP.format(seconds=1.0), **environment)
+    ran = run(APP, **environment)
     assert ran.returncode == 0 and "refused: no display" in ran.stdout and "gambol render" in ran.stdout, ran.stderr
 
 
@@ -155,7 +150,7 @@ class App:
     def __init__(self):
         self.bindings, self.keyboard, self.drag = load(sys.argv[1]), Keyboard(), 0.0
         self.done = self.full_screen = self.mouse_captured = self.wants_picture = False
-        self.ticks = 0
+        self.captured = False
     def handle(self, event):
         match event:
             case KeyEvent(key, True):
@@ -173,15 +168,14 @@ class App:
                     print("dragged", flush=True)
                 self.drag = wish.drag[0]
     def tick(self, seconds):
-        self.ticks += 1
-        if self.ticks == 1:
-            print("ready", flush=True)
+        print("free" if not self.captured else "captured", flush=True)  # the pointer is taken away in the next frame
+        self.captured = self.mouse_captured
         wish = self.keyboard.wish(self.bindings)
         if wish.move != (0.0, 0.0):
             print("move", wish.move[0], wish.move[1], flush=True)
     def scene(self, size):
         return Scene(camera(), text=(str(size),))
-run_window(App(), (320, 180), "fast", vsync=False, limit=40.0)
+run_window(App(), (320, 180), "fast", vsync=False, limit=500.0)
 print("closed", flush=True)
 '''
 
@@ -203,9 +197,9 @@ def test_remapped_keys_and_the_mouse_do_what_the_file_says_in_a_real_window(disp
         pytest.fail(f"never said {line!r}: {said}")
 
     def do(*words):
-        subprocess.run(["xdotool", *words], env=kept, check=True, timeout=20)
+        subprocess.run(["xdotool", *words], env=kept, check=True, timeout=600)
     try:
-        until("ready")
+        until("free")
         do("search", "--sync", "--name", "^Gambol$", "windowfocus", "--sync")
         do("key", "w", "p")  # these do nothing any more
         do("keydown", "i")
@@ -216,15 +210,17 @@ def test_remapped_keys_and_the_mouse_do_what_the_file_says_in_a_real_window(disp
         until("dragged")
         do("mouseup", "1", "mousemove_relative", "--", "-30", "0", "key", "F7")
         until("did camera_mode")
-        time.sleep(0.3)  # the pointer is taken away in the next frame
-        for _ in range(3):  # the first one only says where the mouse is
+        until("captured")
+        moves, before = 0, said.count("dragged")
+        while said.count("dragged") == before:  # the first one only says where the mouse is
             do("mousemove_relative", "25", "0")
-            time.sleep(0.1)
-        until("dragged")
+            until("captured")
+            moves += 1
+            assert moves < 1000, "a captured mouse drags nothing"
         do("key", "F11", "key", "End")
         until("closed")
         assert "did full_screen" in said and "did quit" in said
         assert sum(line == "did pause" for line in said) == 1, said
     finally:
         game.kill()
-        game.communicate(timeout=20)
+        game.communicate(timeout=600)

@@ -8,7 +8,7 @@ from poses import CROUCH, HUMAN, STAND, STRIDE, camera, figure
 
 from gambol.game.hosts import Offscreen
 from gambol.game.render import FULL, Renderer, preset, sun, view
-from gambol.game.scene.scene import Box, Caption, Goal, Overlays, Pillar, Scene
+from gambol.game.scene.scene import Box, Caption, Goal, Hint, Overlays, Pillar, Scene
 
 WALKER = figure(heading=0.6, options=dict(
     contacts=np.array([1, 0, 0, 1], bool),
@@ -97,6 +97,22 @@ def test_text_is_there_and_readable(draw):
     away = np.abs(plain.astype(int) - lettered)[..., :3].max(-1) > 60
     rows, columns = np.nonzero(away)
     assert 30 < away.sum() < 1500 and rows.max() < 40 and columns.max() < 100
+
+
+def test_a_hint_stands_in_the_middle_below_and_fades(draw):
+    scene = GOLDEN["stride"]
+    plain = draw(scene).astype(int)
+    whole, half = (np.abs(draw(replace(scene, hint=Hint((("W", True), ("to walk", False)), opacity))) - plain).max(-1)
+                   for opacity in (1.0, 0.5))
+    rows, columns = np.nonzero(whole)
+    assert rows.min() > 0.8 * plain.shape[0] and abs(0.5 * (columns.min() + columns.max()) - 0.5 * plain.shape[1]) < 3
+    assert whole.max() > 60 and 0.3 * whole.sum() < half.sum() < 0.7 * whole.sum()
+
+
+def test_of_somebody_who_is_not_there_nothing_is_seen(draw):
+    scene = replace(GOLDEN["overlays"], text=())
+    gone = replace(scene, figures=(replace(WALKER, opacity=0.0),))
+    assert np.array_equal(draw(gone), draw(replace(scene, figures=()))) and not np.array_equal(draw(gone), draw(scene))
 
 
 def test_bones_show_through_the_body(draw):

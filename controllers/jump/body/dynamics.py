@@ -37,6 +37,7 @@ class Physique:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Real) or not low <= value <= high:
                 raise ValueError(f"{name} must be a number within {low:g} … {high:g}, got {value!r}")
+            object.__setattr__(self, name, float(value))  # kernels are compiled anew for other kinds of numbers
         if self.sex not in ("male", "female"):
             raise ValueError(f"sex must be male or female, got {self.sex!r}")
 

@@ -62,7 +62,7 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
     reach = STRAIGHT * (body.thigh + body.shank)
     root = positions[hip]
     pelvis = orientations[0]
-    for attempt in range(4):
+    for _ in range(4):
         foot_kernel(foot[3], foot[4], turned)
         ankle_kernel(body, foot, turned, at)
         if foot[5] > 0.0 and _apart(root, at) > reach:

@@ -90,7 +90,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         leave, trail, soft = guess[:3], guess[3], guess[4]
         height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
-        flight = airtime if airtime is not None else max(
+        flight = float(airtime) if airtime is not None else max(
             least_effort(leave, land, pushing.before, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
             apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
         velocity = take_off_velocity(leave, land, flight, gravity)

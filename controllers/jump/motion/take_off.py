@@ -14,7 +14,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...body import yaw
 from ...compiled import kernel
@@ -178,6 +177,8 @@ class Running:
         elif above(longest, contact) >= 0.0:
             yielding = longest
         else:
+            from scipy.optimize import brentq  # slow to load, and a game starts without
+
             yielding = brentq(above, least, longest, args=(contact,), xtol=1e-4)
         rise = risen(contact - yielding, float(velocity[1]), g)
         low = (start.centre + start.velocity * yielding) * FLAT

@@ -14,7 +14,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from ...compiled import kernel
 from ..body import GRAVITY, Physique, centre_kernel, frame, pose_kernel, stand_pelvis_kernel, support_kernel
@@ -68,6 +67,8 @@ def sample(physique: Physique, velocity, rise: float, gravity=GRAVITY, *, feet: 
     low, high = lines.min(0), lines.max(0)
     ground = feet[:, 1].mean() - body.sole
     box = np.array([[low[0], ground, low[1]], [high[0], pelvis[1], high[1]]])
+    from scipy.stats import qmc  # slow to load, and no jump that is played is sampled
+
     tried = np.ascontiguousarray(qmc.scale(qmc.Halton(3, rng=np.random.default_rng(seed)).random(count), *box))
     found = np.full((count, 6), np.nan)
     samples_kernel(fixed, spring, feet, pelvis[1], standing, velocity / np.linalg.norm(velocity), float(rise), gravity,

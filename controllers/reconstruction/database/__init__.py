@@ -2,12 +2,11 @@
 and a store on disk for what was learnt from them.
 """
 
-from . import default, store
 from .build_database import build
 from .database import SUFFIX, Database, DatabaseError, Take
 from .default import default_database
 from .store import identity, kept
 
 __all__ = [
-    "SUFFIX", "Database", "DatabaseError", "Take", "build", "default", "default_database", "identity", "kept", "store",
+    "SUFFIX", "Database", "DatabaseError", "Take", "build", "default_database", "identity", "kept",
 ]

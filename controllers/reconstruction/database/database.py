@@ -11,11 +11,13 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Collection
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from ...files import ordinary, whole
 from ..pose_vector import ANGLES, JOINTS, REFERENCE, ROOT, SKELETON, WIDTH, mirror
 
 FPS = 60.0
@@ -85,7 +87,7 @@ class Database:
         """A database from its file. DatabaseError, naming file and fault, unless it is whole and of this chart."""
         path = Path(path)
         try:
-            with path.open("rb") as file:
+            with ordinary(path).open("rb") as file:
                 magic = file.read(len(_MAGIC))
                 size = file.seek(0, os.SEEK_END)
                 if magic != _MAGIC:
@@ -100,17 +102,22 @@ class Database:
                 about = json.loads(file.read(length))
         except OSError as error:
             raise DatabaseError(f"{path}: can't be read: {error.strerror or error}") from None
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             if isinstance(error, DatabaseError):
                 raise
             raise DatabaseError(f"{path}: its table of takes is damaged; build it anew") from None
         count = (size - HEAD - 8 - length) // (4 * WIDTH + 1)
-        if about.get("chart") != _CHART or about.get("frames") != count:
+        if not isinstance(about, dict) or about.get("chart") != _CHART or about.get("frames") != count:
             raise DatabaseError(f"{path}: was built by another version of Gambol; build it anew")
-        takes = tuple(Take(**take) for take in about["takes"])
+        try:
+            takes, fps = tuple(Take(**take) for take in about["takes"]), float(about["fps"])
+            if not 0.0 < fps < 1e4 or any(not 0 <= take.start <= take.stop <= count for take in takes):
+                raise ValueError
+        except (LookupError, TypeError, ValueError):
+            raise DatabaseError(f"{path}: its table of takes is damaged; build it anew") from None
         frames = np.asarray(np.memmap(path, np.float32, "r", HEAD, (count, WIDTH)))
         sound = np.memmap(path, np.uint8, "r", HEAD + 4 * WIDTH * count, (count,)) == 1
-        return Database(frames, sound, takes, float(about["fps"]), path)
+        return Database(frames, sound, takes, fps, path)
 
     def only(self, takes: Collection[Take]) -> Database:
         """The same database with some of its takes only; frames keep their numbers."""
@@ -154,14 +161,15 @@ class Writer:
 
     def __init__(self, path: str | Path, fps: float = FPS, mirrors: bool = True):
         self.path, self.fps, self.mirrors = Path(path), fps, mirrors
-        self.part = self.path.with_name(f"{self.path.name}.part")
         self.takes: list[Take] = []
         self.count = 0
         self._sound: list[np.ndarray] = []
 
     def __enter__(self) -> Writer:
-        self._file = self.part.open("wb")
-        self._file.write(_MAGIC.ljust(HEAD, b"\0"))
+        with ExitStack() as stack:
+            self._file = stack.enter_context(open(stack.enter_context(whole(self.path)), "wb"))
+            self._file.write(_MAGIC.ljust(HEAD, b"\0"))
+            self._closing = stack.pop_all()
         return self
 
     def add(self, clip: str, subject: str, action: str, frames: np.ndarray, sound: np.ndarray,
@@ -176,15 +184,12 @@ class Writer:
                                    interpolated))
             self.count += len(frames)
 
-    def __exit__(self, kind, *_) -> None:
-        try:
-            if kind is None:
+    def __exit__(self, *error) -> None:
+        with self._closing as closing:
+            if error[0] is None:
                 self._finish()
-        finally:
-            self._file.close()
-            if kind is None:
-                os.replace(self.part, self.path)
-            self.part.unlink(missing_ok=True)
+            else:
+                closing.pop_all().__exit__(*error)
 
     def _finish(self) -> None:
         for sound in self._sound:

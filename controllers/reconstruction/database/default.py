@@ -60,9 +60,7 @@ def default_database() -> Database:
         os.utime(path)  # it is wanted still
     else:
         path.parent.mkdir(parents=True, exist_ok=True)
-        own = path.with_name(f"{os.getpid()}-{path.name}")  # another process may be at it, too
-        write_own(own)
-        own.replace(path)
+        write_own(path)
     return Database.open(path)
 
 

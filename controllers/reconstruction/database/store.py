@@ -17,6 +17,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ...compiled import DAY, cache_folder
+from ...files import whole
 from .database import Database
 
 _PROBES = 4096  # frames that tell one database's motion from another's
@@ -62,11 +63,8 @@ def kept(kind: str, database: Database, settings: Any, make: Callable[[], T], sa
         for old in home.iterdir():
             if time.time() - old.stat().st_mtime > _UNUSED:
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
-        own = home / f"{os.getpid()}-{path.name}"  # another process may be at it, too
-        save(made, own)
-        if path.is_dir():  # a damaged one, which no file system replaces by itself
-            shutil.rmtree(path)
-        own.replace(path)
+        with whole(path) as own:
+            save(made, own)
     except OSError:  # a full or locked disk: learnt anew next time
         pass
     return made

@@ -2,8 +2,8 @@
 
 from .placing import Standing, placed
 from .sources import Recorded
-from .stream import PORT, Stream, read_map, usual_map
+from .stream import HOST, PORT, Stream, read_map, usual_map
 
 __all__ = [
-    "PORT", "Recorded", "Standing", "Stream", "placed", "read_map", "usual_map",
+    "HOST", "PORT", "Recorded", "Standing", "Stream", "placed", "read_map", "usual_map",
 ]

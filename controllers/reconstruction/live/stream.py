@@ -7,6 +7,8 @@ and /tracking/trackers/N/position (a position), alone or in bundles. Both come f
 
 from __future__ import annotations
 
+import errno
+import logging
 import re
 import socket
 import tomllib
@@ -14,14 +16,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from pythonosc import osc_bundle, osc_message
 from pythonosc.osc_packet import OscPacket, ParseError
 
+from ...files import contents, printable
 from ..control_points import ControlPoints, parse
 from ..pose_vector import SKELETON
 from .placing import Placement
 
 PORT = 39539
 """The port that VMC programs send to unless told otherwise. VRChat's is 9000."""
+HOST = "127.0.0.1"
+"""Only programs on this machine are heard unless somebody says so: OSC knows no password. 0.0.0.0 hears any machine."""
 STALE = 0.15
 """A tracker that was silent for so long [s] is lost."""
 USUAL = {"hmd": "head+0/0.09/0.09", "1": "root", "2": "lankle", "3": "rankle"}
@@ -31,6 +37,10 @@ _VMC = re.compile(r"/VMC/Ext/(Hmd|Con|Tra)/Pos")
 _VRCHAT = re.compile(r"/tracking/trackers/([1-8]|head)/position")
 _FROM_UNITY = np.array([-1.0, 1.0, 1.0])
 _AT_ONCE = 4096  # packets taken in one go: a flood must not stop a frame
+_LONGEST_NAME, _MOST_NAMES = 100, 64  # of trackers: letters, and how many that are on no point are remembered
+# the library logs a broken packet whole, for everybody to see: here it is counted
+osc_bundle.logging = osc_message.logging = logging.getLogger("gambol.osc")
+osc_bundle.logging.disabled = True
 
 
 class StreamError(ValueError):
@@ -42,12 +52,12 @@ class Stream:
 
     points: what each tracker is on, a point as `controls.parse` has it by serial number, "hmd" for any head-set.
     A tracker that is called like one of these points is on it, too.
-    port, host: where to listen. stale: [s] see STALE. placement: into the world; `placing` finds one.
-    heard: when each tracker was last heard of [s], by serial number. broken: how many packets were no OSC that we know.
-    StreamError if the port can't be had. Close it, or use it in a `with`.
+    port, host: where to listen, see HOST. stale: [s] see STALE. placement: into the world; `placing` finds one.
+    heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how many
+    packets were no OSC that we know. StreamError if host or port can't be had. Close it, or use it in a `with`.
     """
 
-    def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = "0.0.0.0", stale: float = STALE):
+    def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = HOST, stale: float = STALE):
         self.controls = controls_of(points)
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
@@ -56,9 +66,14 @@ class Stream:
         self._since = np.full(len(points), -np.inf)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
+            if not host:
+                raise ValueError("it is empty")
             self._socket.bind((host, port))
-        except (OSError, OverflowError) as error:
+        except (OSError, OverflowError, ValueError, TypeError) as error:
             self._socket.close()
+            if isinstance(error, (socket.gaierror, ValueError, TypeError)) or getattr(error, "errno", None) == errno.EADDRNOTAVAIL:
+                raise StreamError(f"host {printable(host)!r} is no address of this machine ({getattr(error, 'strerror', None) or error}): "
+                                  f"{HOST} hears programs on it, 0.0.0.0 those on other machines, too") from None
             raise StreamError(f"port {port} can't be listened at ({getattr(error, 'strerror', None) or error}): "
                               "close the program that does, or choose another port") from None
         self._socket.setblocking(False)
@@ -69,9 +84,19 @@ class Stream:
         return self._socket.getsockname()[1]
 
     @property
+    def host(self) -> str:
+        """The address that it listens at."""
+        return self._socket.getsockname()[0]
+
+    @property
+    def local(self) -> bool:
+        """Whether it hears nobody but this machine."""
+        return self.host.startswith("127.")
+
+    @property
     def unknown(self) -> list[str]:
-        """Trackers that were heard but are on no point."""
-        return sorted(serial for serial in self.heard if serial not in self._index)
+        """Trackers that were heard but are on no point, by their names as they may be shown."""
+        return sorted(printable(serial) for serial in self.heard if serial not in self._index)
 
     def at(self, time: float) -> np.ndarray:
         """See `sources.Source`: all that came since it was asked before counts as of now."""
@@ -90,7 +115,8 @@ class Stream:
         found = understood(packet)
         self.broken += found is None
         for serial, kind, place in found or ():
-            self.heard[serial] = time
+            if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
+                self.heard[serial] = time
             number = self._index.get(serial, self._index.get("hmd") if kind == "Hmd" else None)
             if number is not None:
                 self._places[number], self._since[number] = place, time
@@ -122,7 +148,7 @@ def understood(packet: bytes) -> list[tuple[str, str, np.ndarray]] | None:
             serial, kind, numbers = match[1], "Hmd" if match[1] == "head" else "Tra", values[:3]
         else:
             continue
-        if not isinstance(serial, str) or len(numbers) != 3 or not all(type(number) in (int, float) for number in numbers):
+        if not isinstance(serial, str) or len(serial) > _LONGEST_NAME or len(numbers) != 3 or not all(type(number) in (int, float) for number in numbers):
             return None
         place = np.array(numbers, float)
         if not np.all(np.abs(place) < 1e3):  # NaN is not, either
@@ -149,17 +175,19 @@ def read_map(path: str | Path) -> dict[str, str]:
     """
     path = Path(path)
     try:
-        table = tomllib.loads(path.read_text("utf-8"))
+        table = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
     except OSError as error:
         raise StreamError(f"{path}: can't be read: {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise StreamError(f"{path}: {error}") from None
+    except RecursionError:
+        raise StreamError(f"{path}: brackets are nested too deeply") from None
     trackers = table.get("trackers")
     if not isinstance(trackers, dict) or not trackers:
         raise StreamError(f'{path}: needs a table [trackers] with lines such as "LHR-1A2B3C4D" = "lwrist"')
     for serial, point in trackers.items():
         if not isinstance(point, str):
-            raise StreamError(f'{path}: trackers.{serial}: needs a point in quotes, such as "lwrist"')
+            raise StreamError(f'{path}: trackers.{printable(serial)}: needs a point in quotes, such as "lwrist"')
     try:
         controls_of(trackers)
     except StreamError as error:

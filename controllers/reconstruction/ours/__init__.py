@@ -2,9 +2,8 @@
 very likely are, and filters for noise.
 """
 
-from . import combined, networks
 from .combined import cells, ours
 
 __all__ = [
-    "cells", "combined", "networks", "ours",
+    "cells", "ours",
 ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from os import PathLike
 from typing import Any
 
-from .contract import Intent
-from .jump import GRAVITY, Jump, Physique, warm_up
-from .locomotion import Locomotion
-from .scaled import Scaled
-from .supervisor import Supervisor
+from ..contract import Intent
+from ..jump import GRAVITY, Jump, Physique, rehearse as rehearse_jump
+from ..locomotion import Locomotion
+from ..scaled import Scaled
+from ..supervisor import Supervisor
 
 
 def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRAVITY) -> Supervisor:
@@ -30,7 +30,7 @@ def rehearse(someone: Any) -> None:
     """One step and one jump of nobody, so that what they compile or load does not halt a game."""
     someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
     if "jump" in someone.parts:
-        warm_up.rehearse(someone.parts["jump"])
+        rehearse_jump(someone.parts["jump"])
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:

@@ -1,0 +1,8 @@
+"""What comes from others' disks and programs and what goes there: ordinary files read, whole ones written, words fit to be shown."""
+
+from .printable import printable
+from .whole import contents, ordinary, whole
+
+__all__ = [
+    "contents", "ordinary", "printable", "whole",
+]

@@ -1,0 +1,118 @@
+"""Compiling what a person needs, once, in programs beside a game, which finds it on disk afterwards.
+
+`python -m gambol.controllers.person.preparing person [LIBRARY]` compiles all of a walk, then of a jump. Two lumps of it come from
+`python -m gambol.controllers.person.preparing ahead [LIBRARY]`, which it hears on its standard input, so that two cores walk in half the
+time: what places feet, and how strong a body is. Compiling holds the interpreter's lock: threads would not do.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numba
+import numpy as np
+
+from ..body import forward_kinematics
+from ..compiled import cache_folder
+from ..jump import Jump, rehearse
+from ..jump.body import measures
+from ..jump.muscles import strength
+from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
+
+PARTS = ("walk", "jump")
+KERNELS = 122
+"""So many kernels are compiled for both parts, about: for those only who ask how far it is."""
+
+
+def ready(part: str, walker: Locomotion) -> bool:
+    """Whether all that a part needs, with a walker's library, was compiled here before."""
+    return _mark(part, walker).exists()
+
+
+def done(walker: Locomotion) -> None:
+    """Say that everything is compiled."""
+    for part in PARTS:
+        _note(part, walker)
+
+
+def share() -> float:
+    """How much of everything is compiled, about: 0 … 0.99."""
+    return min(sum(1 for _ in cache_folder().glob("*.nbc")) / KERNELS, 0.99)
+
+
+def _mark(part: str, walker: Locomotion):
+    """A character's memory, and with it every kernel of a step, is as long as the library has primitives."""
+    length = f"-{len(walker.library.primitives)}" if part == "walk" else ""
+    return cache_folder() / f"{part}{length}.ready"
+
+
+def _note(part: str, walker: Locomotion) -> None:
+    try:
+        _mark(part, walker).touch()
+    except OSError:  # nothing can be kept
+        pass
+
+
+def feet(walker: Locomotion) -> None:
+    """Compile what places the feet: half of a step."""
+    memory, body, legs, places, turns, local, dt = _some(walker)
+    _compile(step.place_feet, memory, body, legs, walker.settings.clearance, places, turns, local, dt, np.zeros((5, 3, 3)))
+
+
+def rest(walker: Locomotion) -> None:
+    """Compile what a step needs before it places the feet."""
+    memory, body, legs, places, turns, local, dt = _some(walker)
+    _, _, walk, run, table, velocities = walker.tables
+    settings, row, three = walker.settings, np.zeros(COLUMNS, np.float32), np.zeros(3)
+    _compile(step._weigh, memory, settings, dt, walk, run, table, row, np.zeros(4), three, three)
+    _compile(step._shape_command, memory, three, dt, settings, walk, run, three, three)
+    _compile(step.blend_series, memory, settings, table, row, legs, dt)
+    _compile(step.pose_kernel, body, row, local, places, turns, np.zeros(SCRATCH, np.float32))
+    _compile(step.move_root, memory, settings, body, legs, places, turns, velocities, dt)
+
+
+def place(walker: Locomotion) -> None:
+    """Compile, or load, a step as a whole, and what places a body to be drawn."""
+    pose = walker.start().pose
+    for root in (pose.root, np.asarray(pose.root, float)):
+        for turns in (pose.rotations, np.asarray(pose.rotations, float)):
+            forward_kinematics(walker.skeleton, root, turns)
+
+
+def _some(walker: Locomotion) -> tuple[Any, ...]:
+    """What the parts of a step are told of: a character's memory, its body and legs, places and turns of joints, a pose,
+    a time."""
+    joints = len(walker.skeleton)
+    turns = np.zeros((joints, 3, 3), np.float32)
+    memory = np.zeros(1, memory_dtype(len(walker.library.primitives)))[0]
+    return memory, *walker.tables[:2], np.zeros((joints, 3), np.float32), turns, turns, 1.0 / 60.0
+
+
+def _compile(kernel: Any, *like: Any) -> None:
+    """Compile a kernel for arguments like these, without running it."""
+    if hasattr(kernel, "compile"):  # a plain function has none, where compiling is switched off
+        kernel.compile(tuple(numba.typeof(one) for one in like))
+
+
+def main(part: str, library: str = "") -> None:
+    """Compile what a person needs, or, of that, what comes "ahead"."""
+    walker, jump = Locomotion.load(library or None), Jump()
+    if part == "ahead":
+        feet(walker)
+        print("feet", flush=True)
+        strength(jump.physique)
+        print("strength", flush=True)
+        return
+    rest(walker)
+    sys.stdin.readline()  # the other program has the feet, or has ended
+    place(walker)
+    _note("walk", walker)
+    measures(jump.physique, low_arms=True)
+    sys.stdin.readline()  # and the strength
+    rehearse(jump)
+    _note("jump", walker)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,70 @@
+"""What is compiled beside a game: in which order, and that nobody waits for one who has ended."""
+
+import io
+from pathlib import Path
+
+import pytest
+
+from gambol.controllers.person import preparing
+from gambol.controllers.locomotion import Locomotion
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(preparing, "cache_folder", lambda: tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def told(monkeypatch, folder):
+    """What is compiled, in order, and what is ready by then, without compiling it."""
+    order = []
+
+    def noted(name):
+        return lambda *about, **more: order.append((name, {path.stem.partition("-")[0] for path in folder.glob("*.ready")}))
+    for name in ("feet", "strength", "rest", "place", "measures", "rehearse"):
+        monkeypatch.setattr(preparing, name, noted(name))
+    return order
+
+
+def test_a_part_is_ready_once_it_is_compiled_for_that_library(folder):
+    walker = Locomotion.load()
+    assert not any(preparing.ready(part, walker) for part in preparing.PARTS)
+    preparing.done(walker)
+    assert all(preparing.ready(part, walker) for part in preparing.PARTS)
+    walker.library = type("Another", (), {"primitives": walker.library.primitives[:-1]})
+    assert preparing.ready("jump", walker) and not preparing.ready("walk", walker)
+
+
+def test_walking_is_ready_before_jumping(told, monkeypatch, folder):
+    monkeypatch.setattr(preparing.sys, "stdin", io.StringIO("feet\nstrength\n"))
+    preparing.main("person")
+    assert told == [("rest", set()), ("place", set()), ("measures", {"walk"}), ("rehearse", {"walk"})]
+    assert all(preparing.ready(part, Locomotion.load()) for part in preparing.PARTS)
+
+
+def test_nobody_waits_for_a_program_that_has_ended(told, monkeypatch):
+    monkeypatch.setattr(preparing.sys, "stdin", io.StringIO(""))
+    preparing.main("person")
+    assert [name for name, _ in told] == ["rest", "place", "measures", "rehearse"]
+
+
+def test_what_comes_ahead_is_said_and_claims_nothing(told, capsys, folder):
+    preparing.main("ahead")
+    assert capsys.readouterr().out.split() == ["feet", "strength"] and [name for name, _ in told] == ["feet", "strength"]
+    assert not list(folder.glob("*.ready"))
+
+
+def test_where_nothing_can_be_kept_nothing_is_ready(monkeypatch):
+    monkeypatch.setattr(preparing, "cache_folder", lambda: Path("there is no such folder"))
+    walker = Locomotion.load()
+    preparing.done(walker)
+    assert not preparing.ready("walk", walker) and preparing.share() == 0.0
+
+
+def test_how_far_it_is_grows_and_never_says_that_all_is_done(folder):
+    shares = []
+    for number in range(2 * preparing.KERNELS):
+        shares.append(preparing.share())
+        (folder / f"{number}.nbc").touch()
+    assert shares[0] == 0.0 and shares == sorted(shares) and shares[-1] < 1.0
