@@ -22,6 +22,20 @@ app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_
                   help="A real-time human character, driven by gamepad, keyboard or script.")
 
 
+def _told(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"gambol {version('gambol')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(version: Annotated[bool, typer.Option("--version", is_eager=True, callback=_told,
+                                                  help="Say which version this is, and leave.")] = False) -> None:
+    pass
+
+
 class Preset(StrEnum):
     """How much light and shadow is drawn."""
 

@@ -59,7 +59,7 @@ def test_the_ground_force_is_what_moves_the_centre_of_mass(low):
 
 @pytest.mark.parametrize("speed", (1.4, 1.98, 2.43, 2.62, 2.8))
 def test_a_crouch_is_as_deep_as_the_thrust_needs(speed):
-    """READINGS G: push-off 0.22 … 0.30 s and 2.0 … 2.6 body weights at 0.3 … 0.4 m; joints no faster than people's."""
+    """As people jump: push-off 0.22 … 0.30 s and 2.0 … 2.6 body weights at 0.3 … 0.4 m; joints no faster than people's."""
     found = crouch(ADULT, speed, RISE)
     full = extend(ADULT, found)
     assert found.converged and 0.97 * speed <= full.velocity[-1, 1] <= 1.03 * speed

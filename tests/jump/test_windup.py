@@ -55,7 +55,7 @@ def test_the_crouch_is_a_pose_of_the_body_balanced_and_strong_enough(physique):
 
 @pytest.mark.parametrize("height", (0.3, 0.35, 0.4))
 def test_an_adult_crouches_as_adults_do(height):
-    """READINGS G: 0.28 … 0.38 m deep for jumps of 0.3 … 0.4 m."""
+    """As people crouch: 0.28 … 0.38 m deep for jumps of 0.3 … 0.4 m."""
     found = crouch(ADULT, speed(height), 0.109)
     assert found.converged and 0.275 < found.depth < 0.385 and (found.feet[:, 4] < 0.02).all()
     assert found.margin > 0.05

@@ -21,7 +21,7 @@ from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
 from .planted_pose import bend_kernel, ankle_kernel, foot_kernel
 
 FLEX = math.radians(40.0)
-"""How far a loaded ankle bends before the heel rises [rad]; times flexibility. It reaches 35 … 40° (READINGS G)."""
+"""How far a loaded ankle bends before the heel rises [rad]; times flexibility. It reaches 35 … 40°."""
 STAND_REACH = 0.98
 """How straight standing legs are, as a share of their length."""
 DEEP = 0.39

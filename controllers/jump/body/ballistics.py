@@ -1,6 +1,6 @@
 """Arcs: where a centre of mass goes in the air, and what take-off an arc needs.
 
-Ooi 2015, 3.1.1 "Path estimation" prints no formula; by READINGS A2 it is
+Ooi 2015, 3.1.1 "Path estimation" prints no formula; it is
 x = x0 + v t + ½ g t², and so v = (x − x0) / t − ½ g t, between the *centres of mass* at take-off
 and at landing.
 """

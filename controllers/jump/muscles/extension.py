@@ -1,6 +1,6 @@
 """The thesis's thrust: muscles straighten the joints of a crouched body until it leaves the floor.
 
-Ooi 2015, 3.1.3, read as in READINGS A2. Printed are τ = m a_θ and explicit Euler. But torques turn
+Ooi 2015, 3.1.3, mended as docs/glossary.md says. Printed are τ = m a_θ and explicit Euler. But torques turn
 inertias: τ_net = I α, where τ_net is the muscle's torque less gravity's and I the inertia, about
 the joint, of everything the joint moves; over a planted foot that is the body above it. Joints
 that move each other share more than that, the whole mass matrix, of which those I are the

@@ -1,7 +1,7 @@
 """Muscles as linear springs across hip, knee and ankle, and the ground force they give.
 
 Ooi 2015, 3.1.2.1: a joint's bend θ opens a gap between two bones of width r that a spring of
-stiffness k must stretch across. Two readings of its force (READINGS A2):
+stiffness k must stretch across. Two readings of its force:
 
 - `wedge` (default): the gap is the chord, F = 2 k r sin(θ/2): nothing when straight.
 - `printed`: θ = acos(2k²r²/F² − 1), which is the inverse of F = k r / cos(θ/2): never below k r,
@@ -34,7 +34,7 @@ WIDTH = 0.05
 STIFFNESS = 29.7e3
 """k: of one leg's muscles across one joint [N/m] in an adult of 73 kg, standard height and strength 1.
 
-Found by the thrust (`extension`): with r as READINGS has it, the k with which an adult's counter-movement
+Found by the thrust (`extension`): with r as 5 cm, the k with which an adult's counter-movement
 is as deep as measured ones, 0.28 … 0.38 m for jumps of 0.3 … 0.4 m, when a crouch is just deep enough for
 fully active springs to reach the take-off speed. Only k r² counts for torques, so one number was free.
 """

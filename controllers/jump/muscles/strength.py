@@ -26,7 +26,7 @@ DELAYS = np.array([0.0, 0.08, 0.16])
 DELAYS.setflags(write=False)
 FORWARD = 0.4
 """Which share of a forward speed's energy the springs have to hold. People leave the ground faster in a standing long
-jump than straight up: 3 to 4 m/s at 35 to 45 degrees against 2.5 to 2.9 (READINGS G). The rest comes from arms that are
+jump than straight up: 3 to 4 m/s at 35 to 45 degrees against 2.5 to 2.9. The rest comes from arms that are
 thrown forward and from falling ahead of the feet, which a chain balanced over them has not."""
 STEP = 1.0 / 240.0
 """Of a thrust, by Runge's and Kutta's method [s]."""

@@ -1,6 +1,6 @@
 """The wind-up: how a body crouches until its muscles can give the force and the work that a jump asks for.
 
-Ooi 2015, 3.1.2, read as in READINGS A2: proportional-derivative control moves the hip by
+Ooi 2015, 3.1.2, mended as docs/glossary.md says: proportional-derivative control moves the hip by
 u(i) = k_p E(i−1) + k_d (E(i−1) − E(i−2)), where E is the muscles' error, as metres down, and the
 balance error, from the centre of mass to the middle of the support polygon. The legs follow by
 cyclic coordinate descent, over planted feet; a heel rises only past the ankle's limit. Then centre

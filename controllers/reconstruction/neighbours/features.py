@@ -1,7 +1,7 @@
 """What makes two segments of motion alike: features whose Euclidean distance is the search's.
 
 A feature vector holds the m frames of the past, newest first, each WIDTH columns times their
-weights (READINGS.md A1: neither place nor heading, so it is the same wherever the motion happens),
+weights (neither place nor heading, so it is the same wherever the motion happens),
 and after them, where the search is to see them (the "hybrid" query), the control points of the
 frame to come: places in the ground frame of the newest past frame, and velocities against that
 frame, also weighted.
