@@ -40,7 +40,7 @@ def main() -> int:
             print(done.stdout, done.stderr, flush=True)
     for test, commands in broken.items():
         print(f"{test} fails {len(commands)} times: {commands[0]}")
-    print(f"{len(broken)} laws broken in {given.rounds} rounds")
+    print(f"laws broken in {given.rounds} rounds: {len(broken)}")
     return bool(broken)
 
 

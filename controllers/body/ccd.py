@@ -43,8 +43,10 @@ class Reach(NamedTuple):
 def reach(root: np.ndarray, base: np.ndarray, bones: np.ndarray, turns: np.ndarray, goal: np.ndarray,
           lower: np.ndarray, upper: np.ndarray, *, iterations: int = ITERATIONS,
           tolerance: float = TOLERANCE) -> Reach:
-    """Turn the joints of a chain so that its end comes as near to `goal` (..., 3) [m] as it can:
-    nearer than `tolerance` [m] to every place to which its limits let it.
+    """Turn the joints of a chain so that its end comes as near to `goal` (..., 3) [m] as it can.
+
+    A leg, a ball and a hinge, comes nearer than `tolerance` [m] to every place to which its limits let it. A longer chain
+    that is held by many limits at once may end beside such a place: nothing short of trying all of them would tell.
 
     root: (..., 3) [m] the first joint. base: (..., 3, 3) the orientation of what it turns against.
     bones: (N, 3) [m] from each joint to the next, the last to the end, in the joint's own frame.

@@ -21,11 +21,11 @@ def end_of(turns, bones):
     return place
 
 
-def leg():
+def leg(flexibility=1.0):
     """Thigh and shank of the standard human, the knee a hinge."""
     skeleton, limits = human(), joint_limits(human())
     hip = skeleton.index("LeftUpLeg")
-    lower, upper = limits.lower[[hip, hip + 1]].copy(), limits.upper[[hip, hip + 1]].copy()
+    lower, upper = limits.lower[[hip, hip + 1]] * flexibility, limits.upper[[hip, hip + 1]] * flexibility
     lower[1, 1:] = upper[1, 1:] = 0.0
     return skeleton.offsets[[hip + 1, hip + 2]], lower, upper
 
@@ -55,12 +55,12 @@ def test_limits_hold_and_the_gap_is_true_and_never_grows(seed, far):
     assert found.gap <= np.linalg.norm(end_of(start, bones) - goal) + 1e-9
 
 
-@given(st.integers(0, 2**32 - 1), st.booleans(), st.sampled_from([0.0, 0.3, 0.9]))
-@example(223171, True, 0.0)  # the descent alone ends 1.1 cm away
-def test_a_chain_comes_to_every_place_it_can(seed, human_leg, held):
-    """Also to those which it comes to only at its limits."""
+@given(st.integers(0, 2**32 - 1), st.floats(0.3, 1.2), st.sampled_from([0.0, 0.3, 0.9]))
+@example(223171, 1.0, 0.0)  # the descent alone ends 1.1 cm away
+def test_a_leg_comes_to_every_place_it_can(seed, flexibility, held):
+    """Also to those which it comes to only at its limits; held: the share of its turns that are at one."""
     rng = np.random.default_rng(seed)
-    bones, lower, upper = leg() if human_leg else chain(rng)
+    bones, lower, upper = leg(flexibility)
     turns = rng.uniform(lower, upper)
     turns = np.where(rng.random(turns.shape) < held, np.where(rng.random(turns.shape) < 0.5, lower, upper), turns)
     found = reach(np.zeros(3), np.eye(3), bones, np.zeros_like(bones), end_of(turns, bones), lower, upper)
