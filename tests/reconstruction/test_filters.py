@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import solve_discrete_are
 
@@ -69,15 +69,21 @@ def test_what_is_lost_coasts_to_a_halt_and_harms_nothing_else():
 
 
 @given(st.floats(0.003, 0.05), st.integers(0, 1000))
+@settings(max_examples=20)
 def test_noise_is_told_on_a_moving_body(level, seed):
+    """Rightly over many bodies, and for most of them: fifteen frames of four points tell it to a seventh, now and then not
+    to a half. The least noise is told a little too small, as a body's own motion is taken off."""
     t = np.arange(15)[:, None, None] / 60
-    rng = np.random.default_rng(seed)
-    still = 0.4 * np.sin(2 * np.pi * (1.2 * t + rng.uniform(size=(4, 3)))) + 1.4 * t
-    assert noise(still) == 0.0
-    points = still + rng.normal(0, level, still.shape)
-    assert 0.6 * level < noise(points) < 1.5 * level
-    points[7, 2] = 40.0, np.nan, -3.0  # a wild point is not noise
-    points[3:5, 1] = np.nan
-    assert 0.5 * level < noise(points) < 2.0 * level
+    rng, told, spoilt = np.random.default_rng(seed), [], []
+    for _ in range(300):
+        still = 0.4 * np.sin(2 * np.pi * (1.2 * t + rng.uniform(size=(4, 3)))) + 1.4 * t
+        assert noise(still) == 0.0
+        points = still + rng.normal(0, level, still.shape)
+        told.append(noise(points) / level)
+        points[7, 2] = 40.0, np.nan, -3.0  # a wild point is not noise
+        points[3:5, 1] = np.nan
+        spoilt.append(noise(points) / level)
+        assert noise(still + rng.normal(0, 0.3 * NATURAL, still.shape)) == 0.0
+    assert 0.8 < np.mean(told) < 1.08 and 0.88 < np.mean(spoilt) < 1.16  # five and more of the means' own deviations
+    assert np.std(told) < 0.2 and np.std(spoilt) < 0.22
     assert noise(np.full((15, 4, 3), np.nan)) == 0.0
-    assert noise(still + rng.normal(0, 0.3 * NATURAL, still.shape)) == 0.0
