@@ -13,6 +13,7 @@ from .foot_lock import at_rest, place_feet
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
+from .root_motion import move_root, to_world_kernel
 
 
 @kernel(nogil=True)
@@ -44,7 +45,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
                 m.standing[k] = 1 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0
         if at_rest(m, legs):
             m.settled = 1
-        _to_world(m, fresh, root[n], local[n])
+        to_world_kernel(m, fresh, root[n], local[n])
 
 
 @kernel
@@ -157,67 +158,3 @@ def blend_series(m, settings, table, fresh, legs, dt):
         fresh[2 * LANES + legs.shoulder[side]] += (1.0 - 2.0 * side) * 1.5 * lift
     sway = settings.breath * calm * math.sin(2.0 * math.pi * m.breath + 1.0)
     fresh[HIPS_AT] += 0.3 * sway
-
-
-@kernel
-def _foot_points(body, legs, positions, orientations, out):
-    for foot in range(2):
-        a = legs.hip[foot] + 2
-        for i in range(3):
-            heel = positions[a, i]
-            for k in range(3):
-                heel += orientations[a, i, k] * body.heel[k]
-            out[2 * foot, i] = heel
-            out[2 * foot + 1, i] = positions[a + 1, i]
-
-
-@kernel
-def move_root(m, settings, body, legs, positions, orientations, velocities, dt):
-    """Move the ground frame so that the standing foot stays: the blend's own mean velocity plus
-    what the standing points say beyond it, low-passed."""
-    v_f, omega, v_l = 0.0, 0.0, 0.0
-    for i in range(m.weights.shape[0]):
-        w = m.weights[i]
-        if w > 0.0:
-            v_f += w * velocities[i, 0]
-            omega += w * velocities[i, 1]
-            v_l += w * velocities[i, 2]
-    turn = omega * dt
-    c, s = math.cos(turn), math.sin(turn)
-    points = np.empty((4, 3), np.float32)
-    _foot_points(body, legs, positions, orientations, points)
-    trust, lateral, forward = 1e-6, 0.0, 0.0
-    for k in range(4):
-        stand = min(max(m.row[LABELS_AT + k], 0.0), 1.0)
-        if m.settled:
-            stand = 1.0
-        lateral += stand * (m.points[k, 0] - (c * points[k, 0] + s * points[k, 2]))
-        forward += stand * (m.points[k, 2] - (-s * points[k, 0] + c * points[k, 2]))
-        trust += stand
-        for i in range(3):
-            m.points[k, i] = points[k, i]
-    share = min(trust, 1.0)
-    gain = 1.0 - 2.0 ** (-dt / settings.drift_halflife)
-    m.drift[0] += gain * (share * (lateral / trust / dt - v_l) - m.drift[0])
-    m.drift[1] += gain * (share * (forward / trust / dt - v_f) - m.drift[1])
-    v_l += m.drift[0]
-    v_f += m.drift[1]
-    m.velocity[0], m.velocity[1], m.velocity[2] = v_f, omega, v_l
-    c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
-    m.ground[0] += (c * v_l + s * v_f) * dt
-    m.ground[1] += (-s * v_l + c * v_f) * dt
-    m.ground[2] = math.pi - (math.pi - m.ground[2] - turn) % (2.0 * math.pi)
-
-
-@kernel
-def _to_world(m, row, root, local):
-    """Place the pose of the ground frame in the world."""
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x, z = row[HIPS_AT], row[HIPS_AT + 2]
-    root[0] = m.ground[0] + c * x + s * z
-    root[1] = row[HIPS_AT + 1] - m.pelvis
-    root[2] = m.ground[1] - s * x + c * z
-    for k in range(3):
-        x, z = local[0, 0, k], local[0, 2, k]
-        local[0, 0, k] = c * x + s * z
-        local[0, 2, k] = -s * x + c * z

@@ -17,7 +17,8 @@ from .control_space import ControlSpace, thin
 from .kernel import COLUMNS, DURATION_AT, SCRATCH, body_tables, pose_kernel, series_table
 from .library import Library, LibraryError
 from .memory import Settings, legs_of, memory_dtype
-from .step import advance_phase, blend_series, move_root
+from .root_motion import move_root
+from .step import advance_phase, blend_series
 
 CYCLES = 3
 """Whole cycles over which a velocity is measured, after one to settle."""

@@ -5,7 +5,9 @@ the comparison of methods beside a player.
 from . import comparison, settings
 from .actions import ACTIONS
 from .comparison import GHOST, Comparison, wanted, written
-from .input_log import SUFFIX, Log, LogWriter, digest, of_library, performer_of, read, replay, strayed
+from .fingerprint import digest
+from .input_log import SUFFIX, Log, LogWriter, read
+from .replay import of_library, performer_of, replay, strayed
 from .rewind import Look
 from .settings import SETTINGS, Setting
 from .state import SessionState, begin, opening, owners

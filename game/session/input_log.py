@@ -7,11 +7,10 @@ log that plays; a last line that was torn off is left out.
 
 from __future__ import annotations
 
-import hashlib
 import io
 import json
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -23,12 +22,10 @@ from gambol.controllers.files import contents, printable
 
 from ..files import OutputError, named
 from ..input import Wish
-from ..world import RATE, Recorded, methods
-from .comparison import wanted
+from ..world import RATE
+from .fingerprint import digest, fingerprint
 from .log_lines import BLOCK, FORMAT, ROOM, LogError, Ticks, escaped, head, packed, plain, unpacked
-from .settings import SettingError
-from .state import SessionState, opening
-from .tick import Timeline
+from .state import SessionState
 
 SUFFIX = ".gambol"
 LARGEST = 64 << 20
@@ -59,24 +56,6 @@ class Log:
     def duration(self) -> float:
         """How long it is [s]."""
         return len(self.ticks) / RATE
-
-
-def digest(controller: Any) -> str:
-    """What tells the motion of one controller from that of another."""
-    library, hashed = controller.library, hashlib.sha256(controller.kind.encode())
-    if library is not None:
-        for array in (library.velocities, library.coefficients, library.reference):
-            hashed.update(np.ascontiguousarray(array))
-    return hashed.hexdigest()[:16]
-
-
-def fingerprint(moment: SessionState) -> int:
-    """A checksum of where everybody is, to notice where a replay goes another way."""
-    print_ = 0
-    for character in moment.after.characters:
-        for array in (character.state.ground, character.state.pose.root, character.state.pose.rotations):
-            print_ = zlib.crc32(np.ascontiguousarray(array), print_)
-    return print_
 
 
 class LogWriter:
@@ -172,47 +151,3 @@ def read(path: str | Path) -> Log:
         raise LogError(f"{path}: nothing was played yet")
     return Log(about["players"], about["library"], about["character"], Ticks(blocks), prints, path, about.get("clip", ""),
                about.get("database", ""))
-
-
-def performer_of(log: Log, controller: Any) -> Any:
-    """Who moved in a log: a controller, or the recording that the log names.
-
-    LogError where a file that it needs is not there.
-    """
-    for what, file, needed in (("clip", log.clip, True), ("motion database", log.database, bool(wanted(log.ticks)))):
-        if file and needed and not Path(file).is_file():
-            raise LogError(f"{log.path}: was played with the {what} {file}, which is not there: put it back")
-    return Recorded.load(log.clip, controller) if log.clip else controller
-
-
-def of_library(log: Log, controller: Any) -> Log:
-    """The log, if it was played with a library and a body that move like this controller's; else LogError."""
-    if log.library != digest(controller):
-        if log.clip:
-            raise LogError(f"{log.path}: was played with another clip than {log.clip} holds now")
-        wearing = f"the character {log.character!r}" if log.character else "the mannequin"
-        raise LogError(f"{log.path}: was played as {wearing}, and with another gait library or in another size: "
-                       "name them with --library and --character")
-    return log
-
-
-def replay(log: Log, controller: Any) -> Iterator[SessionState]:
-    """The opening and the moment after every tick, to the bit as they were played.
-
-    LogError for what can't be played.
-    """
-    timeline = Timeline(opening(controller, log.players, methods(log.database or None)))
-    yield timeline.now
-    for number, wishes in enumerate(log.ticks):
-        try:
-            if len(wishes) != len(timeline.now.players):
-                raise SettingError(f"{len(wishes)} players instead of {len(timeline.now.players)}")
-            timeline.advance(wishes)
-        except SettingError as error:
-            raise LogError(f"{log.path}: {number / RATE:.1f} s into the log: {printable(str(error), 1000)}") from None
-        yield timeline.now
-
-
-def strayed(log: Log, moment: SessionState) -> bool:
-    """Whether a replay is elsewhere than the player was: another version of Gambol walks another way."""
-    return log.prints.get(moment.number, fingerprint(moment)) != fingerprint(moment)

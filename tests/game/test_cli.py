@@ -74,7 +74,7 @@ def test_progress_is_told_where_no_bar_can_be_seen(short, tmp_path):
 
 def test_hints_are_for_who_plays_first_or_asks_for_them(short, tmp_path, monkeypatch):
     games = []
-    monkeypatch.setattr("gambol.game.cli.play.show", lambda game, *_: games.append(game))
+    monkeypatch.setattr("gambol.game.cli.play.show", lambda opening, *_: games.append(opening.make()))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     monkeypatch.setenv("APPDATA", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))

@@ -8,7 +8,9 @@ from gambol.game import hosts
 from gambol.game.app.app import Play
 from gambol.game.hosts import DisplayError
 from gambol.game.hosts.events import KeyEvent
-from gambol.game.session.input_log import LogWriter, fingerprint, read, replay
+from gambol.game.session.fingerprint import fingerprint
+from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.replay import replay
 from stand_in import Glide
 from test_cli import Stage, gambol
 
@@ -91,12 +93,13 @@ def test_a_mistake_is_one_line_and_leaves_nothing(log, arguments, says, monkeypa
 @pytest.mark.parametrize("end", [None, RuntimeError("the driver is gone"), DisplayError("no display")])
 def test_what_was_played_is_kept_however_the_window_ends(log, tmp_path, monkeypatch, end):
     def window(app, size, preset):
+        app.tick(0.0)  # the game begins
         app.handle(KeyEvent("W", True))
         for _ in range(100):
             app.tick(1 / 60)
         if end is not None:
             raise end
-        window.last = app.now
+        window.last = app.game.now
     monkeypatch.setattr(hosts, "run_window", window)
     done = gambol("play", "--record", tmp_path / "new" / "b.gambol", "--players", 2)
     assert "b.gambol: 2 s; `gambol play --replay` shows it" in done.output

@@ -14,7 +14,8 @@ from gambol.game.hosts.events import KeyEvent
 from gambol.game.input import DEFAULT
 from gambol.game.input.remap import remapped
 from gambol.game.scene.scene import Hint, Scene
-from gambol.game.session.input_log import LogWriter, read, replay
+from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.replay import replay
 from hands import FRAME, pad, press, release, tap, wait
 from stand_in import Glide
 

@@ -7,7 +7,9 @@ from PIL import Image
 from gambol.game.app.capture import Film, Capture, log_file
 from gambol.game.app.app import Play
 from gambol.game.files.paths import OutputError
-from gambol.game.session.input_log import LogWriter, fingerprint, read, replay
+from gambol.game.session.fingerprint import fingerprint
+from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.replay import replay
 from hands import FRAME, at, game, press, tap, text, wait, walked  # noqa: F401, the fixture
 from stand_in import Glide
 

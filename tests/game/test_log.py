@@ -18,7 +18,10 @@ from hypothesis import strategies as st
 from gambol.controllers.locomotion import Locomotion
 from gambol.game.files.paths import OutputError
 from gambol.game.input import Wish
-from gambol.game.session.input_log import LogError, LogWriter, fingerprint, of_library, read, replay, strayed
+from gambol.game.session.fingerprint import fingerprint
+from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.log_lines import LogError
+from gambol.game.session.replay import of_library, replay, strayed
 from gambol.game.session.log_lines import escaped
 from gambol.game.session.settings import SETTINGS
 from gambol.game.session.state import opening

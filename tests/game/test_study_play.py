@@ -15,7 +15,9 @@ from gambol.game.hud.legend import cells
 from gambol.game.input import Wish
 from gambol.game.output.recorder import motion_clip
 from gambol.game.session.comparison import Comparison, opened, written
-from gambol.game.session.input_log import LogError, LogWriter, of_library, performer_of, read, replay, strayed
+from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.log_lines import LogError
+from gambol.game.session.replay import of_library, performer_of, replay, strayed
 from gambol.game.session.settings import SettingError
 from gambol.game.session.state import opening
 from gambol.game.session.tick import Timeline

@@ -13,7 +13,9 @@ from gambol.game.app.app import Play
 from gambol.game.hosts.events import KeyEvent
 from gambol.game.scenario.film import run
 from gambol.game.scenario.scenario import load, shipped
-from gambol.game.session.input_log import LogWriter, fingerprint, of_library, read, replay
+from gambol.game.session.fingerprint import fingerprint
+from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.replay import of_library, replay
 from gambol.game.world.learnt_methods import methods
 
 
