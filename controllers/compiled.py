@@ -16,6 +16,7 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -90,11 +91,11 @@ def cold() -> bool:
     return not any(cache_folder().glob("*.nbc"))
 
 
-def kernel(function=None, **options):
+def kernel(function: Callable[..., Any] | None = None, **options: Any) -> Callable[..., Any]:
     """Decorate a function for compilation by numba in no-Python mode, cached. Options are njit's."""
     if function is None:
         return lambda f: kernel(f, **options)
-    made = njit(**options)(function)
+    made: Any = njit(**options)(function)
     if not hasattr(made, "get_call_template"):  # a plain function, where compiling is switched off
         return made
     made._cache = _Cache(function)

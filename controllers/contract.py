@@ -167,23 +167,24 @@ class Controller(Protocol):
         return self
 
     def start(self, ground: Any = (0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
-        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
-        ...
+        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. Unable, of one that only
+        takes over from others."""
+        raise Unable(f"{type(self).__name__} starts nobody, it takes over from others: put both under a supervisor")
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """How well it could start from here for this intent: 0 not at all … 1 perfectly. Of one that
         is active already: how firmly it holds on."""
-        ...
+        raise NotImplementedError
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state with this controller's own memory, ready to step: it takes over pose and motion as
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
-        ...
+        raise NotImplementedError
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds. ValueError unless 0 < dt ≤ 0.1, see `seconds`."""
-        ...
+        raise NotImplementedError
 
     def status(self, state: CharacterState) -> Status:
         """Whether it goes on."""
-        ...
+        raise NotImplementedError

@@ -78,7 +78,7 @@ class Supervisor(Controller):
                 for name, other in self.parts.items() if name != duty.active}
         gone_wrong = "" if status.kind == "done" else status.reason
         refused = "" if intent.leap is None else duty.refused
-        for name in sorted(bids, key=bids.get, reverse=True):
+        for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break
             try:

@@ -7,9 +7,10 @@ lateral v_l, positive to the left, all in the moving frame [m/s, rad/s, m/s].
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-def screw(first: np.ndarray, last: np.ndarray, period: np.ndarray) -> np.ndarray:
+def screw(first: np.ndarray, last: np.ndarray, period: ArrayLike) -> np.ndarray:
     """The constant body velocity (..., 3) that carries one ground frame (..., 3) to another in `period` [s].
 
     The planar logarithm: with turn Δ the displacement in the first frame is V(Δ)·v·T,

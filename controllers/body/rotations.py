@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 
-def exp(rotvec: np.ndarray) -> np.ndarray:
+def exp(rotvec: ArrayLike) -> np.ndarray:
     """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) [rad]."""
     return Rotation.from_rotvec(rotvec).as_matrix()
 
@@ -22,7 +23,7 @@ def log(matrix: np.ndarray) -> np.ndarray:
     return Rotation.from_matrix(matrix).as_rotvec()
 
 
-def yaw(angle: np.ndarray) -> np.ndarray:
+def yaw(angle: ArrayLike) -> np.ndarray:
     """Rotation matrices (..., 3, 3) about +Y by `angle` (...) [rad], counter-clockwise from above."""
     angle = np.asarray(angle, float)
     out = np.zeros(angle.shape + (3, 3))
@@ -38,7 +39,7 @@ def heading_of(direction: np.ndarray) -> np.ndarray:
     return np.arctan2(direction[..., 0], direction[..., 2])
 
 
-def wrap(angle: np.ndarray) -> np.ndarray:
+def wrap(angle: ArrayLike) -> np.ndarray:
     """Angles brought into (-π, π] [rad]."""
     return math.pi - np.mod(math.pi - np.asarray(angle), 2 * math.pi)
 

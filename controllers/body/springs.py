@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..compiled import kernel
 
@@ -18,12 +19,12 @@ _LN2 = math.log(2.0)
 _EPSILON = 1e-9  # s: keeps a half-life of 0 from dividing by 0
 
 
-def decay(x: np.ndarray, halflife: float, dt: float) -> np.ndarray:
+def decay(x: ArrayLike, halflife: float, dt: float) -> np.ndarray:
     """What is left of x (...) after dt [s]: half of it each half-life."""
     return np.asarray(x) * math.exp(-_LN2 * dt / (halflife + _EPSILON))
 
 
-def damp(x: np.ndarray, goal: np.ndarray, halflife: float, dt: float) -> np.ndarray:
+def damp(x: ArrayLike, goal: ArrayLike, halflife: float, dt: float) -> np.ndarray:
     """x (...) moved towards its goal (...): the first-order damper."""
     return np.asarray(goal) + decay(np.asarray(x) - goal, halflife, dt)
 

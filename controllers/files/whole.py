@@ -9,6 +9,7 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from os import PathLike
 from pathlib import Path
 
 _KINDS = ((stat.S_ISDIR, errno.EISDIR, "Is a directory; name one file in it"), (stat.S_ISFIFO, errno.EINVAL, "is a pipe, not a file"),
@@ -16,7 +17,7 @@ _KINDS = ((stat.S_ISDIR, errno.EISDIR, "Is a directory; name one file in it"), (
           (stat.S_ISBLK, errno.EINVAL, "is a device, not a file"))
 
 
-def ordinary(path: str | Path) -> Path:
+def ordinary(path: str | PathLike[str]) -> Path:
     """The path of an ordinary file, which can be read to its end.
 
     OSError, whose strerror says it in words, for anything else: a pipe would keep who opens it waiting for ever.

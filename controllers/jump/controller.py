@@ -94,13 +94,13 @@ class Jump(Controller):
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump. Refused, with the reason, if it can't be made."""
-        if intent.leap is None:
-            raise Refused("nobody asked for a jump")
         return replace(state, memory=Jumping(self.plan(state, intent)))
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
         """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
         leap = intent.leap
+        if leap is None:
+            raise Refused("nobody asked for a jump")
         start, floor = self.start_of(state), float(level(state.floor))
         here = self.middle(start, floor)
         place = here if leap.place is None else np.asarray(leap.place, float)
@@ -152,6 +152,7 @@ class Jump(Controller):
                 first, reason = way, why
             if airtime is not None or not first.strong:
                 break
+        assert first is not None  # the first round has it
         return first, reason
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
@@ -206,7 +207,7 @@ class Jump(Controller):
             velocity = (centre - centre_of_mass(masses, *before)) / state.elapsed
             moved = feet - self._feet(*before)
             moved[:, 3:] = wrap(moved[:, 3:])
-            standing = np.asarray(state.contacts).reshape(2, 2).any(1)
+            standing = np.any(np.asarray(state.contacts).reshape(2, 2), axis=1)
             feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
             rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
         return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),

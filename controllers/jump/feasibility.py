@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..contract import Unable
 from ..navigation import gap
 from .body import FLAT, Physique, along, measures, carriage, turns
-from .motion import Path
+from .motion import Path, Push
 from .muscles import strongest
 
 RUNNER = 4.2
@@ -39,17 +42,18 @@ class Refused(Unable):
         self.nearest = nearest
 
 
-def fault(physique: Physique, way: Path, around, floor: float) -> str:
+def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) -> str:
     """Why a path can't be gone, or nothing. around: boxes and pillars; floor: of the take-off [m]."""
     if not all(np.isfinite(part).all() for part in (way.low, way.leave, way.land, way.velocity)):
         return "there is no such arc"
     if not way.strong:
         return _weak(physique, way, floor)
+    assert way.push is not None  # falls have none, and are not asked for
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
     if way.running and force > RUNNER * 9.81 * physique.strength:
         return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
                 f"where this one has {RUNNER * physique.strength:.1f}")
-    if way.running and not _grips(physique, way, floor):
+    if way.running and not _grips(physique, way, way.push, floor):
         gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.passing * FLAT)
         return f"too {'far' if gains else 'near'} for this run: no foot {'speeds up' if gains else 'brakes'} so much in one step"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
@@ -62,11 +66,11 @@ def fault(physique: Physique, way: Path, around, floor: float) -> str:
     return blocked(physique, way, around)
 
 
-def _grips(physique: Physique, way: Path, floor: float) -> bool:
+def _grips(physique: Physique, way: Path, push: Push, floor: float) -> bool:
     """Whether the ground can give the push: up, without the foot slipping, and from about where it is."""
-    time = np.linspace(0.0, 0.75, 4) * way.push.duration
-    force = way.push.force(time)
-    gone, _ = way.push.moved(time, way.passing)
+    time = np.linspace(0.0, 0.75, 4) * push.duration
+    force = push.force(time)
+    gone, _ = push.moved(time, way.passing)
     lean = force * FLAT / force[:, 1:2]
     pressed = (way.low + gone) * FLAT - lean * (way.low + gone - floor)[:, 1:2]
     return bool(np.linalg.norm(lean, axis=1).max() < SLIP
@@ -82,7 +86,7 @@ def _weak(physique: Physique, way: Path, floor: float) -> str:
     return f"too far: {way.far:.1f} m" if way.far > 0.05 else "too high"
 
 
-def blocked(physique: Physique, way: Path, around) -> str:
+def blocked(physique: Physique, way: Path, around: Sequence[Any]) -> str:
     """What the flying body would hit: "" or "its head would hit something 0.8 m ahead" and the like."""
     if not len(around):
         return ""

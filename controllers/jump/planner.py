@@ -46,12 +46,13 @@ class _Draft(Airborne):
     """One plan in the making: what its parts share."""
 
     def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray):
-        self.planted, self.off = planted, way.wind_up
-        leave = self.off + way.push.duration
+        assert way.push is not None  # a fall has none, and is no `_Draft`
+        self.planted, self.off, self.push = planted, way.wind_up, way.push
+        leave = self.off + self.push.duration
         deep = (measures(physique).stand + planted[0, 1] - physique.tables.sole - way.low[1]) / (DEEP * physique.size)
         times = np.array([0.0, self.off, *(leave + carriage.flying(way.airtime)[:3])])
         keys = carriage.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms)
-        first = min(max(carriage.SWING - way.push.duration, 0.0), 0.3 * self.off)
+        first = min(max(carriage.SWING - self.push.duration, 0.0), 0.3 * self.off)
         if way.running:
             keys = carriage.unhurried(times, keys, min(carriage.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
             first = 0.0
@@ -84,21 +85,21 @@ class _Draft(Airborne):
         """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
         way, start = self.way, self.start
         before = np.linspace(0.0, self.off, max(int(np.ceil(self.off * GROUND_RATE)), 3) + 1)
-        pushing = np.linspace(0.0, way.push.duration, max(int(np.ceil(PUSH_RATE * way.push.duration)), 8) + 1)[1:]
+        pushing = np.linspace(0.0, self.push.duration, max(int(np.ceil(PUSH_RATE * self.push.duration)), 8) + 1)[1:]
         c, v, a = descent(way, start, self.planted[0, 1] - self.body.sole, before)
-        gone, speed = way.push.moved(pushing, way.passing)
+        gone, speed = self.push.moved(pushing, way.passing)
         self.times = np.concatenate([before, self.off + pushing])
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
-        self.forces = np.concatenate([a - self.gravity, way.push.force(pushing)])
+        self.forces = np.concatenate([a - self.gravity, self.push.force(pushing)])
         self.angles = self.carriage(self.times)
         self._differ(self.angles[0])
         self.offsets = self._left_over(self.times)
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
         self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0])
-        share = np.clip((self.times - self.off) / way.push.duration, 0.0, 1.0)
+        share = np.clip((self.times - self.off) / self.push.duration, 0.0, 1.0)
         rising = self._heels_rise(share)
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
-        self.nudge = (share**2 * (share - 1.0))[:, None] * way.push.duration
+        self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
         self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])

@@ -5,9 +5,10 @@ from __future__ import annotations
 import zlib
 from copy import copy
 from dataclasses import replace
-from pathlib import Path
+from os import PathLike
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gambol import assets
 
@@ -47,7 +48,7 @@ class Locomotion(Controller):
         self._library = zlib.crc32(self.tables[4].tobytes())
 
     @staticmethod
-    def load(path: str | Path | None = None, settings: Settings = Settings()) -> Locomotion:
+    def load(path: str | PathLike[str] | None = None, settings: Settings = Settings()) -> Locomotion:
         """The controller over a library file; the shipped one by default. LibraryError if unusable."""
         return Locomotion(Library.load(path or DEFAULT_LIBRARY), settings)
 
@@ -66,7 +67,7 @@ class Locomotion(Controller):
         """The standard human that the poses are of."""
         return self.library.skeleton
 
-    def start(self, ground=(0.0, 0.0, 0.0), floor=0.0) -> CharacterState:
+    def start(self, ground: ArrayLike = (0.0, 0.0, 0.0), floor: np.ndarray | float = 0.0) -> CharacterState:
         """A character at rest at ground (..., 3) x, z [m], heading [rad], on a floor (...) [m] high.
         ValueError unless finite."""
         level(floor)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .control_space import SCALE, ControlSpace
 from .library import Library
@@ -28,7 +29,7 @@ def coverage(space: ControlSpace) -> dict[str, float]:
     return {name: float(space.inside(wishes(axes)).mean()) for name, axes in PLANES.items()}
 
 
-def reach(space: ControlSpace, direction: np.ndarray) -> float:
+def reach(space: ControlSpace, direction: ArrayLike) -> float:
     """How far the hull reaches from zero along a direction (3,) in SI."""
     steps = np.linspace(0, 6, 1201)
     inside = space.inside(steps[:, None] * np.asarray(direction, float))

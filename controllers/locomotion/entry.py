@@ -60,7 +60,8 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
 def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray) -> None:
     """Walking or running at a velocity (3,), the left foot about to leave."""
     running = velocity[0] > locomotion.settings.run_above and locomotion.run is not None
-    space, family = (locomotion.run, "run") if running else (locomotion.walk, "walk")
+    family = "run" if running else "walk"
+    space = locomotion.space(family)
     members = locomotion.library.family(family)
     query = space.clamp(velocity)
     memory["weights"] = 0.0
@@ -89,7 +90,7 @@ def _middle(locomotion: Any, pose: Pose) -> np.ndarray:
     return points[:, [0, 2]].mean(0)
 
 
-def _row(locomotion: Any, pose: Pose, ground: np.ndarray, floor: float) -> np.ndarray:
+def _row(locomotion: Any, pose: Pose, ground: np.ndarray, floor: np.ndarray | float) -> np.ndarray:
     """A pose as the pose columns of a series row, seen from a ground frame."""
     turn = yaw(-ground[2])
     local = np.array(pose.rotations, float)

@@ -7,7 +7,9 @@ import tokenize
 import zipfile
 import zlib
 from dataclasses import asdict, dataclass, field
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -86,14 +88,14 @@ class Library:
             self._write(file, about)
 
     def _write(self, file, about: dict) -> None:
+        families: dict[str, Any] = {f"bend_{family}": bend for family, bend in self.bends.items()}
+        families |= {f"acceleration_{family}": a for family, a in self.accelerations.items()}
         np.savez_compressed(file, velocities=self.velocities, reference=self.reference,
-                            coefficients=self.coefficients.astype(np.float32),
-                            **{f"bend_{family}": bend for family, bend in self.bends.items()},
-                            **{f"acceleration_{family}": a for family, a in self.accelerations.items()},
+                            coefficients=self.coefficients.astype(np.float32), **families,
                             about=np.frombuffer(json.dumps(about).encode(), np.uint8))
 
     @staticmethod
-    def load(path: str | Path) -> Library:
+    def load(path: str | PathLike[str]) -> Library:
         """Read a library. LibraryError names the file if it is missing or not one."""
         try:
             with np.load(ordinary(path), allow_pickle=False) as file:
@@ -117,7 +119,7 @@ class Library:
         library._check(path)
         return library
 
-    def _check(self, path: str | Path) -> None:
+    def _check(self, path: str | PathLike[str]) -> None:
         """LibraryError, naming the file, unless the arrays fit each other."""
         count, joints = len(self.primitives), len(self.skeleton)
         rows = self.coefficients.shape[1] if self.coefficients.ndim == 3 and self.coefficients.shape[1] % 2 else -1

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -55,8 +56,9 @@ def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
     try:
         recipe = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
-        sources = [Source(**{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()})
-                   for s in recipe.get("source", [])]
+        fields: list[dict[str, Any]] = [{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()}
+                                        for s in recipe.get("source", [])]
+        sources = [Source(**one) for one in fields]
         for number, source in enumerate(sources, 1):
             source.check(number)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError, ValueError) as error:
@@ -182,7 +184,7 @@ def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], still
         seed = cycles[choice.cycle]
         near, weight = neighbours(cycles, actor, choice.cycle, seed.family)
         group = [mirrored(cycles[i], swap) if choice.mirrored else cycles[i] for i in near]
-        samples = sum(w * channels(c, reference) for w, c in zip(weight, group))
+        samples = np.asarray(sum(w * channels(c, reference) for w, c in zip(weight, group)))
         primitives.append(Primitive(choice.label, seed.clip, seed.start, seed.period, seed.family, seed.closure,
                                     tuple(map(float, seed.events)), choice.mirrored, len(near)))
         velocities.append(sum(w * c.velocity for w, c in zip(weight, group)))

@@ -45,7 +45,7 @@ class Settings(NamedTuple):
 
 def plain(settings: Settings) -> Settings:
     """The same settings, each of its own kind of number: kernels are compiled anew for any other, 1 for 1.0."""
-    return Settings(*(type(usual)(value) for usual, value in zip(Settings(), settings)))
+    return Settings._make(type(usual)(value) for usual, value in zip(Settings(), settings))
 
 
 class Legs(NamedTuple):

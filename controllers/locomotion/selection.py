@@ -36,7 +36,8 @@ class Choice:
 
 def protocol() -> list[tuple[str, np.ndarray]]:
     """The walking targets, each a label and (v_f, ω, v_l) in SI."""
-    targets = [(f"forward {v:.2f} m/s", (v, 0, 0)) for v in (0.40, 0.65, 0.95, 1.30, 1.45, 1.65)]
+    targets: list[tuple[str, tuple[float, float, float]]] = [
+        (f"forward {v:.2f} m/s", (v, 0, 0)) for v in (0.40, 0.65, 0.95, 1.30, 1.45, 1.65)]
     for speed, v in (("slow", 0.53), ("normal", 0.83), ("fast", 1.15)):
         targets.append((f"radius inf {speed}", (v, 0, 0)))
         for radius in (3, 2, 1, 0.4):

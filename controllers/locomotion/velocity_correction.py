@@ -8,6 +8,7 @@ in the control space and the `bend` of the space's edges.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal, overload
 
 import numpy as np
 
@@ -111,6 +112,10 @@ def measure_bend(library: Library, members: np.ndarray, space: ControlSpace) -> 
     return np.concatenate([pairs, bend], -1)
 
 
+@overload
+def space_of(library: Library, family: Literal["walk"]) -> ControlSpace: ...
+@overload
+def space_of(library: Library, family: str) -> ControlSpace | None: ...
 def space_of(library: Library, family: str) -> ControlSpace | None:
     """The control space of one family: a walk too wild is walked slower, down to rest; a run too
     wild goes straighter at the same speed.

@@ -46,6 +46,12 @@ class _Bone:
     turn: np.ndarray = field(default_factory=lambda: np.zeros(3))
     position: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
+    @property
+    def vector(self) -> np.ndarray:
+        """From its joint to the next (3,)."""
+        assert self.direction is not None and self.length is not None  # no bone ends without
+        return self.direction * self.length
+
 
 def read_asf(path) -> AcclaimSkeleton:
     """The skeleton of an ASF file in metres: `length` l means that one unit is 1/l inch.
@@ -66,7 +72,7 @@ def read_asf(path) -> AcclaimSkeleton:
     bones = {"root": root} | _bones(sections["bonedata"], path)
     names, parents = _tree(sections["hierarchy"], bones, path)
     order = [bones[name] for name in names]
-    vectors = np.stack([bone.direction * bone.length for bone in order]) * metre
+    vectors = np.stack([bone.vector for bone in order]) * metre
     offsets = np.where(np.array(parents)[:, None] >= 0, vectors[parents], root.position * metre)
     leaves = np.array([j for j in range(1, len(names)) if j not in parents], np.int64)
     skeleton = Skeleton(names, np.array(parents), offsets, leaves, vectors[leaves])
@@ -140,6 +146,7 @@ def _bones(lines, path) -> dict[str, _Bone]:
             for needed in ("name", "direction", "length"):
                 if getattr(bone, needed) is None:
                     fail(path, line, f"the bone begun in line {bone.line} has no {needed}")
+            assert bone.name is not None  # see above
             if bone.name in bones:
                 fail(path, bone.line, f"a second bone '{bone.name}': names must differ")
             bones[bone.name], bone = bone, None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 import numpy as np
 
@@ -18,12 +19,13 @@ _COLON = re.compile(r"^(\s*(?:frames|frame\s+time)\s*:)", re.IGNORECASE | re.MUL
 
 @dataclass
 class Joint:
-    """One ROOT or JOINT. channels: pairs such as ("rotation", 2) for Zrotation, as the file orders them."""
+    """One ROOT or JOINT. channels: pairs such as ("rotation", 2) for Zrotation, as the file orders them.
+    offset: (3,), not a number until it is read."""
 
     name: str
     parent: int
     line: int
-    offset: np.ndarray | None = None
+    offset: np.ndarray = field(default_factory=lambda: np.full(3, np.nan))
     channels: list[tuple[str, int]] = field(default_factory=list)
     ends: list[np.ndarray] = field(default_factory=list)
 
@@ -54,7 +56,7 @@ class _Words:
             if (word := self.take()).upper() != want.upper():
                 self.fail(f"{_quote(word)} where '{' '.join(expected)}' should stand")
 
-    def fail(self, problem: str):
+    def fail(self, problem: str) -> NoReturn:
         fail(self.path, self.line, problem)
 
 
@@ -83,11 +85,11 @@ def _joints(words: _Words) -> list[Joint]:
     """Everything from ROOT to MOTION."""
     joints: list[Joint] = []
     lines: dict[str, int] = {}
-    nest: list[int | None] = []  # the joints whose brace is open; None for an end site
+    nest: list[int] = []  # the joints whose brace is open; -1 for an end site
     while True:
         word, line = words.take(), words.line
         key = word.upper()
-        here = joints[nest[-1]] if nest and nest[-1] is not None else None
+        here = joints[nest[-1]] if nest and nest[-1] >= 0 else None
         if key == "ROOT" and not joints or key == "JOINT" and here:
             name = _name(words, word)
             if name in lines:
@@ -97,7 +99,7 @@ def _joints(words: _Words) -> list[Joint]:
             nest.append(len(joints) - 1)
         elif key == "END" and here:
             _name(words, word)
-            nest.append(None)
+            nest.append(-1)
         elif key == "OFFSET" and here:
             here.offset = _offset(words, f"'{here.name}'")
         elif key == "OFFSET" and nest:
@@ -106,7 +108,7 @@ def _joints(words: _Words) -> list[Joint]:
         elif key == "CHANNELS" and here:
             here.channels = _channels(words, here)
         elif word == "}" and nest:
-            if here and here.offset is None:
+            if here and np.isnan(here.offset).any():
                 words.fail(f"joint '{here.name}' of line {here.line} has no OFFSET")
             nest.pop()
         elif key == "MOTION" and joints and not nest:
@@ -115,13 +117,13 @@ def _joints(words: _Words) -> list[Joint]:
             _misplaced(words, word, joints, nest)
 
 
-def _misplaced(words: _Words, word: str, joints: list[Joint], nest: list[int | None]):
+def _misplaced(words: _Words, word: str, joints: list[Joint], nest: list[int]) -> NoReturn:
     if word.upper() == "ROOT":
         words.fail("a second ROOT: a file holds one skeleton")
     if word.lower() in CHANNELS:
         words.fail(f"{_quote(word)} is one channel more than CHANNELS declares")
     if nest:
-        owner = joints[nest[-1] if nest[-1] is not None else nest[-2]]
+        owner = joints[nest[-1] if nest[-1] >= 0 else nest[-2]]
         words.fail(f"{_quote(word)} where JOINT, End Site, OFFSET, CHANNELS or '}}' should stand: "
                    f"'{owner.name}' of line {owner.line} is still open")
     words.fail(f"{_quote(word)} where {'MOTION' if joints else 'ROOT'} should stand")

@@ -77,7 +77,7 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
         _from_motion(skeleton, source, part, zero, motions, corrections)
     ours = {name: i for i, name in enumerate(skeleton.names)}
     rest = zero_positions(skeleton)
-    scale = _leg_length(rest, ours) / _leg_length(zero, part.limbs)
+    scale = float(_leg_length(rest, ours) / _leg_length(zero, part.limbs))
     feet = [flat_stance(part, side, clips, motions, scale) for side in SIDES]
     for foot in feet:
         for joint, turn in foot.turns.items():
@@ -88,7 +88,7 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     clavicles = 1.0
     if "LeftShoulder" in part.limbs:
         bone = "LeftShoulder", "LeftArm"
-        clavicles = min(scale * _distance(zero, part.limbs, *bone) / _distance(rest, ours, *bone), 1.0)
+        clavicles = float(min(scale * _distance(zero, part.limbs, *bone) / _distance(rest, ours, *bone), 1.0))
     draft = Calibration(part, corrections, scale, posed, ankles, clavicles, 0.0)
     roll, sink = _even_legs(skeleton, draft, motions)
     corrections = corrections.copy()

@@ -6,6 +6,7 @@ Nothing is allocated by what a header claims, only by what the file really holds
 
 from __future__ import annotations
 
+from typing import NoReturn
 
 import numpy as np
 
@@ -22,7 +23,7 @@ class MotionFileError(ValueError):
     """A motion file that can't be read; the message names file, line and what would be right."""
 
 
-def fail(path, line: int | None, problem: str):
+def fail(path, line: int | None, problem: str) -> NoReturn:
     """Raise the MotionFileError for `line` (1-based; None for the file as a whole)."""
     where = f"{path}" if line is None else f"{path}, line {line}"
     raise MotionFileError(f"{where}: {problem}")

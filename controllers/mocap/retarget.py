@@ -116,6 +116,7 @@ def _floor_shift(clip, skeleton, known, positions, orientations, root, ours):
     heights = []
     for side in SIDES:
         theirs = foot_points(clip.skeleton, known.roles, side, positions, orientations)
-        flat = flat_frames(*(known.scale * p for p in theirs), clip.frame_time)
+        ankle, ball = (known.scale * p for p in theirs)
+        flat = flat_frames(ankle, ball, clip.frame_time)
         heights.append(at[flat, skeleton.index(side + "Toe"), 1])
     return contact_height(skeleton) - np.median(np.concatenate(heights))

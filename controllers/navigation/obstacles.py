@@ -7,9 +7,10 @@ the way; anything else stops nobody.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol, TypeGuard
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 STEP = 0.12
 """No higher step is taken without a jump [m]."""
@@ -25,14 +26,46 @@ DEVIATIONS = np.radians([0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0, 88.0, -88.0
 """The directions that are tried beside the wished one, the nearest first [rad]."""
 
 
-def gap(points: np.ndarray, thing) -> np.ndarray:
+class Box(Protocol):
+    """A solid box: centre [m], full size [m], heading [rad]."""
+
+    @property
+    def centre(self) -> Sequence[float] | np.ndarray: ...
+    @property
+    def size(self) -> Sequence[float] | np.ndarray: ...
+    @property
+    def heading(self) -> float: ...
+
+
+class Pillar(Protocol):
+    """A solid upright cylinder: the middle of its foot, radius and height [m]."""
+
+    @property
+    def foot(self) -> Sequence[float] | np.ndarray: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def height(self) -> float: ...
+
+
+def is_box(thing: Any) -> TypeGuard[Box]:
+    """Whether a thing stands in the way as a box."""
+    return hasattr(thing, "size")
+
+
+def is_pillar(thing: Any) -> TypeGuard[Pillar]:
+    """Whether a thing stands in the way as a pillar."""
+    return hasattr(thing, "foot")
+
+
+def gap(points: np.ndarray, thing: Any) -> np.ndarray:
     """How far points (N, 3) [m] are from a box or a pillar: 0 on its surface, negative inside."""
-    if hasattr(thing, "foot"):
+    if is_pillar(thing):
         foot = np.asarray(thing.foot, float)
         aside = np.hypot(points[:, 0] - foot[0], points[:, 2] - foot[2]) - thing.radius
         along_y = np.abs(points[:, 1] - foot[1] - 0.5 * thing.height) - 0.5 * thing.height
         outside = np.stack([aside, along_y], 1)
-    elif hasattr(thing, "size"):
+    elif is_box(thing):
         c, s = np.cos(thing.heading), np.sin(thing.heading)
         local = (points - np.asarray(thing.centre)) @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
         outside = np.abs(local) - 0.5 * np.asarray(thing.size)
@@ -41,11 +74,11 @@ def gap(points: np.ndarray, thing) -> np.ndarray:
     return np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(1), 0.0)
 
 
-def floor_at(x: float, z: float, around, below: float = np.inf) -> float:
+def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -> float:
     """The height [m] of the highest box or the floor at a place, no higher than `below`."""
     height = 0.0
     for thing in around:
-        if hasattr(thing, "size"):
+        if is_box(thing):
             c, s = np.cos(thing.heading), np.sin(thing.heading)
             dx, dz = x - thing.centre[0], z - thing.centre[2]
             top = thing.centre[1] + 0.5 * thing.size[1]
@@ -55,7 +88,7 @@ def floor_at(x: float, z: float, around, below: float = np.inf) -> float:
     return height
 
 
-def slide(place, velocity, floor: float, around: Sequence[Any]) -> np.ndarray:
+def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[Any]) -> np.ndarray:
     """The velocity (2,) along x and z [m/s] nearest to the wished one that runs into nothing and over no edge.
 
     place: (2,) x, z [m]. velocity: (2,) wished. floor: how high the walker stands [m]. A walker that

@@ -75,7 +75,7 @@ def parse(text: str, skeleton: Skeleton) -> ControlPoints:
                 raise ValueError(f"control point '{name}' is given twice" if name == other else
                                  f"control points '{other}' and '{name}' are one place")
     names, joints, offsets = zip(*points, strict=True)
-    return ControlPoints(names, joints, offsets)
+    return ControlPoints(names, np.array(joints), np.array(offsets))
 
 
 def _point(word: str, skeleton: Skeleton) -> tuple[str, int, np.ndarray]:

@@ -45,9 +45,11 @@ class Reconstructor(Protocol):
 
     def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Any:
         """See `Method`."""
+        ...
 
     def step(self, memory: Any, points: np.ndarray) -> tuple[Any, Pose]:
         """See `Method`."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +116,7 @@ class Reconstruction(Controller):
         away = self._possible(seen, self._points(pose))
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, level)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
-        alike = away <= ANEW or self.starts is None
-        frames, tracks = guessed_past(pose, past, state.elapsed, self.dt) if alike else self.starts.find(seen)
+        frames, tracks = guessed_past(pose, past, state.elapsed, self.dt) if away <= ANEW or self.starts is None else self.starts.find(seen)
         begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen)
         # what the body would do next by itself is where the fading begins
         offset = difference(moved(pose, rate * self.dt), begun.pose)
@@ -130,6 +131,8 @@ class Reconstruction(Controller):
         nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
         seen = self._seen(Intent(points=points), floor)
         self._possible(seen, seen)
+        if self.starts is None:
+            raise Unable("it knows no poses to begin from: enter it from a body, or give it `starts`")
         frames, tracks = self.starts.find(seen, None if velocities is None else velocities / self.factor)
         following = self._begun(frames, tracks, seen)
         pose = self._grown(following.pose, floor)

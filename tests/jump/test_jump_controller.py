@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body import end_positions, forward_kinematics
-from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.body.start import soles
 from gambol.controllers.jump.controller import Jump, Jumping
@@ -47,6 +47,13 @@ def test_a_jump_replays_to_the_bit_and_leaves_its_states_alone(jump, standing):
     again = played(jump, jump.enter(standing, leap(0.7)))
     assert [bits(s) for s in states] == [bits(s) for s in again] and len(states) > 60
     assert bits(jump.step(states[40], Intent(), 1 / FPS)[0]) == bits(states[41])
+
+
+def test_it_says_that_it_starts_nobody_and_plans_only_what_is_asked(jump, standing):
+    with pytest.raises(Unable, match="Jump starts nobody, it takes over from others"):
+        jump.start()
+    with pytest.raises(Refused, match="nobody asked"):
+        jump.plan(standing, Intent())
 
 
 def test_it_ends_standing_over_the_place_and_says_so(jump, standing):

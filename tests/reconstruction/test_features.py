@@ -59,6 +59,8 @@ def test_a_recording_played_anywhere_finds_itself(made, seed):
     assert query.shape == (segments.width,) and query.dtype == np.float32
     assert np.allclose(query, segments.features(np.array([which]))[0], atol=2e-4)
     assert np.array_equal(segments.targets(np.array([which]))[0], made.frames[last + 1])
+    with pytest.raises(ValueError, match="6 control points"):
+        segments.query(made.frames[last - 2 * np.arange(3)])
 
 
 def test_every_weight_weighs_what_it_says(made):

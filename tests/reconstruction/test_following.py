@@ -16,7 +16,7 @@ from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump, Physique
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.reconstruction.control_points import SETS, parse
-from gambol.controllers.reconstruction.controller import LOST, Reconstruction, towards
+from gambol.controllers.reconstruction.controller import LOST, Following, Reconstruction, towards
 from gambol.controllers.reconstruction.evaluation.metrics import position_error
 from gambol.controllers.reconstruction.following.feet import GIVE
 from gambol.controllers.reconstruction.following.initial_pose import Starts
@@ -121,6 +121,15 @@ def test_a_jump_in_the_air_is_not_interrupted(follower, points):
         state, _ = someone.step(state, Intent(leap=wish, points=None if not duty else points[0]), DT)
         duty.append(state.memory.active)
     assert duty[0] == "jump" and duty[-1] == "reconstruction" and duty == sorted(duty)
+
+
+def test_without_recorded_poses_it_begins_only_from_a_body(follower, points):
+    poor = Reconstruction(follower.method, follower.controls)
+    with pytest.raises(Unable, match="no poses to begin from"):
+        poor.begin(points[0])
+    with pytest.raises(Unable, match="Reconstruction starts nobody"):
+        poor.start()
+    assert isinstance(poor.enter(Locomotion.load().start(), Intent(points=points[0])).memory, Following)
 
 
 @pytest.mark.parametrize(("wrong", "why"), [

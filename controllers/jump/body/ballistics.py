@@ -37,7 +37,7 @@ def least_effort(start, end, velocity=(0.0, 0.0, 0.0), gravity=GRAVITY) -> float
     along_g, along_v, square = float(g @ v), float(d @ v), float(d @ d)
     if along_g == 0.0:  # one positive root
         return _airtime(float(g @ g), along_v, square)
-    roots = np.roots([0.25 * g @ g, 0.5 * along_g, 0.0, along_v, -square])
+    roots = np.roots([float(0.25 * g @ g), 0.5 * along_g, 0.0, along_v, -square])
     real = roots[(np.abs(roots.imag) < 1e-7 * (1.0 + np.abs(roots))) & (roots.real > 1e-9)].real
     if not len(real):
         return 0.0

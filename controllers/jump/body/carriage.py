@@ -12,6 +12,7 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...body import Skeleton, exp_kernel
 from ...compiled import kernel
@@ -108,7 +109,7 @@ def _absorbed(share: float) -> np.ndarray:
     return STAND + min(max(share, 0.25), 1.1) * (ABSORB - STAND)
 
 
-def keyed(times: np.ndarray, keys: np.ndarray, first: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
+def keyed(times: np.ndarray, keys: np.ndarray, first: float = 0.0) -> Callable[[ArrayLike], np.ndarray]:
     """The angles as a function of times within times[0] … times[-1] [s], through `keys` (K, 6) at `times` (K,).
 
     first: how much sooner [s] the arms come to their second key. Monotone between keys (PCHIP's slopes): nothing
@@ -120,7 +121,7 @@ def keyed(times: np.ndarray, keys: np.ndarray, first: float = 0.0) -> Callable[[
     return lambda time: np.concatenate([trunk(time), limbs(time)], axis=-1)
 
 
-def _through(times: np.ndarray, keys: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def _through(times: np.ndarray, keys: np.ndarray) -> Callable[[ArrayLike], np.ndarray]:
     slopes = monotone(times, keys)
     slopes[[0, -1]] = 0.0
     return partial(hermite, times, keys, slopes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...compiled import kernel
 
@@ -17,7 +18,7 @@ def monotone(times: np.ndarray, values: np.ndarray) -> np.ndarray:
     return slopes
 
 
-def hermite(times: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray) -> np.ndarray:
+def hermite(times: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: ArrayLike) -> np.ndarray:
     """The cubic Hermite curve (N, ...) through values (K, ...) with slopes (K, ...) at times (K,). at: (N,), or one time."""
     out = np.empty((*np.shape(at), *values.shape[1:]))
     hermite_kernel(times, np.ascontiguousarray(values).reshape(len(times), -1),

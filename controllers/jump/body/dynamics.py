@@ -35,7 +35,9 @@ class Physique:
         for name, low, high in (("mass", 5.0, 400.0), ("height", 0.5, 3.0), ("strength", 0.05, 20.0),
                                 ("flexibility", 0.3, 2.0)):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real) or not low <= value <= high:
+            # typeshed's Real is only compared with its like, which it has no float for
+            if (isinstance(value, bool) or not isinstance(value, Real)
+                    or not low <= value <= high):  # pyright: ignore[reportOperatorIssue]
                 raise ValueError(f"{name} must be a number within {low:g} … {high:g}, got {value!r}")
             object.__setattr__(self, name, float(value))  # kernels are compiled anew for other kinds of numbers
         if self.sex not in ("male", "female"):

@@ -8,9 +8,9 @@ from .fall import fall, struck
 from .flight import flight_kernel
 from .path_estimate import Path, path
 from .plan import Plan
-from .thrust import push
+from .thrust import Push, push
 
 __all__ = [
-    "FADE", "GROUND_RATE", "HEEL", "LOWEST", "SAME", "Airborne", "Path", "Plan", "descent", "faded", "fall",
+    "FADE", "GROUND_RATE", "HEEL", "LOWEST", "SAME", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
     "flight_kernel", "ground_kernel", "path", "push", "struck",
 ]

@@ -20,6 +20,7 @@ def descent(way: Path, start: Start, floor: float, times: np.ndarray) -> tuple[n
     A runner goes down by a quartic: how hard the ground meets the foot is left open. A standing body does by a quintic,
     later where `Path.dip` says so. floor: [m].
     """
+    assert way.push is not None  # a fall has none, and comes down in the air
     pushed = way.push.force(0.0) + way.gravity
     if way.running:
         down, along = (joined(start.centre, start.velocity, begins, way.low, way.passing, pushed, times)

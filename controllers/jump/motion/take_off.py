@@ -153,7 +153,7 @@ class Running:
         passing = self.before
         mean = 0.5 * (passing + velocity * FLAT)
         along = mean / max(float(np.linalg.norm(mean)), 1e-6)
-        behind = (start.centre - self.ball) @ along
+        behind = float((start.centre - self.ball) @ along)
         speed = max(float(np.linalg.norm(mean)), 0.3)
         # the force's mean lean brings the velocity about
         lean = float((velocity - passing) @ along) / max(float(velocity[1]) - float(start.velocity[1]) + g * 0.2, 1.0)
@@ -179,7 +179,8 @@ class Running:
         else:
             from scipy.optimize import brentq  # slow to load, and a game starts without
 
-            yielding = brentq(above, least, longest, args=(contact,), xtol=1e-4)
+            # scipy's hints forget that only full_output makes it a pair
+            yielding: float = brentq(above, least, longest, args=(contact,), xtol=1e-4)  # pyright: ignore[reportAssignmentType]
         rise = risen(contact - yielding, float(velocity[1]), g)
         low = (start.centre + start.velocity * yielding) * FLAT
         leave = low + mean * (contact - yielding)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 RISE = 0.3
 """How the vertical force rises within the push."""
@@ -31,12 +32,12 @@ class Push:
     turn: np.ndarray
     gravity: np.ndarray
 
-    def force(self, time: np.ndarray) -> np.ndarray:
+    def force(self, time: ArrayLike) -> np.ndarray:
         """Ground force over mass (..., 3) [m/s²] `time` (...) [s] after the lowest point."""
         s = np.clip(np.asarray(time, float) / self.duration, 0.0, 1.0)[..., None]
         return self.level * (1.0 - s**4 + RISE * s * (1.0 - s**3)) * (_UP + self.lean + self.turn * s)
 
-    def moved(self, time: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def moved(self, time: ArrayLike, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Way (..., 3) [m] and velocity [m/s] since the lowest point, passed with `velocity` (3,)."""
         t = np.asarray(time, float)[..., None]
         s = t / self.duration

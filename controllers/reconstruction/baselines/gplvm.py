@@ -8,7 +8,7 @@ here a second belief, that a frame is not far from the one before, keeps the mot
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,8 @@ class Process:
     energy: float
     floor: np.ndarray | float = 0.0
     loosening: float = 1.0
+    _inverse: np.ndarray = field(init=False, repr=False)
+    _map: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self):
         alpha, beta, gamma = self.kernel

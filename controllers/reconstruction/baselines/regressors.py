@@ -43,7 +43,8 @@ class Layers:
 
     def save(self, path: str | Path) -> None:
         """Write it as an .npz file."""
-        arrays = {f"weights{i}": w for i, w in enumerate(self.weights)} | {f"biases{i}": b for i, b in enumerate(self.biases)}
+        arrays: dict[str, Any] = {f"weights{i}": w for i, w in enumerate(self.weights)}
+        arrays |= {f"biases{i}": b for i, b in enumerate(self.biases)}
         with Path(path).open("wb") as file:
             np.savez(file, ins=self.ins, outs=self.outs, errors=self.errors, loosening=self.loosening, **arrays)
 

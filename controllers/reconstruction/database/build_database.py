@@ -121,7 +121,7 @@ def sound(clip: Clip, frames: np.ndarray) -> np.ndarray:
     alike = np.abs(np.sum(clip.quaternions[1:, joints] * clip.quaternions[:-1, joints], -1))
     turn = 2 * np.arccos(np.clip(alike, 0.0, 1.0))
     jumps = (turn > JUMP * 60 * clip.frame_time).any(1)
-    good = np.isfinite(frames).all(1)
+    good = np.all(np.isfinite(frames), axis=1)
     good[1:] &= ~jumps
     good[:-1] &= ~jumps
     turned = np.linalg.norm(frames[:, :ANGLES].reshape(len(frames), -1, 3), axis=-1).max(1)

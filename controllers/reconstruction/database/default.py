@@ -99,8 +99,8 @@ def _jumped(someone: Supervisor, wishes) -> list[Pose]:
         nonlocal state
         state, pose = someone.step(state, Intent(velocity, leap), 1 / FPS)
         poses.append(pose)
-    for (seconds, *velocity), ahead, airtime in wishes:
-        velocity = np.array(velocity, float)
+    for (seconds, *wished), ahead, airtime in wishes:
+        velocity = np.array(wished, float)
         for _ in range(round(seconds * FPS)):
             on(None)
         for _ in range(round(_LONGEST_WAIT * FPS)):

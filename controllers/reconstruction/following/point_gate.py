@@ -77,7 +77,7 @@ class Gate:
         seen: (n, 3) [m] as they come, NaN where lost. body: (n, 3) [m] where the body would have them now.
         motion: (n, 3) [m/s] how it moves them.
         """
-        there = np.isfinite(seen).all(-1)
+        there = np.all(np.isfinite(seen), axis=-1)
         seen = np.where(there[:, None], seen, np.nan)
         known = np.isfinite(self.raw).all(-1)
         moved = seen - self.raw

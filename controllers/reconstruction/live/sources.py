@@ -21,6 +21,7 @@ class Source(Protocol):
 
     def at(self, time: float) -> np.ndarray:
         """Where the points are (n, 3) [m] in the world at a time [s], NaN where one is not seen. Times only grow."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)

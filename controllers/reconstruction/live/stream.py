@@ -39,8 +39,10 @@ _FROM_UNITY = np.array([-1.0, 1.0, 1.0])
 _AT_ONCE = 4096  # packets taken in one go: a flood must not stop a frame
 _LONGEST_NAME, _MOST_NAMES = 100, 64  # of trackers: letters, and how many that are on no point are remembered
 # the library logs a broken packet whole, for everybody to see: here it is counted
-osc_bundle.logging = osc_message.logging = logging.getLogger("gambol.osc")
-osc_bundle.logging.disabled = True
+_quiet = logging.getLogger("gambol.osc")
+_quiet.disabled = True
+for _module in (osc_bundle, osc_message):
+    vars(_module)["logging"] = _quiet
 
 
 class StreamError(ValueError):

@@ -57,7 +57,7 @@ class Graph:
             first, end = self.segments.span(forbidden)
             found = _walk(self.cells.projection(feature), self.points, self.segments.last, self.links, hint.near,
                           max(self.beam, 2 * k), max(self.expand, k // 2), self.rounds, first, end)
-        age = hint.age + 1 if len(found) >= k else 0
+        age = hint.age + 1 if hint is not None and len(found) >= k else 0
         if len(found) < k:
             found = self.cells.candidates_of(feature, k, None, forbidden)
         return *ranked(self.segments, feature, found, k), Trail(found, age)

@@ -32,6 +32,7 @@ class Search(Protocol):
         which, and of whose mirror image, nothing is to be found. Fewer than k come back where there
         are no more.
         """
+        ...
 
 
 class Exact:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -50,7 +50,7 @@ class Segments:
     points: np.ndarray
 
     @staticmethod
-    def of(database: Database, m: int = 3, stride: int = 4, joints: Sequence[int] = (), weights: Weights = Weights()
+    def of(database: Database, m: int = 3, stride: int = 4, joints: Iterable[int] = (), weights: Weights = Weights()
            ) -> Segments:
         """The segments of a database. DatabaseError if it has none so long."""
         last, joints = database.segments(m, stride), tuple(int(joint) for joint in joints)
@@ -86,11 +86,13 @@ class Segments:
               track: np.ndarray | None = None) -> np.ndarray:
         """Features (width,) float32 to search for. past: (m, WIDTH) frames, newest first, `stride` apart.
 
-        points, before, track: as `of_points` takes them, where these segments have control points.
+        points, before, track: as `of_points` takes them, where these segments have control points: ValueError without.
         """
         seen = of_past(past, self.weights)
         if not self.joints:
             return seen
+        if points is None or before is None or track is None:
+            raise ValueError(f"these segments have {len(self.joints)} control points: tell where they are, were and the track")
         return np.concatenate([seen, of_points(points, before, track, 1 / self.database.fps, self.weights)], -1)
 
     def features(self, which: np.ndarray) -> np.ndarray:

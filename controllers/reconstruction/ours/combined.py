@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -103,7 +103,7 @@ class Expectation:
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`."""
         points = np.concatenate([seen[None], memory.points])[LAGS]
-        known = np.concatenate([np.isfinite(goals).all(-1)[None], memory.known])[LAGS]
+        known = np.concatenate([np.all(np.isfinite(goals), axis=-1)[None], memory.known])[LAGS]
         points += TOLD * (self.moments.complete(points, known, memory.track[2]) - points)
         inputs, ground = view(points, memory.track[2])
         pose, off, lasting = self.networks.predict(inputs).astype(float), np.zeros(WIDTH), np.zeros(WIDTH)
@@ -180,7 +180,10 @@ class Ours:
         """See `Method.begin`."""
         memory = self.method.begin(frames, tracks)
         which = np.maximum(np.arange(len(frames) - 1, len(frames) - 1 - SPAN, -1), 0)
-        expectation, *others = self.method.prior.priors
+        prior = self.method.prior
+        assert isinstance(prior, Fused)  # see above
+        expectation, others = prior.priors[0], prior.priors[1:]
+        assert isinstance(expectation, Expectation)
         known = expectation.known(memory.frames, np.asarray(tracks, float)[which], memory.points)
         pose = placed(memory.frames[:2], np.asarray(tracks, float)[which[:2]])
         return Remembered(replace(memory, hint=(known, *(None for _ in others))), memory.points[_RECENT - 1::-1],
@@ -215,7 +218,7 @@ def ours(database: Database, controls: ControlPoints, *, skeleton: Skeleton = SK
     plain, how = Solver(controls, 1 / database.fps), NARROW if len(database) < PLENTY else {}
 
     def make():
-        told = None if progress is None else lambda done, total: progress("learning", done, total)
+        told = None if progress is None else partial(progress, "learning")
         return learn(Samples.of(database, plain), progress=told, **how)
     points = controls.joints.tolist(), controls.offsets.tolist()
     networks = kept("networks", database, (*points, *how.items()), make, Networks.save, Networks.load, _SOURCES)

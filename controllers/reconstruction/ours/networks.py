@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -162,8 +163,8 @@ class Networks:
         """Placed poses (..., D) for inputs (..., P)."""
         inputs = np.ascontiguousarray(inputs, np.float32)
         if inputs.ndim == 1:
-            return sum(_predicted(member, inputs) for member in self.members) / len(self.members)
-        return sum(member.predict(inputs) for member in self.members) / len(self.members)
+            return np.asarray(sum(_predicted(member, inputs) for member in self.members)) / len(self.members)
+        return np.asarray(sum(member.predict(inputs) for member in self.members)) / len(self.members)
 
     def save(self, folder: Path) -> None:
         """Write them into a new folder."""
@@ -212,9 +213,10 @@ def learn(samples: Samples, seeds: int = 2, batches: int | None = None, hidden: 
     if batches is None:
         batches = int(np.clip(_ROUNDS * len(samples) // _SIZE, _LEAST, _MOST))
 
-    def told(seed):
-        return None if progress is None else lambda batch: progress(seed * batches + batch, seeds * batches)
-    members = tuple(_learn(samples, seed, batches, hidden, told(seed)) for seed in range(seeds))
+    def told(seed, batch):
+        if progress is not None:
+            progress(seed * batches + batch, seeds * batches)
+    members = tuple(_learn(samples, seed, batches, hidden, partial(told, seed)) for seed in range(seeds))
     chosen = np.random.default_rng(seeds).permutation(len(samples))[:_JUDGED]
     inputs, truth = draw(samples, chosen)
     errors = Networks(members, np.empty(0)).predict(inputs) - truth
@@ -233,6 +235,5 @@ def _learn(samples, seed, batches, hidden, progress):
         found = forward(values[:count], values[count:], ((inputs - ins[0]) / ins[1]).astype(np.float32))
         _, slopes = misfit(found[-1] * outs[1] + outs[0], truth)
         adam.step(backward(values[:count], found, (slopes * outs[1]).astype(np.float32)))
-        if progress is not None:
-            progress(batch + 1)
+        progress(batch + 1)
     return Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.eye(len(outs[0])))

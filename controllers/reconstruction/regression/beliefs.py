@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
@@ -19,10 +19,10 @@ class Gaussian:
 
     mean: np.ndarray
     variance: np.ndarray
-    factor: np.ndarray | None = None
+    factor: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self):
-        if self.factor is None:
+        if self.factor.shape == (0,):
             object.__setattr__(self, "factor", np.zeros((*np.shape(self.mean)[:-1], 0, np.shape(self.mean)[-1])))
 
     @property

@@ -118,9 +118,8 @@ def fit(query: np.ndarray, X: np.ndarray, Y: np.ndarray, distances: np.ndarray |
     """
     if len(X) < 2:
         raise ValueError(f"a local regression needs two neighbours or more, not {len(X)}")
-    if distances is None:
-        distances = np.linalg.norm(X - query, axis=1)
-    omega = weights(distances, how.bandwidth).astype(X.dtype)
+    away: np.ndarray = np.linalg.norm(X - query, axis=1) if distances is None else distances
+    omega = weights(away, how.bandwidth).astype(X.dtype)
     share = omega / omega.sum()
     root = np.sqrt(omega)
     x_mean, y_mean = share @ X, share @ Y

@@ -87,7 +87,7 @@ class Solver:
             if value.shape != (*batch, *shape):
                 value = np.broadcast_to(value, (*batch, *shape))
             # the kernel is compiled for one kind of array, which may be written to
-            return np.require(value, requirements="CW").reshape(number, *shape)
+            return np.require(value, requirements=["C", "W"]).reshape(number, *shape)
 
         mean, variance = flat(prior.mean, size), flat(prior.variance, size)
         factor = flat(prior.factor, prior.factor.shape[-2], size)

@@ -48,6 +48,7 @@ class Prior(Protocol):
         seen: (n, 3) [m] the points in the world, those missing guessed. goals: (n, 3) the same seen from the ground
         of the newest frame, NaN where missing.
         """
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ class Method:
     def follow(self, memory: Memory, points: np.ndarray) -> Memory:
         """As `step`, for those who want no pose: it is the memory's newest frame."""
         goals = on_ground(np.asarray(points, float), memory.track)
-        lost = ~np.isfinite(goals).all(-1)
+        lost = ~np.all(np.isfinite(goals), axis=-1)
         seen = np.array(points, float)
         if lost.any():  # guessed to go on with the body
             carried = advance(memory.track, memory.frames[0], self.solver.dt)
@@ -112,6 +113,7 @@ class LocalModel(Protocol):
 
     def believe(self, feature: np.ndarray, near: Neighbourhood, memory: Memory) -> Gaussian:
         """The belief about the frame after a query (P,)."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
