@@ -40,7 +40,7 @@ class Command:
 
     def intent(self, state: CharacterState, settings: Steering = STEERING) -> Intent:
         """The same as an intent of the character in `state`."""
-        wanted = steer(state.ground, np.array(self.velocity), self.facing, state.velocity[..., 1], settings)
+        wanted = steer(state.ground, np.array(self.velocity), self.facing, state.velocity[1], settings)
         return Intent(wanted.velocity + np.array([0.0, self.turn, 0.0]))
 
 

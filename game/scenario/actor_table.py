@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+import numpy as np
 from pydantic import model_validator
 
 from gambol.controllers.body import STATURE
@@ -77,8 +78,8 @@ class ActorTable(Table):
 
     def jumper(self, gravity: float) -> JumpController:
         """Its jumps, where the scenario has that gravity."""
-        return JumpController(Physique() if self.body is None else self.body.physique(),
-                              (0.0, -(gravity if self.gravity is None else self.gravity), 0.0))
+        pull = gravity if self.gravity is None else self.gravity
+        return JumpController(Physique() if self.body is None else self.body.physique(), np.array([0.0, -pull, 0.0]))
 
     def script(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Script:
         """What it does, among props."""
