@@ -70,6 +70,7 @@ class Film:
         self._reader.start()
 
     def _listen(self) -> None:
+        assert self._process.stderr is not None  # it is a pipe
         for line in self._process.stderr:
             if found := PROGRESS.fullmatch(line.strip()):
                 self.done, self.total = int(found[1]), int(found[2])

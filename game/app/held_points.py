@@ -59,10 +59,10 @@ class HeldPoints:
         if action == "study_hands":
             self.grip = None
             return "pins=hold" if open_.pins is None else "pins=", ""
-        number = self._under(now)
-        if number is None:
+        number, pins = self._under(now), open_.pins
+        if number is None or pins is None:
             return "", "no point that is held is under the pointer"
-        place = self._places(now)[number] if open_.pins[number] is None else np.full(3, np.nan)
+        place = self._places(now)[number] if pins[number] is None else np.full(3, np.nan)
         return f"pin={number}:{written(place)}", ""
 
     def open(self, wanted: Comparison) -> tuple[str, str]:
@@ -139,9 +139,10 @@ class HeldPoints:
     def grab(self, now: SessionState) -> bool:
         """Take hold of the point under the pointer; whether there is one."""
         number = self._under(now)
-        if number is not None:
-            self.grip, self.sent = Grip.of(self.camera, self.aspect, self._places(now), number, *self.pointer), ""
-        return number is not None
+        if number is None or self.camera is None:
+            return False
+        self.grip, self.sent = Grip.of(self.camera, self.aspect, self._places(now), number, *self.pointer), ""
+        return True
 
     def let_go(self) -> bool:
         """Whether a point was held; it stays where it is."""
@@ -165,9 +166,9 @@ class HeldPoints:
 
     def _places(self, now: SessionState) -> np.ndarray:
         """Where the points (n, 3) of the comparison are, or the body has them."""
-        body = next(one for one in now.after.characters if one.follows is not None)
-        own = body.follows.controls.on(*body.joints)
-        goals = now.comparison.goals
+        body, follows = next((one, one.follows) for one in now.after.characters if one.follows is not None)
+        own = follows.controls.on(*body.joints)
+        goals = None if now.comparison is None else now.comparison.goals
         return own if goals is None else np.where(np.isfinite(goals), goals, own)
 
     def _under(self, now: SessionState) -> int | None:

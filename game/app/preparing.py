@@ -35,6 +35,7 @@ class Preparing:
         arguments = () if library is None else (str(library),)
         ahead = _program("ahead", arguments, subprocess.DEVNULL, subprocess.PIPE)
         self.programs = _program("person", arguments, ahead.stdout, None), ahead
+        assert ahead.stdout is not None  # it is a pipe
         ahead.stdout.close()
 
     @property

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -111,7 +111,7 @@ class Turned:
     flown: ClassVar[bool] = False
     """Whether the sticks move the camera instead of the character."""
 
-    def turned(self, yaw: float, pitch: float = 0.0):
+    def turned(self, yaw: float, pitch: float = 0.0) -> Self:
         """The player turns the camera by angles [rad]: yaw to the left, pitch upwards."""
         if not finite(yaw, pitch):
             return self
@@ -119,18 +119,22 @@ class Turned:
         return replace(self, wanted_yaw=self.wanted_yaw + yaw,
                        wanted_pitch=min(max(self.wanted_pitch + pitch, lowest), highest))
 
-    def recentred(self, heading: float):
+    def recentred(self, heading: float) -> Self:
         """The player asks for the view along `heading` [rad]; it turns there the shorter way."""
         return replace(self, wanted_yaw=self.yaw + float(wrap(heading - self.yaw)), wanted_pitch=0.25)
 
-    def aimed(self, heading: float | None, dt: float):
+    def zoomed(self, factor: float) -> Self:
+        """The wheel asks to be `factor` times as far; itself where that means nothing."""
+        return self
+
+    def aimed(self, heading: float | None, dt: float) -> Self:
         """The camera `dt` seconds later for somebody who looks where to jump, along `heading` [rad]; None: nobody does."""
         return self
 
     def _pitches(self) -> tuple[float, float]:
         return self.settings.lowest, self.settings.highest
 
-    def _told(self, wish: Wish, dt: float):
+    def _told(self, wish: Wish, dt: float) -> Self:
         """The camera after what the hands did to it."""
         rate = self.settings.turn * dt
         yaw, pitch = wish.drag[0] + rate * wish.orbit[0], wish.drag[1] + rate * wish.orbit[1]
@@ -139,7 +143,7 @@ class Turned:
             told = told.zoomed(self.settings.notch ** min(max(wish.zoom, -10.0), 10.0))
         return told
 
-    def _swung(self, dt: float) -> dict:
+    def _swung(self, dt: float) -> dict[str, Any]:
         s = self.settings
         return {"yaw": float(damp(self.yaw, self.wanted_yaw, s.orbit_halflife, dt)),
                 "pitch": float(damp(self.pitch, self.wanted_pitch, s.orbit_halflife, dt))}
@@ -154,7 +158,7 @@ class Armed(Turned):
     distance: float = 4.0
     arm: float = 4.0
 
-    def zoomed(self, factor: float):
+    def zoomed(self, factor: float) -> Self:
         """The arm times `factor`, within its limits."""
         s = self.settings
         return replace(self, distance=min(max(self.distance * factor, s.nearest), s.farthest))
@@ -169,11 +173,11 @@ class Armed(Turned):
         """Yaw and pitch of the arm."""
         return self.yaw, self.pitch
 
-    def placed(self, ground, props: Sequence[Prop]):
+    def placed(self, ground, props: Sequence[Prop]) -> Self:
         """The camera at rest, as far from its target as props let it; ground: (3,) of whom it spares."""
         return self._reached(ground, math.inf, props, clear=False)
 
-    def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool):
+    def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool) -> Self:
         """The camera with its eye at the end of its arm. clear: whether the arm may meet nobody."""
         props = tuple(props)
         root = outside(self.target, props)

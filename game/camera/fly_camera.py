@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -29,11 +29,11 @@ class Free(Turned):
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
     speed: float = CameraSettings.fly
 
-    def zoomed(self, factor: float) -> Free:
+    def zoomed(self, factor: float) -> Self:
         """The speed divided by `factor`."""
         return replace(self, speed=min(max(self.speed / factor, 0.2), 20.0))
 
-    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Free:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Self:
         """The camera `dt` seconds later; see `Follow.step`. It keeps out of whoever stands at `ground`."""
         told, s = self._told(wish, dt), self.settings
         if wish.look != (0.0, 0.0):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -53,16 +53,16 @@ class Follow(Armed):
                       wanted_yaw=yaw, pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance,
                       settings=settings)
 
-    def turned(self, yaw: float, pitch: float = 0.0) -> Follow:
+    def turned(self, yaw: float, pitch: float = 0.0) -> Self:
         """The player turns the camera by angles [rad]: yaw to the left, pitch upwards."""
         turned = super().turned(yaw, pitch)
         return self if turned is self else replace(turned, still=0.0)
 
-    def recentred(self, heading: float) -> Follow:
+    def recentred(self, heading: float) -> Self:
         """The player asks for the view from behind `heading` [rad]."""
         return replace(super().recentred(heading), still=10.0)
 
-    def aimed(self, heading: float | None, dt: float) -> Follow:
+    def aimed(self, heading: float | None, dt: float) -> Self:
         """The camera a little out of the line of a jump along `heading` [rad]; back behind where nobody aims at one."""
         if heading is None:
             return self if self.aside == 0.0 else replace(self, aside=float(damp(self.aside, 0.0, GOES, dt)))
@@ -76,7 +76,7 @@ class Follow(Armed):
     def _looks(self) -> tuple[float, float]:
         return self.yaw + self.aside, min(self.pitch + OVER * min(abs(self.aside) / BESIDE, 1.0), self.settings.highest)
 
-    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Follow:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Self:
         """The camera `dt` seconds later.
 
         ground: (3,) x, z [m], heading [rad] of whom it follows. velocity: (2,) its world velocity

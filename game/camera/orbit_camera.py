@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -36,11 +36,11 @@ class Orbit(Armed):
         return Orbit(eye=pivot - distance * forward(yaw, pitch), target=pivot, pivot=pivot, yaw=yaw, wanted_yaw=yaw,
                      pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance, settings=settings, tracks=tracks)
 
-    def recentred(self, heading: float) -> Orbit:
+    def recentred(self, heading: float) -> Self:
         """Back to the character, seen from behind `heading` [rad]."""
         return replace(super().recentred(heading), tracks=True)
 
-    def panned(self, right: float, up: float) -> Orbit:
+    def panned(self, right: float, up: float) -> Self:
         """The picture pushed by the mouse, in heights of the window; the point stays there."""
         if not finite(right, up):
             return self
@@ -50,7 +50,7 @@ class Orbit(Armed):
         pivot = self.pivot - span * (right * sideways + up * upwards)
         return replace(self, pivot=above_floor(pivot), tracks=False)
 
-    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Orbit:
+    def step(self, ground, velocity, wish: Wish, dt: float, props: Sequence[Prop] = (), level: float = 0.0) -> Self:
         """The camera `dt` seconds later; see `Follow.step`. The velocity plays no part."""
         told, s = self._told(wish, dt), self.settings
         if wish.pan != (0.0, 0.0):

@@ -8,6 +8,8 @@ the steps are. An eye is never within a prop, under the floor or inside the char
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from ..scene import Camera
@@ -19,6 +21,14 @@ from .orbit_camera import Orbit
 CUT = 1.5
 """An eye that moves farther than this [m] in one step has been put elsewhere: nothing lies between."""
 PlayerCamera = Follow | Orbit | Free
+
+
+class Seeing(Protocol):
+    """Whatever says what to draw with."""
+
+    def view(self) -> Camera:
+        """The camera."""
+        ...
 
 
 def cycled(camera: PlayerCamera, ground, level: float = 0.0) -> PlayerCamera:
@@ -41,7 +51,7 @@ def cycled(camera: PlayerCamera, ground, level: float = 0.0) -> PlayerCamera:
                   wanted_pitch=min(max(pitch, s.lowest), s.highest), **turned)
 
 
-def between(a: PlayerCamera, b: PlayerCamera, alpha: float) -> Camera:
+def between(a: Seeing, b: Seeing, alpha: float) -> Camera:
     """What to draw with `alpha` (0 … 1) of the way from one step's camera to the next one's."""
     first, second = a.view(), b.view()
     if np.linalg.norm(second.eye - first.eye) > CUT:

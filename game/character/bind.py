@@ -114,7 +114,7 @@ def _body(document: Document, tree: Nodes, surface: Surface, found: dict[str, in
     paint = np.concatenate([uv, which[surface.material][:, None]], 1)
     four = np.argpartition(-weights, 4, 1)[:, :4]
     share = np.take_along_axis(weights, four, 1)
-    whole = Mesh(*(a.astype(np.float32) for a in (posed - shift, unit(faced))), surface.triangles.astype(np.uint32),
+    whole = Mesh((posed - shift).astype(np.float32), unit(faced).astype(np.float32), surface.triangles.astype(np.uint32),
                  four.astype(np.uint8), (share / share.sum(1, keepdims=True)).astype(np.float32),
                  np.clip(surface.open, 0.0, 1.0).astype(np.float32), paint.astype(np.float32))
     legs = float(leg_length(joints))

@@ -168,7 +168,7 @@ def _parts(glb: Glb, actor: Actor) -> tuple[Mesh, list[tuple[np.ndarray, int]]]:
                       (mesh.triangles[dark], _plain(glb, "Trim", _DARK + 0.05 * tint, 0.4))]
     layers = np.round(mesh.paint[mesh.triangles[:, 0], 2]).astype(int)
     return mesh, [(mesh.triangles[layers == k], _plain(glb, "Suit", tint, 0.7, tint=True) if k < 0 else
-                   _pictured(glb, actor.body, k)) for k in np.unique(layers)]
+                   _pictured(glb, actor.body.pictures[k], k, actor.body.thin)) for k in np.unique(layers)]
 
 
 def _plain(glb: Glb, name: str, colour: np.ndarray, rough: float, tint: bool = False) -> int:
@@ -177,11 +177,10 @@ def _plain(glb: Glb, name: str, colour: np.ndarray, rough: float, tint: bool = F
     return glb.add("materials", entry | ({"extras": {"tint": True}} if tint else {}))
 
 
-def _pictured(glb: Glb, body: Body, layer: int) -> int:
+def _pictured(glb: Glb, pixels: np.ndarray, layer: int, thin: bool) -> int:
     from PIL import Image
 
-    pixels = body.pictures[layer]
-    entry: dict[str, Any] = {"name": f"Picture {layer}", "doubleSided": body.thin}
+    entry: dict[str, Any] = {"name": f"Picture {layer}", "doubleSided": thin}
     if (pixels == pixels[0, 0]).all():
         colour = [*((pixels[0, 0, :3] / 255.0) ** 2.2).tolist(), 1.0]
         return glb.add("materials", entry | {"pbrMetallicRoughness": {

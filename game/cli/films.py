@@ -15,8 +15,8 @@ from .motion import write_motion
 
 @app.command()
 @plainly
-def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")] = None,
-           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")] = ...,
+def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")] = None, *,
+           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")],
            replay: Annotated[Path | None, typer.Option(help="Film this input log instead of a scenario, as its player saw it.")] = None,
            start: Annotated[float | None, typer.Option("--from", min=0.0, help="Where in the log to begin, in seconds.")] = None,
            end: Annotated[float | None, typer.Option("--to", min=0.0, help="Where in the log to end, in seconds.")] = None,
@@ -43,6 +43,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
 
     from ..scenario import scenario as scenarios
 
+    assert scenario is not None  # for there is no log
     film = scenarios.load(scenario)
     film = film if fps is None else film.at_fps(fps)
     if out.lower().endswith(".bvh"):
@@ -77,15 +78,15 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
     from ..scenario import overlays
 
     log, controller = replayed(file, controller)
-    start, end = start or 0.0, log.duration if end is None else min(end, log.duration)
-    if not start < end:
-        raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {start:g} to {end:g} s")
+    first, last = start or 0.0, log.duration if end is None else min(end, log.duration)
+    if not first < last:
+        raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {first:g} to {last:g} s")
     shown = overlays(overlays_of(overlay or "mesh"))
 
     def stray() -> None:
         say(f"gambol: {file} was played with another version of Gambol, which walks another way: "
             "the film is not quite what was played")
-    _draw(filmed(log, controller, fps, start, end, shown, stray), frames(log, fps, start, end), file.name,
+    _draw(filmed(log, controller, fps, first, last, shown, stray), frames(log, fps, first, last), file.name,
           recorder(out, size, fps), size, fps, preset, background)
 
 

@@ -58,7 +58,7 @@ class Body:
 def balance(body: Body, props: Sequence[Prop]) -> list[Sketch]:
     """Centre of mass, the polygon that carries it, and how far inside it is."""
     flat = body.centre[[0, 2]]
-    below = floor_at(*flat, props, body.centre[1])
+    below = floor_at(flat[0], flat[1], props, body.centre[1])
     sketches: list[Sketch] = [
         Line("balance", np.stack([body.centre, [flat[0], below + LIFT, flat[1]]]), PALE, 0.012, (0.9, 0.9), dashed=True),
         Dot("balance", body.centre, PALE, 0.055, quartered=True, through=True)]
@@ -133,7 +133,8 @@ def muscles(body: Body) -> list[Sketch]:
 def heat(part: float) -> tuple[float, float, float]:
     """A colour from calm blue over yellow to red as `part` goes from 0 to 1."""
     stops = np.array([(0.02, 0.10, 0.50), (0.28, 0.26, 0.20), (0.85, 0.36, 0.01), (0.75, 0.02, 0.01)])
-    return tuple(float(np.interp(part, np.linspace(0.0, 0.75, 4), stops[:, k])) for k in range(3))
+    red, green, blue = (float(np.interp(part, np.linspace(0.0, 0.75, 4), stops[:, k])) for k in range(3))
+    return red, green, blue
 
 
 def _curve(start: np.ndarray, over: np.ndarray, end: np.ndarray) -> np.ndarray:

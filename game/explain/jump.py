@@ -34,8 +34,9 @@ def explained(figures: Sequence[Figure], before: World, after: World, alpha: flo
     for n, (figure, old, new) in enumerate(zip(figures, before.characters, after.characters)):
         now, sketches = moment_of(old, new, alpha), []
         if overlays.jump:
-            if n < len(previews) and previews[n] is not None:
-                sketches += aimed(previews[n], after.props)
+            seen = previews[n] if n < len(previews) else None
+            if seen is not None:
+                sketches += aimed(seen, after.props)
             elif now is not None:
                 sketches += flown(*now)
         if overlays.balance or overlays.forces:

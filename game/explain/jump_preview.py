@@ -85,9 +85,10 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     seen = previewed(jump, state, leap, solid)
     if not seen.fault or aim.moving or leap.place is None:
         return seen
-    kept = before is not None and _same_way(before, seen)
-    return replace(seen, nearest=before.nearest if kept else jump.nearest(
-        _pushing(jump, jump.start_of(state)), seen.place, float(state.floor), leap.airtime, solid))
+    if before is not None and _same_way(before, seen):
+        return replace(seen, nearest=before.nearest)
+    start = _pushing(jump, jump.start_of(state))
+    return replace(seen, nearest=jump.nearest(start, seen.place, float(state.floor), leap.airtime, solid))
 
 
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:

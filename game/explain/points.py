@@ -55,18 +55,18 @@ def pointed(figures: Sequence[Figure], before: World, after: World, alpha: float
 
 
 def marks_of(old: Character, new: Character, figure: Figure, performer: Figure | None, alpha: float) -> Marks | None:
-    """A follower's points between two worlds; None where it has never been told of any.
+    """A follower's points between two worlds; None where it has never been told of any, or follows none.
 
     figure, performer: as they are drawn. A lost point is drawn where the performer has it, or the body.
     """
     follows, goals = new.follows, new.intent.points
-    body = follows.controls.on(np.asarray(figure.positions), np.asarray(figure.orientations))
-    if goals is None:
+    if follows is None or goals is None:
         return None
+    body = follows.controls.on(np.asarray(figure.positions), np.asarray(figure.orientations))
     earlier = old.intent.points if old.follows is not None and old.intent.points is not None else goals
     earlier = earlier if np.shape(earlier) == np.shape(goals) else goals
     between = np.where(np.isfinite(earlier), earlier + alpha * (goals - earlier), goals)
-    seen = np.isfinite(between).all(-1)
+    seen = np.all(np.isfinite(between), -1)
     there = body if performer is None else follows.there(np.asarray(performer.positions), np.asarray(performer.orientations))
     if performer is not None and follows.noise == 0.0:  # the very place, as it is drawn
         between = np.where(seen[:, None], there, between)

@@ -117,6 +117,7 @@ class App(Protocol):
 
     def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
         """What to show now in a picture of width × height pixels: a scene, or several side by side."""
+        ...
 
     def take(self, pixels: np.ndarray) -> None:
         """The picture (H, W, 4) uint8 that it wanted, top row first."""

@@ -31,7 +31,8 @@ def offscreen_context() -> Any:
     hint = _missing()
     try:
         names = {key: f"lib{name}.so.{n}" for key, name, n in (("libgl", "GL", 1), ("libegl", "EGL", 1))}
-        return moderngl.create_context(standalone=True, backend="egl", require=330, **names)
+        settings: dict[str, Any] = {"backend": "egl", **names}
+        return moderngl.create_context(require=330, standalone=True, **settings)
     except Exception as error:
         raise GraphicsError(hint or f"EGL gives no OpenGL 3.3 here: {error}. "
                             "Mesa's software renderer would do: sudo apt install libgl1-mesa-dri") from error

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from ..explain import Row
 from ..scene import PANELS, Ink
-from ..world import World
+from ..world import Character, World
 from . import legend, plots
 from .canvas import Canvas
-from .history import Trace
+from .history import Signals, Trace
 from .panels import layout
 from .space_panel import SpacePanel
 from .toolkit import imgui
@@ -35,8 +35,15 @@ class Filmed:
         """
         self.canvas.begin(self.size, seconds)
         scale = self.canvas.scale
+        if panels:
+            self._panels(panels, self.trace.of(worlds, who), worlds[-1].characters[who], seconds)
+        if rows:
+            legend.window(rows, self.size, scale, left=bool(panels))
+        return self.canvas.end()
+
+    def _panels(self, panels: Sequence[str], signals: Signals, character: Character, seconds: float) -> None:
+        scale = self.canvas.scale
         places = layout(self.size, scale)
-        signals = self.trace.of(worlds, who) if panels else None
         for name in panels:
             left, top, width, height = places[name]
             imgui.set_next_window_pos(imgui.ImVec2(left, top), imgui.Cond_.always)
@@ -44,13 +51,10 @@ class Filmed:
             imgui.begin(PANELS[name], None, BARE)
             if name == "space":
                 self.space.orbit = replace(self.space.orbit, yaw=self.space.orbit.yaw + TURNS * seconds)
-                self.space.draw(worlds[-1].characters[who], signals.blended, seconds, scale)
+                self.space.draw(character, signals.blended, seconds, scale)
             else:
                 plots.draw(signals, scale)
             imgui.end()
-        if rows:
-            legend.window(rows, self.size, scale, left=bool(panels))
-        return self.canvas.end()
 
     def release(self) -> None:
         """Give everything back."""

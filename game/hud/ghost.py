@@ -16,7 +16,7 @@ TINT = (0.30, 0.52, 0.60)
 
 def ghost(library: Library, number: int, phase: float, ground: np.ndarray) -> Figure:
     """The figure of primitive `number` at a phase 0 … 1, beside whoever stands at ground (3,) x, z [m], heading."""
-    row = fourier.evaluate(library.coefficients[number], np.float64(phase))
+    row = fourier.evaluate(library.coefficients[number], np.array(phase))
     local = library.reference @ rot.exp(row[:HIPS].reshape(-1, 3))
     turn = rot.yaw(np.asarray(ground[2], float))
     local[0] = turn @ local[0]

@@ -123,8 +123,9 @@ def _history(rows: Sequence[Row], scale: float) -> None:
     pen.add_rect_filled((at.x, at.y), (at.x + wide, at.y + high), style.packed((0.0, 0.0, 0.0, 0.22)))
     top = next((step for step in (0.05, 0.10, 0.20, 0.50, 1.0) if max(known) <= step), math.ceil(max(known)))
     for row in rows:
-        points = [(at.x + wide * (KEPT - len(row.history) + k) / (KEPT - 1), at.y + high * (1.0 - v / top))
-                  for k, v in enumerate(row.history) if math.isfinite(v)]
+        points: list[imgui.ImVec2Like] = [
+            (at.x + wide * (KEPT - len(row.history) + k) / (KEPT - 1), at.y + high * (1.0 - v / top))
+            for k, v in enumerate(row.history) if math.isfinite(v)]
         if len(points) > 1:
             pen.add_polyline(points, style.packed(shown(row.tint)), 1.6 * scale, 0)
     pen.add_text((at.x + 4 * scale, at.y + 2 * scale), style.packed(style.DIM), f"{100 * top:g} cm")
@@ -133,4 +134,5 @@ def _history(rows: Sequence[Row], scale: float) -> None:
 
 def shown(tint: Sequence[float]) -> tuple[float, float, float, float]:
     """A linear colour as panels have it, light enough to be read on them."""
-    return *(min(1.0, 0.12 + 1.02 * v ** (1 / 2.2)) for v in tint), 1.0
+    red, green, blue = (min(1.0, 0.12 + 1.02 * v ** (1 / 2.2)) for v in tint)
+    return red, green, blue, 1.0

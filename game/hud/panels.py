@@ -57,14 +57,14 @@ class Hud:
         for name in (name for name in PANELS if name in self.open):
             _place(places[name], moved)
             shown, stays = imgui.begin(PANELS[name], True, imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_nav)
-            if shown and name == "space":
+            if shown and signals is not None and name == "space":
                 self.space.draw(character, signals.blended, seconds, scale)
-            elif shown and name == "plots":
+            elif shown and signals is not None and name == "plots":
                 plots.draw(signals, scale)
             elif shown and name == "quality":
                 self.meter.look(history, self.who, seconds)
                 self.meter.draw()
-            elif shown:
+            elif shown and name == "settings":
                 actions += sliders.draw(now, self.who, scale)
             imgui.end()
             if not stays:
@@ -117,8 +117,8 @@ def layout(size: tuple[int, int], scale: float) -> dict[str, tuple[float, float,
               "space": (width - right - gap, tops[1], right, upper),
               "plots": (width - right - gap, tops[1] + upper + gap, right, height - tops[1] - upper - 2 * gap),
               "strip": strip}
-    return {name: tuple(scale * v for v in (*place[:2], *(max(side, LEAST) for side in place[2:])))
-            for name, place in places.items()}
+    return {name: (scale * x, scale * y, scale * max(wide, LEAST), scale * max(high, LEAST))
+            for name, (x, y, wide, high) in places.items()}
 
 
 def _place(place: tuple[float, float, float, float], again: bool) -> None:

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from gambol.controllers.locomotion import Library
+
 from ..world import Character
 from . import style
 from .decision import family
@@ -37,7 +39,7 @@ class SpacePanel:
     orbit: Orbit = Orbit()
     chosen: int | None = None
     hovered: int | None = None
-    library: object = None
+    library: Library | None = None
     meshes: tuple[Mesh, ...] = ()
     turning: bool = False
     over: bool = False
@@ -46,16 +48,15 @@ class SpacePanel:
     def draw(self, character: Character, trail: np.ndarray, dt: float, scale: float) -> None:
         """Fill the current window. trail: (N, 3) blended velocities up to now, of the character's own size."""
         self.own, character = own(character), acting(character)
-        gait = family(character)
-        if not gait:  # the library stays, for when it is walked by again
+        gait, weights = family(character), share_of(character)
+        if weights is None:  # the library stays, for when it is walked by again
             imgui.text_disabled("the active controller blends nothing")
             return
-        controller = character.controller
-        if controller.library is not self.library:
-            self.library, self.chosen = controller.library, None
+        controller, library = character.controller, character.controller.library
+        if library is not self.library:
+            self.library, self.chosen = library, None
             self.meshes = tuple(m for m in (Mesh.of(controller, name) for name in ("walk", "run")) if m)
         active = next((m for m in self.meshes if m.family == gait), self.meshes[0])
-        weights = share_of(character)
         bars = np.argsort(weights)[::-1][:BARS]
         bars = [int(i) for i in bars if weights[i] > 0.005]
         corner, (width, height) = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
@@ -69,11 +70,11 @@ class SpacePanel:
         for mesh in self.meshes:
             self._edges(pen, mesh, view, 1.0 if mesh is active else 0.35, scale)
         self._simplex(pen, character, active, view, scale)
-        self._vertices(pen, weights, active, view, scale)
+        self._vertices(pen, library, weights, active, view, scale)
         self._axes(pen, active, view, (corner.x, corner.x + width, corner.y), scale)
         self._query(pen, character, active.family, trail / self.own, view, scale)
         pen.pop_clip_rect()
-        self._bars(weights, bars, scale)
+        self._bars(library, weights, bars, scale)
 
     def _mouse(self) -> None:
         """Drag turns, the wheel zooms, a double click starts afresh, a click on a vertex chooses it."""
@@ -133,14 +134,14 @@ class SpacePanel:
             for j in range(i):
                 pen.add_line(at[i], at[j], style.packed(style.TEXT, 0.6), 1.4 * scale)
 
-    def _vertices(self, pen, weights: np.ndarray, active: Mesh, view, scale: float) -> None:
+    def _vertices(self, pen, library: Library, weights: np.ndarray, active: Mesh, view, scale: float) -> None:
         places, numbers, strength = [], [], []
         for mesh in self.meshes:
             places.append(self.orbit.project(mesh.points, view))
             numbers.append(mesh.members)
             strength.append(np.full(len(mesh.members), 1.0 if mesh is active else 0.45))
         at, number, strength = np.concatenate(places), np.concatenate(numbers), np.concatenate(strength)
-        closure = np.array([p.closure for p in self.library.primitives])[number]
+        closure = np.array([p.closure for p in library.primitives])[number]
         fine = np.clip((HIGH_CLOSURE - closure) / (HIGH_CLOSURE - LOW_CLOSURE), 0.0, 1.0)
         mouse = imgui.get_mouse_pos()
         away = np.hypot(at[:, 0] - mouse.x, at[:, 1] - mouse.y)
@@ -149,7 +150,7 @@ class SpacePanel:
         for k in np.argsort(-at[:, 2]):
             x, y, depth = at[k].tolist()
             primitive, weight = int(number[k]), float(weights[number[k]])
-            colour = style.family_colour(self.library.primitives[primitive].family)
+            colour = style.family_colour(library.primitives[primitive].family)
             size = (1.5 + 2.0 * fine[k]) * scale * (1.0 - 0.25 * depth)
             if weight > 0.005:
                 pen.add_circle_filled((x, y), (5.0 + 13.0 * math.sqrt(weight)) * scale, style.packed(colour, 0.35))
@@ -158,10 +159,10 @@ class SpacePanel:
             if primitive == self.chosen or primitive == self.hovered:
                 pen.add_circle((x, y), size + 5.0 * scale, style.packed(style.TEXT), 0, 1.5 * scale)
         if self.hovered is not None:
-            self._tell(self.hovered)
+            self._tell(library, self.hovered)
 
-    def _tell(self, number: int) -> None:
-        one, (v_f, omega, v_l) = self.library.primitives[number], self.library.velocities[number] * self.own
+    def _tell(self, library: Library, number: int) -> None:
+        one, (v_f, omega, v_l) = library.primitives[number], library.velocities[number] * self.own
         imgui.set_tooltip(f"{one.label}\n{one.clip} at {one.start:.2f} s{', mirrored' if one.mirrored else ''}\n"
                           f"forward {v_f:.2f} m/s, turning {omega:.2f} rad/s, left {v_l:.2f} m/s\n"
                           f"closes to {math.degrees(one.closure):.1f}°, averaged from {one.averaged}\n"
@@ -186,11 +187,11 @@ class SpacePanel:
         pen.add_circle((ax, ay), 7.0 * scale, ink, 0, 2.0 * scale)
         _write(pen, ax + 10 * scale, ay - 0.5 * imgui.get_text_line_height(), "asked", scale)
 
-    def _bars(self, weights: np.ndarray, bars: list[int], scale: float) -> None:
+    def _bars(self, library: Library, weights: np.ndarray, bars: list[int], scale: float) -> None:
         pen, width = imgui.get_window_draw_list(), imgui.get_content_region_avail().x
         line = imgui.get_text_line_height()
         for number in bars:
-            one, at = self.library.primitives[number], imgui.get_cursor_screen_pos()
+            one, at = library.primitives[number], imgui.get_cursor_screen_pos()
             colour, weight = style.family_colour(one.family), float(weights[number])
             long = 0.28 * width
             pen.add_rect_filled((at.x, at.y + 2 * scale), (at.x + long, at.y + line), style.packed(style.FIELD), 2 * scale)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 REWOUND = "rewound"
 """The mode while a past moment is shown."""
@@ -52,7 +53,7 @@ class Sticks:
     triggers. invert_x, invert_y: of the stick while it turns the camera.
     """
 
-    walk: str = "left"
+    walk: Literal["left", "right"] = "left"
     dead_zone: float = 0.15
     full: float = 0.95
     curve: float = 1.0

@@ -40,7 +40,7 @@ class Command:
 
     def intent(self, state: CharacterState, settings: Steering = STEERING) -> Intent:
         """The same as an intent of the character in `state`."""
-        wanted = steer(state.ground, np.array(self.velocity), self.facing, state.velocity[..., 1], settings)
+        wanted = steer(state.ground, np.array(self.velocity), self.facing, state.velocity[1], settings)
         return Intent(wanted.velocity + np.array([0.0, self.turn, 0.0]))
 
 
@@ -64,7 +64,7 @@ class Pilot:
         pace = self.pace
         throw = math.hypot(*wish.move)
         speed = pace.slow if wish.slow else pace.walk + (pace.run - pace.walk) * wish.run
-        velocity = tuple(speed * v for v in _in_world(wish.move, camera_yaw))
+        x, z = _in_world(wish.move, camera_yaw)
 
         facing = self.facing if self.locked or wish.strafe else None
         if math.hypot(*wish.look) > 0.0:
@@ -77,7 +77,7 @@ class Pilot:
         on_spot = pace.turn * wish.turn if facing is None and throw == 0.0 else 0.0
         # a walker goes where the camera looks, so turning the walk means turning the camera
         swing = pace.turn * wish.turn if facing is None and throw > 0.0 else 0.0
-        return replace(self, facing=facing), Command(velocity, facing, on_spot, swing)
+        return replace(self, facing=facing), Command((speed * x, speed * z), facing, on_spot, swing)
 
 
 def _in_world(seen: tuple[float, float], camera_yaw: float) -> tuple[float, float]:

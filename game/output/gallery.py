@@ -116,9 +116,10 @@ def make(plan: Plan, folder: str | Path, controller: Any, stage: Any, drawn: Cal
         for frame, seen in scenes(film, controller):
             picture = stage.frame(seen)
             target.write(picture)
-            if poster is None and frame.time >= moment - 0.5 / film.fps:
+            if poster is None and (frame.time >= moment - 0.5 / film.fps or frame.number == film.frames - 1):
                 poster = picture[..., :3].copy()
             drawn()
+    assert poster is not None  # a film has a frame at least
     _save_poster(poster, folder / f"{plan.name}.png")
     entry = Entry(plan.name, plan.key, film.title, film.under, film.duration, film.size, len(film.actors),
                   figures(film, controller))

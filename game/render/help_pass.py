@@ -24,6 +24,8 @@ GAP, BETWEEN, MARGIN = 0.9, 1.7, 0.9
 """Lines between columns, between tables and around everything."""
 DIAL = 2.6
 """Lines that a dial is high."""
+SHADOW = 0.5
+"""How strong the shadow of letters is."""
 
 
 @dataclass
@@ -39,7 +41,7 @@ class Pen:
     def circle(self, x, y, radius, tint, rim=0.0) -> None:
         self.shape(x - radius, y - radius, 2 * radius, 2 * radius, tint, radius, rim)
 
-    def write(self, line: str, x: float, y: float, tint=INK, shadow=0.5) -> float:
+    def write(self, line: str, x: float, y: float, tint=INK, shadow=SHADOW) -> float:
         """Where the pen then stands."""
         font = self.font
         for char in spelled(line):
@@ -139,7 +141,7 @@ def _pad(pen: Pen, pad: Pad, left: float, top: float) -> float:
             wide = max(width_of(spelled(lamp.label), pen.font) + 0.5 * unit, 1.1 * unit)
             pen.shape(at, y, wide, 1.1 * unit, ACCENT if lamp.lit else FAINT, 0.35 * unit, 0.0 if lamp.lit else thin)
             pen.write(lamp.label, at + 0.5 * (wide - width_of(spelled(lamp.label), pen.font)),
-                      y + 0.5 * (1.1 * unit - tall), *((DARK, 0.0) if lamp.lit else (DIM,)))
+                      y + 0.5 * (1.1 * unit - tall), DARK if lamp.lit else DIM, 0.0 if lamp.lit else SHADOW)
             at += wide + 0.2 * unit
         end = max(end, at)
     return end
@@ -168,21 +170,22 @@ class RowsPass:
     def rows(self, rows: np.ndarray, letters: int, target: Any) -> None:
         """Draw rows in letters of a size [px] over a framebuffer."""
         ctx, size = self.ctx, target.size
-        if letters != self.drawn:
-            if self.texture is not None:
-                self.texture.release()
+        texture = self.texture
+        if texture is None or letters != self.drawn:
+            if texture is not None:
+                texture.release()
             pixels = atlas(letters).pixels
-            self.texture = ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
-            self.texture.filter = ctx.NEAREST, ctx.NEAREST
-            self.drawn = letters
+            texture = ctx.texture(pixels.shape[1::-1], 2, np.ascontiguousarray(pixels).tobytes(), alignment=1)
+            texture.filter = ctx.NEAREST, ctx.NEAREST
+            self.texture, self.drawn = texture, letters
         target.viewport = (0, 0, *size)
         target.use()
         ctx.enable_only(ctx.BLEND)
         ctx.blend_func = ctx.SRC_ALPHA, ctx.ONE_MINUS_SRC_ALPHA, ctx.ZERO, ctx.ONE
         rows = rows.copy()
-        rows[:, 4:8] /= np.tile(self.texture.size, 2)
+        rows[:, 4:8] /= np.tile(texture.size, 2)
         self.stream.write(rows.tobytes())
-        self.texture.use(0)
+        texture.use(0)
         self.program["size"] = size
         self.array.render(mode=ctx.TRIANGLE_STRIP, vertices=4, instances=len(rows))
         ctx.disable(ctx.BLEND)

@@ -49,14 +49,14 @@ class Mesh:
 class Body:
     """Somebody to be: meshes around joints at T-pose, sole on the floor, in the body's own size.
 
-    levels: `LEVELS` of the mesh. joints: (22, 3) [m] the standard human's joints in it.
+    levels: the mesh at each of `LEVELS`. joints: (22, 3) [m] the standard human's joints in it.
     pictures: None for the mannequin's two-tone paint, else (L, S, S, 4) uint8, sRGB and opacity,
     the layers that `Mesh.paint` looks up (a layer below 0 is the figure's tint).
     thin: whether its surfaces are seen from both sides. Compared and hashed as an object.
     """
 
     name: str
-    levels: tuple[Mesh, Mesh, Mesh]
+    levels: tuple[Mesh, ...]
     joints: np.ndarray
     pictures: np.ndarray | None = None
     thin: bool = False

@@ -88,7 +88,7 @@ def smooth(points: np.ndarray, pieces: int = 4) -> np.ndarray:
     return np.concatenate([curve.reshape(-1, 3), points[-1:]])
 
 
-def ribbon(points: np.ndarray, colour, opacity: np.ndarray, half: float, kind: float, dash: float = 0.12,
+def ribbon(points: np.ndarray, colour, opacity: tuple[float, float], half: float, kind: float, dash: float = 0.12,
            eye: np.ndarray | None = None, metre: float = math.inf) -> np.ndarray:
     """Marks (K, 10) of a flat band along points (N, 3) [m]; opacity: its ends' two values.
 

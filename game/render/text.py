@@ -54,6 +54,7 @@ class Atlas:
 def atlas(size: int) -> Atlas:
     """The atlas for letters of `size` pixels."""
     font = ImageFont.load_default(size=size)
+    assert isinstance(font, ImageFont.FreeTypeFont)  # pillow has no other of any size
     ascent, descent = font.getmetrics()
     margin, height = max(2, size // 6), ascent + descent
     width, x, y = 32 * size, 0, 0

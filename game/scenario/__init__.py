@@ -3,7 +3,7 @@
 from . import film, scenario
 from .film import Frame, run, scenes, worlds
 from .scenario import Scenario, ScenarioError, load, locate, shipped
-from .shots import overlays
+from .shot_table import overlays
 
 __all__ = [
     "Frame", "Scenario", "ScenarioError", "film", "load", "locate", "overlays", "run", "scenario", "scenes", "shipped",

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetPydanticSchema, ValidationInfo
+from pydantic_core import core_schema
 
 NAME = re.compile(r"[\w-]+( [\w-]+)*")
 
 
-def _signed(most: float):
-    return Annotated[float, Field(ge=-most, le=most, allow_inf_nan=False)]
+def _signed(most: float) -> Any:
+    return Field(ge=-most, le=most, allow_inf_nan=False)
 
 
-def _positive(most: float):
-    return Annotated[float, Field(gt=0, le=most, allow_inf_nan=False)]
+def _positive(most: float) -> Any:
+    return Field(gt=0, le=most, allow_inf_nan=False)
+
+
+def one_of(names: Iterable[str]) -> GetPydanticSchema:
+    """One of some names, as `Literal` would have them if they stood in the source."""
+    known = list(names)
+    return GetPydanticSchema(lambda _source, _handler: core_schema.literal_schema(known))
 
 
 def _file_name(name: str) -> str:
@@ -26,17 +35,20 @@ def _file_name(name: str) -> str:
 
 
 # as far, fast and long as anybody can mean it: more is a slip, and numbers stay sound
-Metres, Length = _signed(1e5), _positive(1e5)
-Speed, Pace = _signed(20), _positive(20)  # m/s
-Turning = _signed(20)  # rad/s
-Degrees = _signed(3600)
-Seconds = _positive(3600)
+Metres = Annotated[float, _signed(1e5)]
+Length = Annotated[float, _positive(1e5)]  # m
+Speed = Annotated[float, _signed(20)]  # m/s
+Pace = Annotated[float, _positive(20)]  # m/s
+Turning = Annotated[float, _signed(20)]  # rad/s
+Degrees = Annotated[float, _signed(3600)]
+Seconds = Annotated[float, _positive(3600)]
 Moment = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]  # s
 Point = tuple[Metres, Metres]
 Point3 = tuple[Metres, Metres, Metres]
 Place = Annotated[tuple[Metres, ...], Field(min_length=2, max_length=3)]  # x, z on whatever is highest there, or x, y, z
 Velocity = tuple[Speed, Turning, Speed]
-Colour = tuple[*(Annotated[float, Field(ge=0, le=1)],) * 3]
+Share = Annotated[float, Field(ge=0, le=1)]
+Colour = tuple[Share, Share, Share]
 Gravity = Annotated[float, Field(ge=0.2, le=50, allow_inf_nan=False)]  # m/s²
 Stature = Annotated[float, Field(ge=0.5, le=3, allow_inf_nan=False)]  # m, as far as `gambol.controllers.jump.Physique` goes
 Mass = Annotated[float, Field(ge=5, le=400, allow_inf_nan=False)]  # kg
@@ -50,6 +62,14 @@ class Table(BaseModel):
     """A table of a scenario: frozen, and with no field that is not known."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=False)
+
+
+def beside_the_file(name: str, info: ValidationInfo) -> str:
+    """The path of a file that a scenario names: beside the scenario's own, or from where one stands."""
+    for path in ((info.context or {}).get("folder", Path()) / name, Path(name)):
+        if path.is_file():
+            return str(path)
+    raise ValueError(f"there is no file {name!r} beside the scenario")
 
 
 def short(value) -> str:

@@ -26,9 +26,9 @@ from ..input import Script, Wish
 from ..scene import Camera, Caption, Overlays, Scene
 from ..session import GHOST
 from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods
-from .actors import ActorTable
+from .actor_table import ActorTable
 from .scenario import Scenario
-from .shots import CameraTable, ShotTable, overlays, parts
+from .shot_table import CameraTable, ShotTable, overlays, parts
 
 TITLE = (0.4, 3.4)
 CAPTION = (0.4, 4.4)
@@ -74,7 +74,8 @@ def opening(scenario: Scenario, controller: Any) -> World:
                 someone = built(controller, jumper.physique, jumper.gravity)
             x, z, heading = actor.start
             state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
-            cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor), **actor.stay)
+            cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor),
+                                         enters=actor.enters, leaves=actor.gone)
     clips = {table.performer: table.clip for _, table in scenario.followers if table.clip is not None}
     for name, clip in clips.items():
         someone = Recorded.load(clip, controller)
@@ -241,6 +242,7 @@ class Operator:
         if self.held is None:
             if self.table.target is not None:
                 return moved
+            assert self.target is not None  # whoever holds no arm looks at something, see `ready`
             return replace(moved, target=damp(self.target, _middle(world, self.watched, self.table.height), LOOK_HALFLIFE, DT))
         held, velocity = self.held, in_world(state.ground, state.velocity)
         if self.table.kind == "orbit":
@@ -253,6 +255,7 @@ class Operator:
             return self.held.view()
         fov = math.radians(self.table.fov)
         if self.table.kind == "dolly":
+            assert self.table.path is not None  # a dolly's table has one
             return dolly(self.table.path, self.target, (self.time - self.start) / (self.end - self.start), fov)
         return fixed(self.table.eye, self.target, fov)
 

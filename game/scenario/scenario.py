@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path as File
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, get_args
 
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
@@ -13,9 +14,11 @@ from ..camera import blocked, on_rail
 from ..files import did_you_mean, meant, toml
 from ..scene import Prop
 from ..world import STAGES
-from .actors import PROPS, ActorTable, FollowsTable, PropTable, beside_the_file
-from .fields import Gravity, Moment, Seconds, Table, short
-from .shots import ShotTable, Shown
+from .actor_table import ActorTable
+from .fields import Gravity, Moment, Seconds, Table, beside_the_file, one_of, short
+from .follows_table import FollowsTable
+from .prop_table import PROPS, PropTable
+from .shot_table import ShotTable, Shown
 
 
 class ScenarioError(ValueError):
@@ -38,7 +41,7 @@ class Scenario(Table):
     size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
     overlays: Shown = ("mesh",)
     gravity: Gravity = 9.81
-    stage_name: Literal[tuple(STAGES)] | None = Field(None, alias="stage")
+    stage_name: Annotated[str, one_of(STAGES)] | None = Field(None, alias="stage")
     poster: Moment | None = None
     database: Annotated[str, AfterValidator(beside_the_file)] | None = None
     shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
@@ -144,7 +147,7 @@ def load(name: str | File) -> Scenario:
         raise ScenarioError("\n".join(_fault(file, fault) for fault in _told(error.errors()))) from None
 
 
-def _told(faults: list[dict]) -> list[dict]:
+def _told(faults: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """The faults without those that only follow from others."""
     misspelt = {(*fault["loc"][:-1], name) for fault in faults if fault["type"] == "extra_forbidden"
                 for name in meant(fault["loc"][-1], _fields(fault["loc"]))}
@@ -171,7 +174,7 @@ def _tables(annotation: object) -> list[type[Table]]:
     return [one for part in get_args(annotation) for one in _tables(part)]
 
 
-def _fault(file: File, fault: dict) -> str:
+def _fault(file: File, fault: Mapping[str, Any]) -> str:
     """One line about one fault: file, field, what would be right."""
     where = ""
     for i, part in enumerate(fault["loc"]):

@@ -88,11 +88,12 @@ def opened(action: str) -> Comparison | None:
 
 def wanted(ticks: Iterable[Iterable[Wish]]) -> tuple[tuple[str, str], ...]:
     """The methods, name and points, that wishes open comparisons with, so that they can be learnt before."""
-    found = {}
+    found: dict[tuple[str, str], None] = {}
     for action in (action for wishes in ticks for wish in wishes for action in wish.pressed if action.startswith("study=")):
         with suppress(SettingError):  # told of where it is played
             open_ = opened(action)
-            found |= {(name, open_.points): None for name in (open_.methods if open_ is not None else ())}
+            if open_ is not None:
+                found |= {(name, open_.points): None for name in open_.methods}
     return tuple(found)
 
 
@@ -111,7 +112,7 @@ def joined(comparison: Comparison, performer: Character, methods: Methods, befor
     made: list[Character] = []
     for number, (name, points) in enumerate(learnt):
         kept = before.get(NAMES[name])
-        if kept is not None and kept.follows.controls.names == points.names:
+        if kept is not None and kept.follows is not None and kept.follows.controls.names == points.names:
             made.append(replace(kept, opacity=GHOST if number else 1.0))
             continue
         # where hands hold the points, like the body that they move
@@ -125,13 +126,13 @@ def joined(comparison: Comparison, performer: Character, methods: Methods, befor
 
 def pinned(comparison: Comparison, action: str, world: World) -> tuple[Comparison, World]:
     """Comparison and world after an action "pins=…" or "pin=…"; SettingError for one that says nothing sound."""
-    body = next(one for one in world.characters if one.follows is not None)
+    body, follows = next((one, one.follows) for one in world.characters if one.follows is not None)
     name, _, text = action.partition("=")
-    count = len(body.follows.controls)
+    count = len(follows.controls)
     if name == "pins" and not text:
         return _given_back(comparison, world, body)
     if name == "pins" and text == "hold":
-        pins = tuple(_place(*at) for at in body.follows.controls.on(*body.joints))
+        pins = tuple(_place(*at) for at in follows.controls.on(*body.joints))
     elif name == "pins":
         places = text.split(";")
         if len(places) != count:
@@ -173,7 +174,7 @@ def _read(action: str, text: str) -> Place | None:
     try:
         place = _place(*(float(v) for v in text.split("/")))
     except (ValueError, TypeError):
-        place = (math.nan,) * 3
+        place = math.nan, math.nan, math.nan
     if not all(abs(v) < FAR for v in place):
         raise SettingError(f"{action}: needs places as x/y/z in metres")
     return place

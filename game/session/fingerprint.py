@@ -17,7 +17,7 @@ def digest(controller: Controller) -> str:
     library, hashed = controller.library, hashlib.sha256(controller.kind.encode())
     if library is not None:
         for array in (library.velocities, library.coefficients, library.reference):
-            hashed.update(np.ascontiguousarray(array))
+            hashed.update(np.ascontiguousarray(array).data)
     return hashed.hexdigest()[:16]
 
 
@@ -26,5 +26,5 @@ def fingerprint(moment: SessionState) -> int:
     print_ = 0
     for character in moment.after.characters:
         for array in (character.state.ground, character.state.pose.root, character.state.pose.rotations):
-            print_ = zlib.crc32(np.ascontiguousarray(array), print_)
+            print_ = zlib.crc32(np.ascontiguousarray(array).data, print_)
     return print_

@@ -96,7 +96,7 @@ def changed(owners: dict[str, Any], action: str) -> tuple[str, Any]:
     setting, number = read(action)
     owner, _, field = setting.name.partition(".")
     old = owners.get(owner)
-    if not hasattr(old, field):
+    if old is None or not hasattr(old, field):
         return owner, old
     number = type(getattr(old, field))(number)
     return owner, old._replace(**{field: number}) if hasattr(old, "_replace") else replace(old, **{field: number})

@@ -164,9 +164,10 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
 
 def beginning(controller: Supervisor, performer: CharacterState, beside: np.ndarray) -> CharacterState:
     """The state of a follower that stands and moves as its performer does, `beside` (3,) [m] it."""
-    def moved(pose: Pose | None) -> Pose | None:
-        return None if pose is None else Pose(np.asarray(pose.root, float) + beside, pose.rotations)
+    def moved(pose: Pose) -> Pose:
+        return Pose(np.asarray(pose.root, float) + beside, pose.rotations)
     x, _, z = beside
     state = CharacterState(performer.ground + [x, z, 0.0], performer.velocity, moved(performer.pose), performer.contacts,
-                           None, float(performer.floor) + float(beside[1]), moved(performer.previous), performer.elapsed)
+                           None, float(performer.floor) + float(beside[1]),
+                           None if performer.previous is None else moved(performer.previous), performer.elapsed)
     return controller.enter(state, Intent())

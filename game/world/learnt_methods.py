@@ -138,6 +138,7 @@ class Learning:
         threading.Thread(target=self._listen, daemon=True).start()
 
     def _listen(self) -> None:
+        assert self._process.stdout is not None  # it is a pipe
         for line in self._process.stdout:
             if found := PROGRESS.fullmatch(line.strip()):
                 done, total = int(found[2]), int(found[3])
@@ -154,6 +155,7 @@ class Learning:
         """Why it ended without having learnt everything; empty if it has."""
         if not self._process.returncode:
             return ""
+        assert self._process.stderr is not None  # it is a pipe
         lines = self._process.stderr.read().strip().splitlines()
         return lines[-1] if lines else f"learning ended with code {self._process.returncode}"
 

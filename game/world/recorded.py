@@ -65,16 +65,17 @@ class Recorded(Controller):
     @property
     def kind(self) -> str:
         """What tells its motion from that of others."""
-        return "Recorded " + hashlib.sha256(np.ascontiguousarray(self.root)).hexdigest()[:16]
+        return "Recorded " + hashlib.sha256(np.ascontiguousarray(self.root).data).hexdigest()[:16]
 
     @property
     def skeleton(self) -> Skeleton:
         """The standard human."""
         return SKELETON
 
-    def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
+    def start(self, ground=(0.0, 0.0, 0.0), floor: np.ndarray | float = 0.0) -> CharacterState:
         """The first frame at ground x, z [m], heading [rad], on a floor so high [m]."""
-        return self._at(Playing(0, tuple(float(v) for v in ground)), floor, None)
+        x, z, heading = (float(v) for v in ground)
+        return self._at(Playing(0, (x, z, heading)), floor, None)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """The next frame, whatever is wanted; dt is a frame."""
@@ -94,7 +95,7 @@ class Recorded(Controller):
         """Done at the last frame."""
         return Status("done" if state.memory.number == len(self.root) - 1 else "running")
 
-    def _at(self, playing: Playing, floor: float, previous: Pose | None) -> CharacterState:
+    def _at(self, playing: Playing, floor: np.ndarray | float, previous: Pose | None) -> CharacterState:
         x, z, heading = playing.place
         k, turn = playing.number, yaw(np.array(heading))
         rotations = self.rotations[k].copy()

@@ -7,7 +7,7 @@ rewinding, replaying and drawing in between need nothing more than keeping world
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -88,19 +88,21 @@ class Character:
         centre_of_mass = self.centre_of_mass or CentreOfMass.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
         return replace(made, centre_of_mass=centre_of_mass.step(centre, DT))
 
-    def after(self, performer: Character | None, intent: Intent, number: int) -> Character:
-        """One step on of a follower, whose performer has made that step."""
+    def after(self, performers: Mapping[str, Character], intent: Intent, number: int) -> Character:
+        """One step on of a follower. performers: who has made that step, by name."""
         from gambol.controllers.reconstruction import towards  # a game without a study starts without
 
-        old, seen, truth = self, intent.points, None
+        old, seen, truth, follows = self, intent.points, None, self.follows
+        assert follows is not None  # all others have made their step
+        performer = performers.get(follows.performer)
         if performer is not None:
             there = performer.joints
-            seen, truth = self.follows.seen(*there, number / RATE), there[0]
-            old = replace(self, state=carried(self.follows, self.state, truth, intent.around))
+            seen, truth = follows.seen(*there, number / RATE), there[0]
+            old = replace(self, state=carried(follows, self.state, truth, intent.around))
         if seen is None:
             return self.step(intent, number)
         made = old.step(replace(intent, velocity=towards(self.state, seen), points=seen), number)
-        told = errors(self.follows, made.joints, truth, seen)
+        told = errors(follows, made.joints, truth, seen)
         return replace(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
 
 
@@ -130,7 +132,7 @@ class World:
                 for one, intent in zip(self.characters, intents)]
         performers = {one.name: one for one in made if one is not None}
         return replace(self, number=number, characters=tuple(
-            new or old.after(performers.get(old.follows.performer), intent, number)
+            new or old.after(performers, intent, number)
             for new, old, intent in zip(made, self.characters, intents)))
 
     def index(self, name: str) -> int:

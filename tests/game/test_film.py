@@ -11,7 +11,7 @@ from gambol.game.camera.line_of_sight import blocked
 from gambol.game.input.script import jumping
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load, shipped
-from gambol.game.scenario.shots import parts
+from gambol.game.scenario.shot_table import parts
 from gambol.game.scene.scene import Overlays
 from scenarios import written
 from stand_in import Glide

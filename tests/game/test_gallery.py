@@ -69,6 +69,18 @@ def test_a_page_with_poster_film_and_figures(names, tmp_path):
     assert np.unique(Image.open(out / "one.png")).tolist() == [6]  # the sixth frame is at 0.5 s
 
 
+@pytest.mark.parametrize("moment", [0.94, 0.96, 0.999])
+def test_a_poster_of_the_last_moment_is_the_last_frame(moment, tmp_path):
+    """The film of a second ends with the frame at 0.9 s."""
+    file = tmp_path / "late.toml"
+    file.write_text(TEXT.replace("poster = 0.5", f"poster = {moment}"), encoding="utf-8")
+    made([str(file)], tmp_path / "out")
+
+    from PIL import Image
+
+    assert np.unique(Image.open(tmp_path / "out" / "late.png")).tolist() == [10]
+
+
 def test_films_of_the_same_are_not_made_again(names, tmp_path):
     out = tmp_path / "out"
     assert made(names, out) == [False, False] and made(names, out) == [True, True]

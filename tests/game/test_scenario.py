@@ -7,7 +7,7 @@ from gambol.controllers.contract import Intent
 from gambol.game.input.script import Move, Script
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import Scenario, ScenarioError, load, shipped
-from gambol.game.scenario.shots import OVERLAYS
+from gambol.game.scenario.shot_table import OVERLAYS
 from gambol.game.scene.scene import Overlays
 from gambol.game.world.world import DT
 from scenarios import tells, written

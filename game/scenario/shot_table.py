@@ -1,4 +1,4 @@
-"""The shots of a scenario as its TOML says them: cameras, captions, what is drawn over, views side by side."""
+"""What a scenario's `[[shots]]` may say: cameras, captions, what is drawn over, views side by side."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..scene import OVERLAYS, Overlays
-from .fields import Degrees, Length, Moment, Point3, Table
+from .fields import Degrees, Length, Moment, Point3, Table, one_of
 
-Shown = tuple[Literal[OVERLAYS], ...]
+Shown = tuple[Annotated[str, one_of(OVERLAYS)], ...]
 Names = Annotated[tuple[str, ...], BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), Field(min_length=1)]
 Part = tuple[float, float, float, float]
-FILMED = ("space", "plots")
+Panel = Literal["space", "plots"]
 """The panels that films show: those that tell of an actor, and ask for no hands."""
 _NEEDS = {"follow": (), "orbit": (), "fixed": ("eye",), "dolly": ("path",)}
 _TAKES = {"follow": {"actor", "height", "distance", "around", "above", "swing"},
@@ -86,7 +86,7 @@ class ShotTable(CameraTable):
     at: Moment = 0.0
     caption: str = ""
     under: str = ""
-    panels: tuple[Literal[FILMED], ...] = ()
+    panels: tuple[Panel, ...] = ()
     views: Annotated[tuple[ViewTable, ...], Field(min_length=2, max_length=9)] | None = None
 
     @model_validator(mode="after")
@@ -111,7 +111,7 @@ def parts(count: int, size: tuple[int, int]) -> tuple[Part, ...]:
     Up to three in a row, more in a grid whose last row is filled; a portrait picture stacks them.
     """
     if size[0] < size[1]:
-        return tuple((top, left, height, width) for left, top, width, height in parts(count, size[::-1]))
+        return tuple((top, left, height, width) for left, top, width, height in parts(count, (size[1], size[0])))
     columns = count if count <= 3 else math.ceil(math.sqrt(count))
     rows = math.ceil(count / columns)
     made = []

@@ -1,0 +1,86 @@
+"""What a scenario's `[[actors]]` may say: who acts, in whose body, from where, and when it is there."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from gambol.controllers.body import STATURE
+from gambol.controllers.jump import Jump as JumpController, Physique
+
+from ..input import Script
+from ..scene import TINT, Prop
+from ..world import TINTS
+from .fields import Colour, Degrees, FileName, Flexibility, Gravity, Mass, Metres, Moment, Seconds, Stature, Strength, Table
+from .follows_table import FollowsTable
+from .move_table import MoveTable
+
+
+class BodyTable(Table):
+    """Whose body: height [m], mass [kg], strength and flexibility as shares of an adult's, sex.
+
+    By default the mass goes with the cube of the height.
+    """
+
+    height: Stature = STATURE
+    mass: Mass | None = None
+    strength: Strength = 1.0
+    flexibility: Flexibility = 1.0
+    sex: Literal["male", "female"] = "male"
+
+    def physique(self) -> Physique:
+        """The same for the controllers."""
+        mass = max(Physique.mass * (self.height / STATURE) ** 3, 5.0) if self.mass is None else self.mass
+        return Physique(mass, self.height, self.strength, self.flexibility, self.sex)
+
+
+class ActorTable(Table):
+    """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
+
+    body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
+    points it follows instead of moves of its own. ghost: one sees through it. enters, leaves: when it is there [s], from
+    the beginning to the end by default; its moves begin as it enters. Who follows an actor comes and goes with it.
+    """
+
+    name: FileName = "A"
+    tint: Colour = TINT
+    ghost: bool = False
+    follows: FollowsTable | None = None
+    start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
+    body: BodyTable | None = None
+    gravity: Gravity | None = None
+    enters: Moment = 0.0
+    leaves: Seconds | None = None
+    moves: tuple[MoveTable, ...] = ()
+
+    @model_validator(mode="after")
+    def _own_will_or_points(self):
+        if self.follows is not None:
+            for name in ("start", "body", "gravity", "enters", "leaves", "moves"):
+                if name in self.model_fields_set:
+                    raise ValueError(f"who follows points has no {name}: that is the performer's")
+        if self.leaves is not None and self.leaves <= self.enters:
+            raise ValueError(f"`enters` comes before `leaves`; got {self.enters:g} and {self.leaves:g}")
+        return self
+
+    @property
+    def gone(self) -> float:
+        """When it is no longer there [s]."""
+        return math.inf if self.leaves is None else self.leaves
+
+    @property
+    def colour(self) -> tuple[float, float, float]:
+        """Its tint; that of its method where none is given."""
+        return self.tint if self.follows is None or "tint" in self.model_fields_set else TINTS[self.follows.method]
+
+    def jumper(self, gravity: float) -> JumpController:
+        """Its jumps, where the scenario has that gravity."""
+        pull = gravity if self.gravity is None else self.gravity
+        return JumpController(Physique() if self.body is None else self.body.physique(), np.array([0.0, -pull, 0.0]))
+
+    def script(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Script:
+        """What it does, among props."""
+        return Script(tuple(move.move(jumper, props) for move in self.moves))

@@ -1,0 +1,80 @@
+"""What a scenario's `follows` may say: whose points an actor follows, which, and what is not seen of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from gambol.controllers.reconstruction import SKELETON, parse
+
+from ..world import METHODS, Follows, Hidden
+from .fields import Moment, Point3, Seconds, Table, beside_the_file, one_of
+
+
+def _points(text: str) -> str:
+    parse(text, SKELETON)  # says what there is
+    return text
+
+
+Points = Annotated[str, BeforeValidator(lambda v: str(v) if isinstance(v, int) and not isinstance(v, bool) else v),
+                   AfterValidator(_points)]
+
+
+class HiddenTable(Table):
+    """Points that are not seen from one moment to another [s]."""
+
+    points: Points
+    start: Moment = Field(alias="from")
+    end: Seconds = Field(alias="to")
+
+    @model_validator(mode="after")
+    def _in_order(self):
+        if self.start >= self.end:
+            raise ValueError(f"`from` comes before `to`; got {self.start:g} and {self.end:g}")
+        return self
+
+
+class FollowsTable(Table):
+    """Whose points an actor follows: those of another `actor`, or of a `clip`, a .bvh or .amc file that plays from the origin.
+
+    points: the paper's sets "2" … "6", or names with commas. method: who makes a body of them. beside: x, y, z [m]
+    from the performer to the actor. hidden: what is not seen, and when. noise: of the points [m]; seed: of that.
+    """
+
+    actor: str | None = None
+    clip: Annotated[str, AfterValidator(beside_the_file)] | None = None
+    points: Points = "4"
+    method: Annotated[str, one_of(METHODS)] = "ours"
+    beside: Point3 = (0.0, 0.0, 0.0)
+    hidden: tuple[HiddenTable, ...] = ()
+    noise: Annotated[float, Field(ge=0, le=0.5, allow_inf_nan=False)] = 0.0
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _one_performer(self):
+        if (self.actor is None) == (self.clip is None):
+            raise ValueError('needs either actor = "…", another actor, or clip = "….bvh"')
+        names = parse(self.points, SKELETON).names
+        for number, hidden in enumerate(self.hidden):
+            for name in parse(hidden.points, SKELETON).names:
+                if name not in names:
+                    raise ValueError(f"hidden[{number}].points: {name} is none of the points that are followed, {', '.join(names)}")
+        return self
+
+    @property
+    def performer(self) -> str:
+        """The name of whom it follows."""
+        if self.actor is not None:
+            return self.actor
+        assert self.clip is not None  # one of the two is given, see `_one_performer`
+        return Path(self.clip).stem
+
+    def follows(self) -> Follows:
+        """The same for the world."""
+        controls = parse(self.points, SKELETON)
+        hidden = tuple(Hidden(np.isin(controls.names, parse(table.points, SKELETON).names), table.start, table.end)
+                       for table in self.hidden)
+        return Follows(self.method, controls, self.performer, np.array(self.beside), hidden, self.noise, self.seed)

@@ -1,0 +1,91 @@
+"""What a scenario's `moves` may say: where an actor walks, which way it jumps, for how long."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from gambol.controllers.contract import Intent
+from gambol.controllers.jump import Jump as JumpController
+from gambol.controllers.jump.body import airtime_up
+from gambol.controllers.navigation import floor_at
+
+from ..input import Jump, Move
+from ..scene import Prop
+from .fields import Airtime, Degrees, Length, Pace, Place, Point, Seconds, Table, Velocity
+
+
+class MoveTable(Table):
+    """One move: exactly one of velocity, walk_to, path, stop, jump_to and jump. Angles in degrees.
+
+    jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
+    velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
+    [m] it jumps. airtime: [s]; by default of the least effort.
+    """
+
+    seconds: Seconds | None = Field(None, alias="for")
+    velocity: Velocity | None = None
+    until: Velocity | None = None
+    walk_to: Point | None = None
+    path: Annotated[tuple[Point, ...], Field(min_length=1)] | None = None
+    stop: Literal[True] | None = None
+    jump_to: Place | None = None
+    jump: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] | None = None
+    airtime: Airtime | None = None
+    within: Length | None = None
+    speed: Pace | None = None
+    facing: Degrees | None = None
+
+    @model_validator(mode="after")
+    def _one_thing(self):
+        kinds = [k for k in ("velocity", "walk_to", "path", "stop", "jump_to", "jump") if getattr(self, k) is not None]
+        feet = [k for k in kinds if k in ("velocity", "walk_to", "path")]
+        if len(kinds) != 1 and not (len(kinds) == 2 and "jump_to" in kinds and feet):
+            raise ValueError("needs exactly one of velocity, walk_to, path, stop, jump_to, jump, or jump_to with a run-up; "
+                             f"has {' and '.join(kinds) or 'none'}")
+        walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump")
+        for name, fits, with_ in (("airtime", self.jump_to is not None, "jump_to; a jump has its height"),
+                                  ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
+            if getattr(self, name) is not None and not fits:
+                raise ValueError(f"`{name}` goes with {with_}")
+        if self.seconds is None and not walks and not (jumps and not feet):
+            raise ValueError(f"{kinds[0]} needs `for`, how many seconds it lasts")
+        if self.until is not None and kinds[0] != "velocity":
+            raise ValueError("`until` goes with velocity: where it has changed to at the end")
+        if self.speed is not None and not walks:
+            raise ValueError("`speed` goes with walk_to or path; velocity has its own")
+        if self.facing is not None and kinds[0] == "velocity":
+            raise ValueError("`facing` goes with walk_to, path or stop; velocity has its own ω")
+        if self.facing is not None and jumps:
+            raise ValueError("`facing` goes with walk_to, path or stop; who jumps faces where it goes")
+        for name in ("velocity", "until"):
+            value = getattr(self, name)
+            if value is not None and abs(value[2]) > abs(value[0]) + 1e-9:
+                raise ValueError(f"{name} is [v_t, ω, v_l] and |v_l| ≤ |v_t|, as v_t is the whole speed; "
+                                 f"got v_t = {value[0]:g}, v_l = {value[2]:g}")
+        return self
+
+    def move(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Move:
+        """The same in SI units, for somebody who jumps among props."""
+        points = self.path or ((self.walk_to,) if self.walk_to is not None else ())
+        leap = None
+        if self.jump is not None:
+            leap = Jump(airtime=airtime_up(jumper.physique, self.jump, jumper.gravity))
+        elif self.jump_to is not None:
+            x, z = self.jump_to[0], self.jump_to[-1]
+            y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
+            leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]))
+            points = (*points, (x, z)) if points else ()
+        return Move(seconds=math.inf if self.seconds is None else self.seconds,
+                    velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
+                    until=None if self.until is None else _forward(self.until),
+                    points=points, speed=self.speed or 1.2,
+                    facing=None if self.facing is None else math.radians(self.facing), jump=leap)
+
+
+def _forward(velocity) -> tuple[float, float, float]:
+    """(v_f, ω, v_l) of (v_t, ω, v_l)."""
+    forward, turning, left = (float(v) for v in Intent.tangential(*velocity).velocity)
+    return forward, turning, left
