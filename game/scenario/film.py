@@ -12,36 +12,32 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-import numpy as np
-
-from gambol.controllers.body import damp
 from gambol.controllers.contract import Intent
 from gambol.controllers.jump import GRAVITY
-from gambol.controllers.navigation import floor_at, in_world
+from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import built
 
-from ..camera import CameraSettings, Follow, Orbit, between, dolly, fixed
+from ..camera import between
 from ..explain import broken, explained, pointed, rows
-from ..input import Script, Wish
-from ..scene import Camera, Caption, Overlays, Scene
+from ..input import Script
+from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
 from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods
 from .actor_table import ActorTable
+from .camera_operator import Operator
 from .scenario import Scenario
-from .shot_table import CameraTable, ShotTable, overlays, parts
+from .shot_table import ShotTable, overlays, parts
 
 TITLE = (0.4, 3.4)
 CAPTION = (0.4, 4.4)
 """When a title or caption comes and when it is gone again [s], counted from the start or the cut."""
 FADE = 0.5
 """How long coming and going take [s]."""
-LOOK_HALFLIFE = 0.15
 REFUSED = 4.0
 """How long is said why a jump was not made [s]."""
 PLOTTED = 10 * RATE
 """So many steps back the plots over a film show."""
 EARTH = float(GRAVITY[1])
-HANDS_OFF = Wish()
 
 T = TypeVar("T")
 
@@ -197,69 +193,6 @@ def takes(scenario: Scenario, controller: Any) -> Iterator[tuple[Act, Take]]:
         yield act, take
 
 
-@dataclass(frozen=True, eq=False)
-class Operator:
-    """Who holds a camera during one shot, at one tick.
-
-    watched: the numbers of the actors that it is about; held: a camera on an arm, else the target
-    (3,) [m] that it looks at. start, end: of the shot [s]; time: now.
-    """
-
-    table: CameraTable
-    watched: tuple[int, ...]
-    start: float
-    end: float
-    time: float
-    held: Follow | Orbit | None = None
-    target: np.ndarray | None = None
-
-    @staticmethod
-    def ready(table: CameraTable, world: World, end: float) -> Operator:
-        """At the cut; the shot lasts until `end` [s]."""
-        watched = tuple(world.index(name) for name in table.names) or (0,)
-        operator = Operator(table, watched, world.time, end, world.time)
-        if table.kind in ("fixed", "dolly"):
-            return replace(operator, target=_middle(world, watched, table.height) if table.target is None else np.array(table.target))
-        ground, level = world.characters[watched[0]].state.ground, world.characters[watched[0]].level
-        yaw, above = math.radians(table.around), math.radians(table.above)
-        settings = CameraSettings(height=table.height, fov=math.radians(table.fov), nearest=0.5, highest=1.45,
-                                  rest=0.0 if table.swing else math.inf)
-        if table.target is None:
-            held = Follow.behind(ground, settings, float(ground[2]) + yaw, above, table.distance, level)
-            if table.kind == "follow":
-                return replace(operator, held=held.placed(ground, world.props))
-            target, yaw = held.target, held.yaw
-        else:
-            target = np.array(table.target)
-        held = Orbit.round(target, settings, yaw, above, table.distance, tracks=table.target is None)
-        return replace(operator, held=held.placed(ground, world.props))
-
-    def step(self, world: World) -> Operator:
-        """One tick on."""
-        moved = replace(self, time=world.time)
-        first = world.characters[self.watched[0]]
-        state = first.state
-        if self.held is None:
-            if self.table.target is not None:
-                return moved
-            assert self.target is not None  # whoever holds no arm looks at something, see `ready`
-            return replace(moved, target=damp(self.target, _middle(world, self.watched, self.table.height), LOOK_HALFLIFE, DT))
-        held, velocity = self.held, in_world(state.ground, state.velocity)
-        if self.table.kind == "orbit":
-            held = held.turned(math.radians(self.table.turn) * DT / max(self.end - self.start, DT))
-        return replace(moved, held=held.step(state.ground, velocity, HANDS_OFF, DT, world.props, first.level))
-
-    def view(self) -> Camera:
-        """The camera."""
-        if self.held is not None:
-            return self.held.view()
-        fov = math.radians(self.table.fov)
-        if self.table.kind == "dolly":
-            assert self.table.path is not None  # a dolly's table has one
-            return dolly(self.table.path, self.target, (self.time - self.start) / (self.end - self.start), fov)
-        return fixed(self.table.eye, self.target, fov)
-
-
 def _sampled(ticks: Iterator[T], scenario: Scenario) -> Iterator[tuple[int, T, T, float]]:
     """Number, the ticks before and after, and the way between them of every frame of a film."""
     before, after, reached = next(ticks), next(ticks), 0
@@ -276,13 +209,6 @@ def _kept(ticks: Iterator[tuple[Act, Take]], worlds: deque[World]) -> Iterator[t
     for act, take in ticks:
         worlds.append(act.world)
         yield act, take
-
-
-def _middle(world: World, watched: tuple[int, ...], height: float) -> np.ndarray:
-    """The middle (3,) [m] of some actors, `height` over what they stand on."""
-    people = [world.characters[i] for i in watched]
-    ground = np.mean([character.state.ground[:2] for character in people], axis=0)
-    return np.array([ground[0], height + np.mean([character.level for character in people]), ground[1]])
 
 
 def _caption(scenario: Scenario, shot: ShotTable, time: float) -> Caption | None:

@@ -73,7 +73,6 @@ def main() -> None:
     options.add_argument("--began", type=float, help=argparse.SUPPRESS)
     options = options.parse_args()
     if options.began is not None:
-        sys.path.insert(0, str(ROOT))
         print(json.dumps(start(options.began)))
         return
     with tempfile.TemporaryDirectory() as cache:
