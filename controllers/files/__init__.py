@@ -1,7 +1,7 @@
 """What comes from others' disks and programs and what goes there: ordinary files read, whole ones written, words fit to be shown."""
 
 from .printable import printable
-from .whole import contents, ordinary, whole
+from .safe_files import contents, ordinary, whole
 
 __all__ = [
     "contents", "ordinary", "printable", "whole",

@@ -2,8 +2,8 @@
 
 from . import gltf, materials
 from .bind import load
+from .fitted_mannequin import Build, BuildError, tailored
 from .gltf import CharacterError
-from .tailor import Build, BuildError, tailored
 from .write import Actor, Motion, joints_of, write
 
 __all__ = [

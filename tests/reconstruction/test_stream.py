@@ -14,7 +14,7 @@ from gambol.controllers.body.rotations import yaw
 from gambol.controllers.reconstruction.control_points import SETS, parse
 from gambol.controllers.reconstruction.live.placing import SECONDS, Placement, Standing, placed, stances
 from gambol.controllers.reconstruction.live.sources import Recorded
-from gambol.controllers.reconstruction.live.stream import STALE, Stream, StreamError, read_map, understood, usual_map
+from gambol.controllers.reconstruction.live.osc_stream import STALE, Stream, StreamError, read_map, understood, usual_map
 from gambol.controllers.reconstruction.pose_vector import SKELETON
 
 WORN = {"LHR-1": "lwrist", "LHR-2": "rwrist", "LHR-3": "lankle"}

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import Skeleton
 from gambol.controllers.mocap import Detected, MotionFileError, detect, load, read, standardise, write_bvh
-from gambol.controllers.mocap.detect import UNITS
+from gambol.controllers.mocap.units_and_axes import UNITS
 
 LYING = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]])  # Y up to Z up
 
