@@ -174,7 +174,7 @@ def test_bodies_and_settings_of_whole_numbers_compile_nothing_anew():
 @pytest.mark.parametrize("dt", [0, 1, -1, 0.0, -0.1, 0.1001, np.nan, np.inf, np.float32(np.nan), np.float32(0.11)])
 def test_a_step_that_is_none_is_refused_at_the_door(person, dt):
     leap = Intent(leap=Leap(np.array([0.0, 0.0, 0.5])))
-    for someone in (person, Scaled(person.controllers["locomotion"], 0.7)):
+    for someone in (person, Scaled(person.parts["locomotion"], 0.7)):
         with pytest.raises(ValueError, match=re.escape("dt must be in (0, 0.1] s, got ")):
             someone.step(someone.start(), leap, dt)
 
@@ -182,7 +182,7 @@ def test_a_step_that_is_none_is_refused_at_the_door(person, dt):
 @pytest.mark.parametrize("dt", [0.1, np.float32(0.1)])
 def test_the_longest_step_is_one_for_bodies_of_all_sizes(person, dt):
     for size in (0.3, 0.7, 1.0, 1.5):
-        child = Scaled(person.controllers["locomotion"], size)
+        child = Scaled(person.parts["locomotion"], size)
         state = child.start()
         for _ in range(20):
             state, pose = child.step(state, Intent(np.array([0.5, 0.0, 0.0])), dt)

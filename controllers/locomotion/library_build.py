@@ -56,8 +56,12 @@ def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
     try:
         recipe = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
-        fields: list[dict[str, Any]] = [{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()}
-                                        for s in recipe.get("source", [])]
+        tables, provenance = recipe.get("source", []), recipe.get("provenance", "")
+        if not isinstance(tables, list) or not all(isinstance(one, dict) for one in tables):
+            raise ValueError("sources are tables, each under [[source]]")
+        if not isinstance(provenance, str):
+            raise ValueError(f"provenance: needs a text, got {provenance!r}")
+        fields: list[dict[str, Any]] = [{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()} for s in tables]
         sources = [Source(**one) for one in fields]
         for number, source in enumerate(sources, 1):
             source.check(number)
@@ -67,7 +71,7 @@ def read_recipe(path: str | Path) -> tuple[list[Source], str]:
         raise LibraryError(f"{path}: not a library recipe: brackets are nested too deeply") from None
     if not sources:
         raise LibraryError(f"{path}: a recipe needs at least one [[source]]")
-    return sources, recipe.get("provenance", "")
+    return sources, provenance
 
 
 def gather(folder: Path, sources: list[Source], progress: Progress | None = None

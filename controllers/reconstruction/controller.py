@@ -116,7 +116,10 @@ class Reconstruction(Controller):
         away = self._possible(seen, self._points(pose))
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, level)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
-        frames, tracks = guessed_past(pose, past, state.elapsed, self.dt) if away <= ANEW or self.starts is None else self.starts.find(seen)
+        if away <= ANEW or self.starts is None:
+            frames, tracks = guessed_past(pose, past, state.elapsed, self.dt)
+        else:
+            frames, tracks = self.starts.find(seen)
         begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen)
         # what the body would do next by itself is where the fading begins
         offset = difference(moved(pose, rate * self.dt), begun.pose)

@@ -219,7 +219,9 @@ def test_nothing_but_broken_files_is_refused(tmp_path):
         build_library(tmp_path)
 
 
-@pytest.mark.parametrize("text", ("", "provenance = 'nothing else'", "[[source]]\ncolour = 'red'", "[[source", "\xff"))
+@pytest.mark.parametrize("text", (
+    "", "provenance = 'nothing else'", "[[source]]\ncolour = 'red'", "[[source", "\xff", "[source]\nglob = '*.bvh'",
+    "source = ['*.bvh']", "provenance = 3\n[[source]]\nglob = '*.bvh'\nfamilies = ['walk']"))
 def test_a_recipe_that_is_none_is_refused_by_name(text, tmp_path):
     path = tmp_path / "recipe.toml"
     path.write_bytes(text.encode("latin-1"))
