@@ -19,6 +19,7 @@ def folder(tmp_path, monkeypatch):
 def told(monkeypatch, folder):
     """What is compiled, in order, and what is ready by then, without compiling it."""
     order = []
+    monkeypatch.setattr(preparing.gc, "disable", lambda: None)
 
     def noted(name):
         return lambda *about, **more: order.append((name, {path.stem.partition("-")[0] for path in folder.glob("*.ready")}))
@@ -68,3 +69,22 @@ def test_how_far_it_is_grows_and_never_says_that_all_is_done(folder):
         shares.append(preparing.share())
         (folder / f"{number}.nbc").touch()
     assert shares[0] == 0.0 and shares == sorted(shares) and shares[-1] < 1.0
+
+
+def test_programs_are_begun_only_for_what_was_never_compiled_here(folder, monkeypatch):
+    begun, walker = [], Locomotion.load()
+
+    class Program:
+        stdout = io.StringIO()
+
+    monkeypatch.setattr(preparing, "_program", lambda part, arguments, *pipes: begun.append((part, *arguments)) or Program())
+    assert len(preparing.begun(walker, Path("mine.npz"))) == 2 and begun == [("ahead", "mine.npz"), ("person", "mine.npz")]
+    preparing.done(walker)
+    assert preparing.begun(walker) == () and len(begun) == 2
+
+
+def test_a_program_runs_in_a_process_of_its_own_wherever_one_is(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "gambol.py").write_text("raise RuntimeError('not ours')")
+    assert preparing._program("ahead", ("there is no such library",), None, None).wait() == 1
+    assert "LibraryError: there is no such library" in capfd.readouterr().err

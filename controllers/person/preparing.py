@@ -1,20 +1,24 @@
 """Compiling what a person needs, once, in programs beside a game, which finds it on disk afterwards.
 
-`python -m gambol.controllers.person.preparing person [LIBRARY]` compiles all of a walk, then of a jump. Two lumps of it come from
-`python -m gambol.controllers.person.preparing ahead [LIBRARY]`, which it hears on its standard input, so that two cores walk in half the
-time: what places feet, and how strong a body is. Compiling holds the interpreter's lock: threads would not do.
+One program, `main("person")`, compiles all of a walk, then of a jump. Two lumps of it come from another, `main("ahead")`,
+which it hears on its standard input, so that two cores walk in half the time: what places feet, and how strong a body is.
+Compiling holds the interpreter's lock: threads would not do.
 """
 
 from __future__ import annotations
 
+import gc
+import os
+import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
 
 from ..body import forward_kinematics
-from ..compiled import cache_folder
+from ..compiled import cache_folder, cache_home
 from ..jump import Jump, rehearse
 from ..jump.body import measures
 from ..jump.muscles import strength
@@ -23,6 +27,27 @@ from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
 PARTS = ("walk", "jump")
 KERNELS = 122
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
+
+
+def begun(walker: Locomotion, library: Path | None = None) -> tuple[subprocess.Popen, ...]:
+    """The programs that compile a person, begun: the one to wait for first; none where everything was compiled before.
+
+    library: the walker's file, None for the shipped one.
+    """
+    if all(ready(part, walker) for part in PARTS):
+        return ()
+    arguments = () if library is None else (str(library),)
+    ahead = _program("ahead", arguments, subprocess.DEVNULL, subprocess.PIPE)
+    person = _program("person", arguments, ahead.stdout, None)
+    assert ahead.stdout is not None  # it is a pipe
+    ahead.stdout.close()
+    return person, ahead
+
+
+def _program(part: str, arguments: tuple[str, ...], heard: Any, said: Any) -> subprocess.Popen:
+    code = f"import sys; from {__package__} import preparing; preparing.main(*sys.argv[1:])"
+    return subprocess.Popen([sys.executable, "-P", "-c", code, part, *arguments], stdin=heard, stdout=said,
+                            env=os.environ | {"GAMBOL_CACHE": str(cache_home()), "OPENBLAS_NUM_THREADS": "1"})
 
 
 def ready(part: str, walker: Locomotion) -> bool:
@@ -97,6 +122,7 @@ def _compile(kernel: Any, *like: Any) -> None:
 
 def main(part: str, library: str = "") -> None:
     """Compile what a person needs, or, of that, what comes "ahead"."""
+    gc.disable()  # a compiler makes millions of small things that stay: to look for garbage takes a sixth of its time
     walker, jump = Locomotion.load(library or None), Jump()
     if part == "ahead":
         feet(walker)
@@ -112,7 +138,3 @@ def main(part: str, library: str = "") -> None:
     sys.stdin.readline()  # and the strength
     rehearse(jump)
     _note("jump", walker)
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

@@ -14,7 +14,7 @@ from ..world import COURSE
 from .app import Play
 from .preparing import Preparing
 
-REST = 0.1
+REST = 0.4
 """Between pictures of a world that stands still [s]: the cores have other things to do."""
 
 

@@ -6,14 +6,10 @@ is asked for before that is no wish yet: no log has it, so that a replay need no
 
 from __future__ import annotations
 
-import os
 import subprocess
-import sys
 import threading
-from pathlib import Path
 from typing import Any
 
-from gambol.controllers.compiled import cache_home
 from gambol.controllers.jump import rehearse
 from gambol.controllers.person import preparing
 
@@ -23,20 +19,12 @@ from ..world import jump_of
 class Preparing:
     """What a person needs and was never compiled here, in the making.
 
-    walker: whose steps. library: its file, None for the shipped one.
+    walker: whose steps. programs: those that compile it, as `gambol.controllers.person.preparing.begun` gives them.
     """
 
-    def __init__(self, walker: Any, library: Path | None = None):
-        self.walker = walker
-        self.programs: tuple[subprocess.Popen, ...] = ()
+    def __init__(self, walker: Any, programs: tuple[subprocess.Popen, ...] = ()):
+        self.walker, self.programs = walker, programs
         self.loading: threading.Thread | None = None
-        if all(preparing.ready(part, walker) for part in preparing.PARTS):
-            return
-        arguments = () if library is None else (str(library),)
-        ahead = _program("ahead", arguments, subprocess.DEVNULL, subprocess.PIPE)
-        self.programs = _program("person", arguments, ahead.stdout, None), ahead
-        assert ahead.stdout is not None  # it is a pipe
-        ahead.stdout.close()
 
     @property
     def walks(self) -> bool:
@@ -71,11 +59,6 @@ class Preparing:
 
     def _over(self, part: str) -> bool:
         return not self.programs or preparing.ready(part, self.walker) or self.programs[0].poll() is not None
-
-
-def _program(part: str, arguments: tuple[str, ...], heard: Any, said: Any) -> subprocess.Popen:
-    return subprocess.Popen([sys.executable, "-P", "-m", preparing.__name__, part, *arguments], stdin=heard, stdout=said,
-                            env=os.environ | {"GAMBOL_CACHE": str(cache_home()), "OPENBLAS_NUM_THREADS": "1"})
 
 
 def _load(jump: Any) -> None:

@@ -25,17 +25,20 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
+    from ..input import load as load_bindings
+
+    pixels, hands = pixels_of(size), load_bindings(bindings)
     with unswept():
         from gambol.controllers.locomotion import Locomotion
-        from gambol.controllers.person import person
+        from gambol.controllers.person import person, preparing
+
+        walker = Locomotion.load(library)
+        programs = preparing.begun(walker, library)  # while the rest is loaded
 
         from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
-        from ..input import load as load_bindings
         from ..session import LogWriter
         from ..world import methods
 
-    pixels, hands = pixels_of(size), load_bindings(bindings)
-    walker = Locomotion.load(library)
     controller = in_body(person(walker), character)
     tape, clip, database = None, None, None
     if replay is not None:
@@ -44,12 +47,12 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     log = LogWriter(log_file(record), controller, players, clip, database)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
-    preparing = Preparing(walker, library)
+    beside = Preparing(walker, programs)
 
     def begun() -> Play:
         return Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
-                    preparing=preparing, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)))
-    show(Opening(begun, preparing), pixels, preset, log, capture)
+                    preparing=beside, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)))
+    show(Opening(begun, beside), pixels, preset, log, capture)
 
 
 def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:

@@ -34,12 +34,13 @@ def start(began: float) -> dict[str, tuple[float, float]]:
     from gambol.game.cli import unswept
     with unswept():  # as the command does
         from gambol.controllers.locomotion import Locomotion
-        from gambol.controllers.person import person
+        from gambol.controllers.person import person, preparing as compiling
+        walker = Locomotion.load()
+        programs = compiling.begun(walker)
         from gambol.game.app import Opening, Play, Preparing
         from gambol.game.hosts import Offscreen
     after("imports")
-    walker = Locomotion.load()
-    preparing = Preparing(walker)
+    preparing = Preparing(walker, programs)
     opening = Opening(lambda: Play(person(walker), preparing=preparing), preparing)
     with Offscreen(SIZE, "full") as host:
         opening.tick(0.0)

@@ -38,8 +38,7 @@ def preparing(monkeypatch):
     ready = set()
     monkeypatch.setattr(beside.preparing, "ready", lambda part, walker: part in ready)
     monkeypatch.setattr(beside.preparing, "share", lambda: 0.4)
-    monkeypatch.setattr(beside, "_program", lambda *about: Program())
-    preparing = Preparing(None)
+    preparing = Preparing(None, (Program(), Program()))
     preparing.compiled = ready
     return preparing
 
@@ -133,7 +132,6 @@ def test_a_log_that_may_jump_waits(preparing, tmp_path):
 
 def test_where_everything_was_compiled_before_nothing_is_waited_for(monkeypatch):
     monkeypatch.setattr(beside.preparing, "ready", lambda part, walker: True)
-    monkeypatch.setattr(beside, "_program", lambda *about: pytest.fail("nothing is to be compiled"))
     preparing = Preparing(None)
     assert preparing.walks and preparing.said == ()
     play = Play(Glide(), preparing=preparing)
