@@ -110,7 +110,7 @@ def person_of(library: Path | None, character: Path | None = None) -> Any:
     from gambol.controllers.locomotion import Locomotion
     from gambol.controllers.person import person, preparing, rehearse
 
-    walker = Locomotion.load(library)
+    walker, body = Locomotion.load(library), body_of(character)
     beside = None
     if cold():
         say("compiling the motion, once: half a minute")
@@ -121,17 +121,23 @@ def person_of(library: Path | None, character: Path | None = None) -> Any:
         beside.wait()
     rehearse(somebody)
     preparing.done(walker)
-    return in_body(somebody, character)
+    return in_body(somebody, body)
 
 
-def in_body(somebody: Any, character: Path | None) -> Any:
-    """Somebody in a character's body, if one is named."""
+def body_of(character: Path | None) -> Any:
+    """The body in a character's file, read before anything takes time; None where none is named."""
     if character is None:
-        return somebody
+        return None
     from ..character import load
+
+    return load(character)
+
+
+def in_body(somebody: Any, body: Any) -> Any:
+    """Somebody in a body; as they are where there is none."""
     from ..world import Embodied
 
-    return Embodied.of(somebody, load(character))
+    return somebody if body is None else Embodied.of(somebody, body)
 
 
 def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import (Library, Mistake, Preset, Quality, Wearing, app, in_body, learn, person_of, pixels_of, plainly, replayed,
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, body_of, in_body, learn, person_of, pixels_of, plainly, replayed,
                    say, unswept)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
@@ -27,7 +27,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from ..input import load as load_bindings
 
-    pixels, hands = pixels_of(size), load_bindings(bindings)
+    pixels, hands, body = pixels_of(size), load_bindings(bindings), body_of(character)
     with unswept():
         from gambol.controllers.locomotion import Locomotion
         from gambol.controllers.person import person, preparing
@@ -39,7 +39,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         from ..session import LogWriter
         from ..world import methods
 
-    controller = in_body(person(walker), character)
+    controller = in_body(person(walker), body)
     tape, clip, database = None, None, None
     if replay is not None:
         tape, controller = replayed(replay, controller)
