@@ -1,4 +1,5 @@
-"""The first start: the window opens at once, with the floor and the course; the game begins as soon as somebody can walk."""
+"""The first start: the window opens at once, with the floor and the course, and then somebody who walks round by a single
+primitive; the game begins as soon as all that walking takes is compiled."""
 
 from __future__ import annotations
 
@@ -7,21 +8,26 @@ from collections.abc import Callable
 
 import numpy as np
 
+from gambol.controllers.locomotion import Library
+from gambol.controllers.navigation import drift
+
 from ..camera import Follow, between
 from ..hosts import Event, KeyEvent
-from ..scene import Scene
-from ..world import COURSE
+from ..scene import Figure, Scene
+from ..world import COURSE, nearest, posed
 from .app import Play
 from .preparing import Preparing
 
-REST = 0.4
-"""Between pictures of a world that stands still [s]: the cores have other things to do."""
+REST, LONGEST = 3.0, 0.4
+"""Between pictures, so many times as long as one takes [s], and at most: the cores have other things to do."""
+STROLL = (0.9, 0.6, 0.0)
+"""How somebody walks round meanwhile: v_f [m/s], ω [rad/s], v_l [m/s]."""
 
 
 class Opening:
-    """The app that a window opens with: the floor and the course until somebody can walk on it, and then the game.
+    """The app that a window opens with: somebody who walks by themselves until one can steer them, and then the game.
 
-    make: makes the game, once it can begin.
+    make: makes the game, once it can begin. time: that it was waited for [s]; slept: of that, since the last picture.
     """
 
     full_screen = property(lambda self: self.game is not None and self.game.full_screen)
@@ -31,7 +37,8 @@ class Opening:
     def __init__(self, make: Callable[[], Play], preparing: Preparing):
         self.make, self.preparing = make, preparing
         self.game: Play | None = None
-        self.left = False
+        self.left, self.drawn = False, False
+        self.time = self.slept = 0.0
 
     @property
     def done(self) -> bool:
@@ -52,14 +59,19 @@ class Opening:
         elif self.preparing.walks:
             self.game = self.make()
         else:
-            time.sleep(REST)
+            self.time += seconds
+            self.slept = min(max(REST * (seconds - self.slept), 0.01), LONGEST)
+            time.sleep(self.slept)
 
     def scene(self, size: tuple[int, int]) -> Scene | tuple[Scene, ...]:
         """What to show in a picture of `size` pixels."""
         if self.game is not None:
             return self.game.scene(size)
-        camera = Follow.behind(np.zeros(3))
-        return Scene(between(camera, camera, 1.0), props=COURSE, text=self.preparing.said)
+        camera, people = Follow.behind(np.zeros(3)), ()
+        if self.drawn and self.preparing.walker is not None:  # not at first: where bodies are placed is compiled for it
+            people = (strolling(self.preparing.walker.library, self.time),)
+        self.drawn = True
+        return Scene(between(camera, camera, 1.0), people, props=COURSE, text=self.preparing.said)
 
     def take(self, pixels: np.ndarray) -> None:
         """Keep the picture that the game asked for."""
@@ -71,3 +83,10 @@ class Opening:
         if self.game is not None:
             self.game.close()
         self.preparing.close()
+
+
+def strolling(library: Library, seconds: float) -> Figure:
+    """Somebody who has walked round for so long, past where the game begins."""
+    number = nearest(library, STROLL)
+    ground = drift(np.zeros(3), library.velocities[number], np.array([seconds]))[0]
+    return Figure(*posed(library, number, seconds / library.primitives[number].period % 1.0, ground))

@@ -7,11 +7,12 @@ from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
 from .learnt_methods import METHODS, NAMES, TINTS, Learning, Methods, methods
+from .primitive import nearest, posed
 from .recorded import Recorded
 from .world import DT, RATE, Character, FixedStep, World, figures, ground_between, pose_between
 
 __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "STAGES", "TINTS", "Character", "Embodied", "Errors",
     "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "World", "beginning", "figures", "follower_of",
-    "ground_between", "jump_of", "lately", "methods", "physique_of", "pose_between",
+    "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed",
 ]

@@ -7,13 +7,15 @@ import pytest
 from hands import FRAME, press, release, text, wait
 from stand_in import Glide
 
+from gambol.controllers.locomotion import Locomotion
 from gambol.game.app import preparing as beside
 from gambol.game.app.app import Play
 from gambol.game.hosts import KeyEvent
-from gambol.game.app.opening import Opening
+from gambol.game.app.opening import STROLL, Opening
 from gambol.game.app.preparing import Preparing
 from gambol.game.session.input_log import LogWriter, read
 from gambol.game.world.course import COURSE
+from gambol.game.world.primitive import nearest
 
 
 class Program:
@@ -58,6 +60,25 @@ def test_a_picture_comes_before_anything_is_compiled(preparing):
     scene = opening.scene((640, 360))
     assert scene.props == COURSE and not scene.figures and not made
     assert scene.text == ("Preparing to walk, for the first time here … 40 %",)
+
+
+def test_somebody_walks_while_one_waits():
+    """By a primitive of the library: on the floor, at its speed, along its arc."""
+    walker = Locomotion.load()
+    opening = Opening(lambda: pytest.fail("nothing is ready"), Preparing(walker, (Program(),)))
+    assert not opening.scene((640, 360)).figures
+    places = []
+    for _ in range(60):
+        opening.time += 0.1
+        places.append(opening.scene((640, 360)).figures[0].positions)
+    places = np.array(places)
+    number = nearest(walker.library, STROLL)
+    v_f, omega, v_l = walker.library.velocities[number]
+    ground = places[:, 0][:, [0, 2]]
+    speed = np.linalg.norm(np.diff(ground, axis=0), axis=-1) / 0.1
+    assert speed.mean() == pytest.approx(np.hypot(v_f, v_l), rel=0.1) and 0.4 < abs(omega) < 0.8
+    assert -0.05 < places[..., 1].min() < 0.1 and np.ptp(places[:, 0, 1]) < 0.15
+    assert np.linalg.norm(ground, axis=-1).max() < 2.5 * v_f / abs(omega)
 
 
 def test_who_does_not_want_to_wait_leaves(preparing):
