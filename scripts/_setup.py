@@ -71,7 +71,7 @@ def _install(extra: str) -> None:
 
 def _fingerprint() -> str:
     """What an installation depends on: the project's declaration, this Python, and where it lies."""
-    text = (ROOT / "pyproject.toml").read_bytes() + sys.version.encode() + str(ROOT).encode()
+    text = b"".join((ROOT / name).read_bytes() for name in ("pyproject.toml", "setup.py")) + sys.version.encode() + str(ROOT).encode()
     return hashlib.sha256(text).hexdigest()[:32]
 
 
