@@ -10,6 +10,7 @@ import _setup
 
 NO_DISPLAY = 3  # how `gambol play` ends where no window can be opened
 FILM = "out/demo.mp4"
+QUICK = ("--fps", "24", "--size", "960x540")  # drawn by the processor alone, and somebody waits for it
 SHARED = ("--library", "--preset", "--size")  # what `gambol play` and `gambol render` both know
 
 
@@ -21,8 +22,8 @@ def main() -> int:
         return code
     options, others = for_film(sys.argv[1:])
     print(f"There is no display here, so the demo is filmed into {FILM}"
-          + (f" (where {' '.join(others)} means nothing)" if others else "") + ": three minutes or so", flush=True)
-    code = _setup.run("-P", "-m", "gambol.game.cli", "render", "demo", "-o", FILM, "--fps", "30", *options)
+          + (f" (where {' '.join(others)} means nothing)" if others else "") + ": four minutes or so", flush=True)
+    code = _setup.run("-P", "-m", "gambol.game.cli", "render", "demo", "-o", FILM, *QUICK, *options)
     if code == 0:
         print(f"Done: copy {FILM} to where you can watch it", flush=True)
     return code

@@ -116,12 +116,12 @@ def started(calls, monkeypatch, tmp_path):
 def test_the_film_instead_follows_the_players_options(started, capsys):
     (first, where), (second, there) = started("--library", "mine.npz", "--size=640x360", "--loud", "--preset", "fast")
     assert first == ["-P", "-m", "gambol.game.cli", "play", "--library", "mine.npz", "--size=640x360", "--loud", "--preset", "fast"]
-    assert second == ["-P", "-m", "gambol.game.cli", "render", "demo", "-o", "out/demo.mp4", "--fps", "30",
+    assert second == ["-P", "-m", "gambol.game.cli", "render", "demo", "-o", "out/demo.mp4", "--fps", "24", "--size", "960x540",
                       "--library", "mine.npz", "--preset", "fast", "--size", "640x360"]
     assert where is None and there is None, "paths are meant from where the user is"
     assert "filmed into out/demo.mp4 (where --loud means nothing)" in capsys.readouterr().out
     started()
-    assert "filmed into out/demo.mp4: three minutes or so\n" in capsys.readouterr().out
+    assert "filmed into out/demo.mp4: four minutes or so\n" in capsys.readouterr().out
 
 
 def test_both_commands_know_what_is_handed_on():
