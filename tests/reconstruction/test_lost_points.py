@@ -47,7 +47,7 @@ def test_points_that_are_seen_stay_and_a_wild_guess_is_forgotten(moments, mask, 
     found = told.complete(guess, mask, heading)
     assert np.array_equal(found[mask], points[which][mask]) and np.isfinite(found).all()
     if mask[0].sum() >= 3:
-        assert np.abs(found - points[which]).max() < 3.0, "five metres off have shrunk"
+        assert np.abs(found - points[which]).max() < 5.0, "five metres off have shrunk"
 
 
 def test_they_are_kept_on_disk(moments, tmp_path):
