@@ -24,6 +24,8 @@ SHORTEN = 0.025
 """Half-life [s] of an arm that gives way to what is beside it."""
 WHISKER = 0.5
 """A prop this far beside the arm [rad] begins to shorten it, so that it is short when the prop arrives."""
+SPARED = 0.01
+"""So far before a prop its way up is looked along [m]."""
 MET = 0.01
 """An eye nearer than this to what it looks at [m] sees nothing that way."""
 _YAWS, _PITCHES = 0.025 * np.arange(1, 11), 0.05 * np.arange(1, 5)
@@ -196,7 +198,9 @@ class Armed(Turned):
         eye = root + arm * back[0]
         if arm < NEAREST:
             up = np.array([[0.0, 1.0, 0.0]])
-            eye = eye + min(NEAREST * (1.0 - (arm / NEAREST) ** 2), free_way(eye, up, props)[0]) * up[0]
+            # from a little before what shortened the arm: on its very margin the way up is free or not by rounding
+            before = root + max(arm - SPARED, 0.0) * back[0]
+            eye = eye + min(NEAREST * (1.0 - (arm / NEAREST) ** 2), free_way(before, up, props)[0]) * up[0]
         if not clear or arm < NEAREST or eye[1] < FLOOR:
             eye = outside(beside(above_floor(eye), ground), props)
         return replace(self, eye=eye, arm=arm)

@@ -187,6 +187,15 @@ def test_the_eye_jumps_only_when_a_prop_comes_between(props, walk):
                 assert free_way(camera.target, (sight / np.linalg.norm(sight))[None], props, 2 * MARGIN)[0] < np.linalg.norm(sight) + 0.6
 
 
+def test_a_slab_at_the_chest_lifts_the_eye_and_it_stays_up():
+    """On the very margin of the slab its way up is free, however the camera is turned."""
+    slab = (Box((0.0, 0.875, -0.77734375), (1.0, 0.25, 0.21875)),)
+    camera = settle(Follow.behind(HERE), HERE, 1.0, 60, props=slab)
+    for _ in range(12):
+        old, camera = camera, camera.step(HERE, QUIET, Wish(orbit=(-1.0, 0.0)), 1 / 60, slab)
+        assert np.linalg.norm(camera.eye - old.eye) < 0.1 and camera.eye[1] > 1.5
+
+
 def test_a_corner_shortens_the_arm_before_it_comes_between():
     pillar = Pillar((1.5, 0.0, -2.0), 0.3, 3.0)
     camera, jumps = settle(Follow.behind(HERE), HERE, 1.0, 60, props=(pillar,)), []
