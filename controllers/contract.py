@@ -139,7 +139,8 @@ HIGHEST = 1e5
 
 def level(floor: Any) -> Any:
     """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±1e5 m."""
-    if not np.all(np.abs(np.asarray(floor, float)) <= HIGHEST):
+    sound = abs(floor) <= HIGHEST if isinstance(floor, float) else np.all(np.abs(np.asarray(floor, float)) <= HIGHEST)
+    if not sound:
         raise ValueError(f"a floor must be a finite height within ±{HIGHEST:g} m, got {floor!r}")
     return floor
 
@@ -147,8 +148,9 @@ def level(floor: Any) -> Any:
 class Controller(Protocol):
     """What the world asks of a controller. Whoever inherits from it has the null answers below, and gives what follows them.
 
-    skeleton: what its poses are of. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be tuned. body: what it is drawn in, a
-    `gambol.game.render.Body`. None of each where it has none. parts: the controllers that it is made of, by name.
+    skeleton: what its poses are of. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be
+    tuned. body: what it is drawn in, a `gambol.game.render.Body`. None of each where it has none. parts: the controllers
+    that it is made of, by name. What raises NotImplementedError has no null answer: whoever inherits gives it.
     """
 
     skeleton: Skeleton

@@ -22,7 +22,6 @@ for library in ("OPENBLAS", "OMP"):
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
-REHEARSALS = ("-c", "from gambol.controllers.jump import Jump, rehearse; rehearse(Jump())"), ("tests/rehearsal.py",)
 
 
 @pytest.fixture(scope="session")
@@ -45,12 +44,14 @@ def pytest_collection_modifyitems(config, items):
 
 
 def pytest_sessionstart(session):
-    """Before tests run on several cores, two programs compile what most of them need: else each core would do it for itself."""
+    """Before tests run on several cores, programs compile what most of them need: else each core would do it for itself."""
     if not getattr(session.config.option, "numprocesses", None) or hasattr(session.config, "workerinput"):
         return
     from gambol.controllers.compiled import cold
+    from gambol.controllers.locomotion import Locomotion
+    from gambol.controllers.person import preparing
 
     if cold():
         print("compiling the motion, once: a minute", flush=True)
-        for program in [subprocess.Popen([sys.executable, *one], cwd=ROOT) for one in REHEARSALS]:
+        for program in (*preparing.begun(Locomotion.load()), subprocess.Popen([sys.executable, "tests/rehearsal.py"], cwd=ROOT)):
             program.wait()

@@ -28,10 +28,16 @@ def told(monkeypatch, folder):
     return order
 
 
+def done(walker):
+    """Everything is compiled."""
+    for part in preparing.PARTS:
+        preparing._note(part, walker)
+
+
 def test_a_part_is_ready_once_it_is_compiled_for_that_library(folder):
     walker = Locomotion.load()
     assert not any(preparing.ready(part, walker) for part in preparing.PARTS)
-    preparing.done(walker)
+    done(walker)
     assert all(preparing.ready(part, walker) for part in preparing.PARTS)
     walker.library = type("Another", (), {"primitives": walker.library.primitives[:-1]})
     assert preparing.ready("jump", walker) and not preparing.ready("walk", walker)
@@ -59,7 +65,7 @@ def test_what_comes_ahead_is_said_and_claims_nothing(told, capsys, folder):
 def test_where_nothing_can_be_kept_nothing_is_ready(monkeypatch):
     monkeypatch.setattr(preparing, "cache_folder", lambda: Path("there is no such folder"))
     walker = Locomotion.load()
-    preparing.done(walker)
+    done(walker)
     assert not preparing.ready("walk", walker) and preparing.share() == 0.0
 
 
@@ -79,7 +85,7 @@ def test_programs_are_begun_only_for_what_was_never_compiled_here(folder, monkey
 
     monkeypatch.setattr(preparing, "_program", lambda part, arguments, *pipes: begun.append((part, *arguments)) or Program())
     assert len(preparing.begun(walker, Path("mine.npz"))) == 2 and begun == [("ahead", "mine.npz"), ("person", "mine.npz")]
-    preparing.done(walker)
+    done(walker)
     assert preparing.begun(walker) == () and len(begun) == 2
 
 

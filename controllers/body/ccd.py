@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import kernel
-from .damped_least_squares import chain_kernel, distance_kernel, together_kernel
+from .damped_least_squares import chain_kernel, together_kernel
+from .ik import distance_kernel
 from .rotation_kernels import exp_kernel, log_kernel
 
 ITERATIONS = 100

@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
+from .ik import distance_kernel
 from .rotation_kernels import exp_kernel
 
 _STARTS, _STEPS = 40, 60
@@ -115,9 +116,3 @@ def chain_kernel(root, base, bones, turns, joints, orientations, first):
                 orientations[k, i, m] = (parent[i, 0] * own[0, m] + parent[i, 1] * own[1, m] + parent[i, 2] * own[2, m])
             for m in range(3):
                 joints[k + 1, i] += orientations[k, i, m] * bones[k, m]
-
-
-@kernel
-def distance_kernel(a, b):
-    """How far apart two places (3,) are."""
-    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)

@@ -127,3 +127,9 @@ def _two_bones(root, mid, end, target, pole, buffer, new_mid, new_end):
         lower = math.sqrt((end[n, 0] - mid[n, 0]) ** 2 + (end[n, 1] - mid[n, 1]) ** 2
                           + (end[n, 2] - mid[n, 2]) ** 2)
         two_bone_kernel(root[n], upper, lower, target[n], pole[n], buffer, new_mid[n], new_end[n])
+
+
+@kernel
+def distance_kernel(a, b):
+    """How far apart two places (3,) are."""
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)

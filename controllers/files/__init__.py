@@ -1,8 +1,9 @@
 """What comes from others' disks and programs and what goes there: ordinary files read, whole ones written, words fit to be shown."""
 
 from .printable import printable
-from .safe_files import contents, ordinary, whole
+from .safe_files import contents, ordinary, reason, whole
+from .toml_tables import tables
 
 __all__ = [
-    "contents", "ordinary", "printable", "whole",
+    "contents", "ordinary", "printable", "reason", "tables", "whole",
 ]

@@ -33,7 +33,12 @@ def ordinary(path: str | PathLike[str]) -> Path:
     return path
 
 
-def contents(path: str | Path, most: int | None = None) -> bytes:
+def reason(error: Exception) -> str:
+    """What an error says: of one of the system the words alone, without number and path."""
+    return getattr(error, "strerror", None) or str(error)
+
+
+def contents(path: str | PathLike[str], most: int | None = None) -> bytes:
     """All bytes of an ordinary file. most: how many there may be. OSError as of `ordinary`, and for a larger one."""
     path = ordinary(path)
     size = path.stat().st_size

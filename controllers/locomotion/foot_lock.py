@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from ..body import spring_kernel
+from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
 from .cycles import EVENTS
 from .foot_clearance import HALFLIFE, aside_kernel
@@ -143,7 +143,7 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
             ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
     stands = m.standing[2 * foot + 1] == 1
     if stands:
-        wanted = soft_reach(_distance(positions[hip], ankle), reach)
+        wanted = soft_reach(distance_kernel(positions[hip], ankle), reach)
         rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
         if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
             m.standing[2 * foot], m.standing[2 * foot + 1] = 2, 2
@@ -157,15 +157,10 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
             orientations[a, i, k] = turned[i, k]
             ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
     if not stands:
-        distance = _distance(positions[hip], ankle)
+        distance = distance_kernel(positions[hip], ankle)
         share = soft_reach(distance, reach) / distance
         for i in range(3):
             ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * share
-
-
-@kernel
-def _distance(a, b):
-    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
 @kernel

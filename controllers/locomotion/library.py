@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..body import Skeleton, human, rotations as rot
-from ..files import ordinary, whole
+from ..files import ordinary, reason, whole
 from .cycles import Cycle
 
 # what the columns of a coefficient array are, for J joints
@@ -113,9 +113,8 @@ class Library:
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
                 RuntimeError, tokenize.TokenError, zipfile.BadZipFile, zlib.error) as error:  # all a damaged zip has in store
             # numpy takes a file of any other kind for its own and speaks of that
-            reason = getattr(error, "strerror", None) or error
-            reason = reason if isinstance(error, OSError) or zipfile.is_zipfile(path) else "no .npz file at all"
-            raise LibraryError(f"{path}: not a gait library ({reason})") from None
+            why = reason(error) if isinstance(error, OSError) or zipfile.is_zipfile(path) else "no .npz file at all"
+            raise LibraryError(f"{path}: not a gait library ({why})") from None
         library._check(path)
         return library
 

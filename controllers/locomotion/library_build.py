@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotations as rot
-from ..files import contents
+from ..files import reason, tables
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
@@ -55,20 +55,18 @@ class Source:
 def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     """Sources and provenance text of a recipe file (TOML). LibraryError names file and field."""
     try:
-        recipe = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
-        tables, provenance = recipe.get("source", []), recipe.get("provenance", "")
-        if not isinstance(tables, list) or not all(isinstance(one, dict) for one in tables):
+        recipe = tables(path)
+        given, provenance = recipe.get("source", []), recipe.get("provenance", "")
+        if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
             raise ValueError("sources are tables, each under [[source]]")
         if not isinstance(provenance, str):
             raise ValueError(f"provenance: needs a text, got {provenance!r}")
-        fields: list[dict[str, Any]] = [{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()} for s in tables]
+        fields: list[dict[str, Any]] = [{k: tuple(v) if isinstance(v, list) else v for k, v in s.items()} for s in given]
         sources = [Source(**one) for one in fields]
         for number, source in enumerate(sources, 1):
             source.check(number)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, TypeError, ValueError) as error:
-        raise LibraryError(f"{path}: not a library recipe: {getattr(error, 'strerror', None) or error}") from None
-    except RecursionError:
-        raise LibraryError(f"{path}: not a library recipe: brackets are nested too deeply") from None
+        raise LibraryError(f"{path}: not a library recipe: {reason(error)}") from None
     if not sources:
         raise LibraryError(f"{path}: a recipe needs at least one [[source]]")
     return sources, provenance

@@ -11,7 +11,7 @@ from typing import NoReturn
 import numpy as np
 
 from ..compiled import kernel
-from ..files import contents
+from ..files import contents, reason
 
 _TENS = 10.0 ** np.arange(23)  # exactly representable: one division or product rounds only once
 LIMIT = 1e15
@@ -38,7 +38,7 @@ def read_bytes(path) -> bytes:
     except IsADirectoryError:
         fail(path, None, "this is a directory: name one file in it")
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        fail(path, None, f"can't be opened: {getattr(error, 'strerror', None) or error}")
+        fail(path, None, f"can't be opened: {reason(error)}")
     data = data.removeprefix(b"\xef\xbb\xbf")
     if not data.strip():
         fail(path, 1, "the file is empty")

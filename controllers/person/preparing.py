@@ -55,12 +55,6 @@ def ready(part: str, walker: Locomotion) -> bool:
     return _mark(part, walker).exists()
 
 
-def done(walker: Locomotion) -> None:
-    """Say that everything is compiled."""
-    for part in PARTS:
-        _note(part, walker)
-
-
 def share() -> float:
     """How much of everything is compiled, about: 0 … 0.99."""
     return min(sum(1 for _ in cache_folder().glob("*.nbc")) / KERNELS, 0.99)

@@ -17,7 +17,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from gambol.controllers.files import ordinary
+from gambol.controllers.files import ordinary, reason
 
 LARGEST = 256 << 20
 """The largest file that is read [bytes]."""
@@ -119,7 +119,7 @@ def _bytes(path: Path) -> bytes:
                                  f"{LARGEST >> 20} MiB: export it with smaller pictures and a lighter mesh")
         return path.read_bytes()
     except OSError as error:
-        raise CharacterError(f"{path}: can't be read: {error.strerror or error}") from error
+        raise CharacterError(f"{path}: can't be read: {reason(error)}") from error
 
 
 def _chunks(path: Path, data: bytes) -> tuple[bytes, bytes | None]:

@@ -7,8 +7,6 @@ import gc
 import math
 import os
 import re
-import subprocess
-import sys
 from collections.abc import Sequence
 from contextlib import contextmanager
 from enum import StrEnum
@@ -105,22 +103,17 @@ def say(text: str) -> None:
 def person_of(library: Path | None, character: Path | None = None) -> Any:
     """Who moves, with a gait library (the shipped one by default), in a character's body if one is named; all of it
     is compiled first, where it never was."""
-    from gambol.controllers.compiled import cold
-    from gambol.controllers.contract import Intent
     from gambol.controllers.locomotion import Locomotion
     from gambol.controllers.person import person, preparing, rehearse
 
     walker, body = Locomotion.load(library), body_of(character)
-    beside = None
-    if cold():
-        say("compiling the motion, once: half a minute")
-        beside = subprocess.Popen([sys.executable, "-P", "-c", "from gambol.controllers.jump import Jump, rehearse; rehearse(Jump())"], stdin=subprocess.DEVNULL)
+    programs = preparing.begun(walker, library)
+    if programs:
+        say("compiling the motion, once: a minute")
+    for program in programs:
+        program.wait()
     somebody = person(walker)
-    if beside is not None:
-        somebody.step(somebody.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
-        beside.wait()
     rehearse(somebody)
-    preparing.done(walker)
     return in_body(somebody, body)
 
 

@@ -70,4 +70,4 @@ def named(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise OutputError(f"{path}: can't be written: {error.strerror or error}") from error
+        raise OutputError(f"{path}: can't be written: {files.reason(error)}") from error

@@ -6,8 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from gambol.controllers.files import contents
-
+from gambol.controllers.files import reason, tables
 
 LARGEST = 4 << 20
 """The largest file that is read [bytes]."""
@@ -16,12 +15,10 @@ LARGEST = 4 << 20
 def read(file: str | Path, error: type[ValueError]) -> dict[str, Any]:
     """The tables of a file, in UTF-8 with or without a byte order mark. `error`, naming it, where it can't be read."""
     try:
-        return tomllib.loads(contents(file, LARGEST).decode("utf-8-sig"))
+        return tables(file, LARGEST)
     except UnicodeDecodeError as fault:
         raise error(f"{file}: not UTF-8 text (byte {fault.start})") from None
     except OSError as fault:
-        raise error(f"{file}: {fault.strerror or fault}") from None
+        raise error(f"{file}: {reason(fault)}") from None
     except tomllib.TOMLDecodeError as fault:
         raise error(f"{file}: not TOML: {fault}") from None
-    except RecursionError:
-        raise error(f"{file}: not TOML: brackets are nested too deeply") from None

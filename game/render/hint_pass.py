@@ -22,7 +22,7 @@ KEY = 0.07, 0.08, 0.10, 0.55
 
 
 def layout(hint: Hint, size: tuple[int, int]) -> tuple[np.ndarray, int]:
-    """Rows as of `sheet.layout` of a hint over a picture of `size` pixels, and the height of their letters [px]."""
+    """Rows as of `help_pass.layout` of a hint over a picture of `size` pixels, and the height of their letters [px]."""
     letters = int(np.clip(round(min(size) * LETTERS), SMALLEST, LARGEST))
     wide = sum(_widths(hint, letters))
     if wide > ROOM * size[0]:  # as wide as letters are high, near enough

@@ -125,7 +125,7 @@ def joined(comparison: Comparison, performer: Character, methods: Methods, befor
 
 
 def pinned(comparison: Comparison, action: str, world: World) -> tuple[Comparison, World]:
-    """Comparison and world after an action "pins=…" or "pin=…"; SettingError for one that says nothing sound."""
+    """The comparison and the world after an action "pins=…" or "pin=…"; SettingError for one that says nothing sound."""
     body, follows = next((one, one.follows) for one in world.characters if one.follows is not None)
     name, _, text = action.partition("=")
     count = len(follows.controls)

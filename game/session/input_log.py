@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.files import contents, printable
+from gambol.controllers.files import contents, printable, reason
 
 from ..files import OutputError, named
 from ..input import Wish
@@ -117,7 +117,7 @@ def read(path: str | Path) -> Log:
     try:
         data = contents(path, LARGEST)
     except OSError as error:
-        raise LogError(f"{path}: {error.strerror or error}") from None
+        raise LogError(f"{path}: {reason(error)}") from None
     lines = io.BytesIO(data)
     about = head(path, lines.readline())
     blocks: list[tuple[np.ndarray, dict]] = []

@@ -18,7 +18,7 @@ from ...body import (HALF_SOLE, ccd_kernel, centroid_kernel, exp_kernel, foot_tu
 from ...compiled import kernel
 from . import carriage
 from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
-from .planted_pose import bend_kernel, ankle_kernel, foot_kernel
+from .planted_pose import ankle_kernel, bend_kernel, foot_kernel
 
 FLEX = math.radians(40.0)
 """How far a loaded ankle bends before the heel rises [rad]; times flexibility. It reaches 35 … 40°."""

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from ...body import relative_kernel, two_bone_kernel
+from ...body import distance_kernel, relative_kernel, two_bone_kernel
 from ...compiled import kernel
 from .dynamics import centre_kernel, place_kernel
 
@@ -65,13 +65,13 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
     for _ in range(4):
         foot_kernel(foot[3], foot[4], turned)
         ankle_kernel(body, foot, turned, at)
-        if foot[5] > 0.0 and _apart(root, at) > reach:
+        if foot[5] > 0.0 and distance_kernel(root, at) > reach:
             low, high = foot[4], max(foot[4], 1.25)
             for _ in range(40):
                 middle = 0.5 * (low + high)
                 foot_kernel(foot[3], middle, turned)
                 ankle_kernel(body, foot, turned, at)
-                if _apart(root, at) > reach:
+                if distance_kernel(root, at) > reach:
                     low = middle
                 else:
                     high = middle
@@ -93,7 +93,7 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
             break
         foot[4] = min(foot[4] + 1.05 * excess, 1.25)
     orientations[ankle] = turned
-    gap = _apart(positions[ankle], at)
+    gap = distance_kernel(positions[ankle], at)
     for i in range(3):
         positions[ball, i] = positions[ankle, i]
         for k in range(3):
@@ -105,11 +105,6 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
     relative_kernel(orientations[knee], turned, local[ankle])
     relative_kernel(turned, orientations[ball], local[ball])
     return gap
-
-
-@kernel
-def _apart(a, b):
-    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
 @kernel
@@ -147,7 +142,7 @@ def stand_kernel(body, centre, feet, flex, root, local, positions, orientations)
             if feet[side, 5] >= 0.0:
                 gap = max(gap, leg_kernel(body, side, feet[side], flex, local, positions, orientations))
         centre_kernel(body, positions, orientations, found)
-        missing = _apart(centre, found)
+        missing = distance_kernel(centre, found)
         if missing < 1e-9:
             break
         for i in range(3):

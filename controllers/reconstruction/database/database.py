@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...files import ordinary, whole
+from ...files import ordinary, reason, whole
 from ..pose_vector import ANGLES, JOINTS, REFERENCE, ROOT, SKELETON, WIDTH, mirror
 
 FPS = 60.0
@@ -101,7 +101,7 @@ class Database:
                 file.seek(size - 8 - length)
                 about = json.loads(file.read(length))
         except OSError as error:
-            raise DatabaseError(f"{path}: can't be read: {error.strerror or error}") from None
+            raise DatabaseError(f"{path}: can't be read: {reason(error)}") from None
         except (ValueError, RecursionError) as error:
             if isinstance(error, DatabaseError):
                 raise

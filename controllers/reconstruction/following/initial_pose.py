@@ -20,7 +20,7 @@ PACE = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Starts:
-    """LostPoints of a database to begin from. frames: (S,) their numbers. first: (S,) where their takes begin.
+    """Moments of a database to begin from. frames: (S,) their numbers. first: (S,) where their takes begin.
 
     points: (S, n, 3) [m] places of the control points on the moment's own ground. velocities: (S, n, 3) [m/s].
     """

@@ -19,7 +19,7 @@ import numpy as np
 from pythonosc import osc_bundle, osc_message
 from pythonosc.osc_packet import OscPacket, ParseError
 
-from ...files import contents, printable
+from ...files import printable, reason, tables
 from ..control_points import ControlPoints, parse
 from ..pose_vector import SKELETON
 from .placing import Placement
@@ -74,9 +74,9 @@ class Stream:
         except (OSError, OverflowError, ValueError, TypeError) as error:
             self._socket.close()
             if isinstance(error, (socket.gaierror, ValueError, TypeError)) or getattr(error, "errno", None) == errno.EADDRNOTAVAIL:
-                raise StreamError(f"host {printable(host)!r} is no address of this machine ({getattr(error, 'strerror', None) or error}): "
+                raise StreamError(f"host {printable(host)!r} is no address of this machine ({reason(error)}): "
                                   f"{HOST} hears programs on it, 0.0.0.0 those on other machines, too") from None
-            raise StreamError(f"port {port} can't be listened at ({getattr(error, 'strerror', None) or error}): "
+            raise StreamError(f"port {port} can't be listened at ({reason(error)}): "
                               "close the program that does, or choose another port") from None
         self._socket.setblocking(False)
 
@@ -177,13 +177,11 @@ def read_map(path: str | Path) -> dict[str, str]:
     """
     path = Path(path)
     try:
-        table = tomllib.loads(contents(path, 1 << 20).decode("utf-8-sig"))
+        table = tables(path)
     except OSError as error:
-        raise StreamError(f"{path}: can't be read: {error.strerror or error}") from None
+        raise StreamError(f"{path}: can't be read: {reason(error)}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise StreamError(f"{path}: {error}") from None
-    except RecursionError:
-        raise StreamError(f"{path}: brackets are nested too deeply") from None
     trackers = table.get("trackers")
     if not isinstance(trackers, dict) or not trackers:
         raise StreamError(f'{path}: needs a table [trackers] with lines such as "LHR-1A2B3C4D" = "lwrist"')
