@@ -101,6 +101,13 @@ class ControlSpace:
         """Whether queries (..., 3) lie in the hull: (...) bool."""
         return np.all(np.asarray(query) / SCALE @ self.hull[:, :3].T + self.hull[:, 3] <= 1e-9, -1)
 
+    def straight(self) -> tuple[float, float]:
+        """The slowest and the fastest way straight ahead (v_f) [m/s] in the hull."""
+        slope, room = self.hull[:, 0], -self.hull[:, 3] * INSIDE
+        with np.errstate(divide="ignore"):
+            reach = room / slope
+        return SCALE[0] * float(reach[slope < 0].max()), SCALE[0] * float(reach[slope > 0].min())
+
     def locate(self, query: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The simplex (...) and barycentric weights (..., 4) of queries (..., 3), clamped first: eq. (4)."""
         p = self.clamp(query).reshape(-1, 1, 3) / SCALE

@@ -16,6 +16,7 @@ from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from .control_space import ControlSpace
 from .entry import entered
+from .gait_change import changes
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
 from .memory import Settings, legs_of, memory_dtype, plain, put
@@ -43,7 +44,7 @@ class Locomotion(Controller):
         self.tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
                         space_tables(self.run, runs) if self.run else
                         space_tables(self.walk, library.family("walk")),
-                        series_table(library), library.velocities.astype(np.float32))
+                        series_table(library), changes(library, self.walk, self.run))
         self._dtype = memory_dtype(len(library.primitives))
         self._library = zlib.crc32(self.tables[4].tobytes())
 
@@ -79,15 +80,18 @@ class Locomotion(Controller):
         memory["weights"][..., self.library.rest] = 1.0
         memory["settled"] = 1
         memory["phase"] = 0.25
-        memory["row"][..., DURATION_AT] = 1.0
+        memory["row"][..., DURATION_AT] = memory["stretch"] = 1.0
         memory["library"] = self._library
         state = CharacterState(ground, np.zeros(ground.shape), Pose(np.zeros(ground.shape), np.zeros(3)),
                                np.zeros(ground.shape[:-1] + (4,), bool), memory, floor)
-        for _ in range(2):  # the first step finds the pose, the second knows where its feet were
-            state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)
+        state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)  # finds the pose
         memory = state.memory.copy()
-        for name, value in (("ground", ground), ("breath", 0.0), ("drift", 0.0), ("velocity", 0.0),
-                            ("row_rate", 0.0), ("standing", 0)):
+        memory["grip"], memory["offset"], memory["offset_rate"] = 1.0, 0.0, 0.0
+        memory["raised"] = legs_of(self.library).height - memory["points"][..., 1]
+        memory["raised_rate"] = 0.0
+        state, _ = self.step(replace(state, memory=memory), Intent(np.zeros(3)), 1 / 60)  # and how feet stand in it
+        memory = state.memory.copy()
+        for name, value in (("breath", 0.0), ("row_rate", 0.0)):
             memory[name] = value
         return replace(state, ground=memory["ground"], velocity=np.zeros(ground.shape), memory=memory)
 
@@ -112,8 +116,8 @@ class Locomotion(Controller):
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
-        body, legs, walk, run, table, velocities = self.tables
-        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, velocities, root, local)
+        body, legs, walk, run, table, change = self.tables
+        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, change, root, local)
         root[:, 1] += np.broadcast_to(state.floor, shape).reshape(-1)
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)

@@ -51,9 +51,8 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     aside, ahead = points[:, 0] - ground[0], points[:, 2] - ground[1]
     memory["points"] = np.stack([c * aside - s * ahead, points[:, 1], s * aside + c * ahead], -1)
     stands = np.asarray(state.contacts, bool)
-    memory["standing"] = stands
-    memory["lock"] = points[:, [0, 2]]
-    memory["offset"] = memory["offset_rate"] = 0.0
+    memory["standing"] = memory["grip"] = stands
+    memory["offset"] = memory["offset_rate"] = memory["raised"] = memory["raised_rate"] = 0.0
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 
@@ -71,7 +70,7 @@ def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray) -> None:
     memory["settled"], memory["phase"] = 0, ABOUT_TO_STEP
     row = np.empty(COLUMNS, np.float32)
     series_kernel(locomotion.tables[4], memory["weights"], np.float32(ABOUT_TO_STEP), row)
-    memory["row"] = row
+    memory["row"], memory["stretch"] = row, 1.0
 
 
 def _under_the_feet(locomotion: Any, state: CharacterState) -> np.ndarray:

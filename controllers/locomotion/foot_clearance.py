@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
+from .foot_points import shown_kernel
 
 WIDTH = 0.09
 """The room that is asked for between the centre lines of two feet side by side [m]; recorded walks have 0.07."""
@@ -21,7 +22,11 @@ HALFLIFE = 0.012
 """… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump."""
 FADE = 0.15
 """Before a foot's heel and beyond its toes the need for room fades over this length [m]."""
-LOW, HIGH = 0.08, 0.16
+ASTRAY = 0.4
+"""A foot this far on the other's side is not called back [m], from half of it on less and less."""
+STEEP = 0.08
+"""A foot that points down so steeply that its line is shorter than this from above [m] has no sides."""
+LOW, HIGH = 0.25, 0.45
 """A foot that swings higher than this above the floor passes freely, the more the higher [m]."""
 
 
@@ -36,32 +41,46 @@ def aside_kernel(m, body, foot, height, out):
     if not _stands(m, other) or _stands(m, foot):
         return
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    line = np.empty((2, 2))  # the standing foot's heel and ball, where they are shown
-    for i in range(2):
-        k = 2 * other + i
-        line[i, 0] = m.points[k, 0] + c * m.offset[k, 0] - s * m.offset[k, 2]
-        line[i, 1] = m.points[k, 2] + s * m.offset[k, 0] + c * m.offset[k, 2]
-    x, z = line[1, 0] - line[0, 0], line[1, 1] - line[0, 1]
-    size = math.sqrt(x * x + z * z) + 1e-9
-    x, z = x / size, z / size
-    length = size + body.toe_end[2]
+    there, here = np.empty((3, 2)), np.empty((3, 2))  # heel, ball and toe's end of the other foot and of this one
+    _outline(m, body, other, there)
+    _outline(m, body, foot, here)
+    for i in range(3):  # without what it gives way already
+        here[i, 0] -= c * m.aside[foot, 0] - s * m.aside[foot, 2]
+        here[i, 1] -= s * m.aside[foot, 0] + c * m.aside[foot, 2]
     side = 1.0 - 2.0 * foot  # the left foot gives way to the left, which is (z, −x)
-    heel, ball = m.points[2 * foot], m.points[2 * foot + 1]
-    fx, fz = ball[0] - heel[0], ball[2] - heel[2]
-    reach = 1.0 + body.toe_end[2] / (math.sqrt(fx * fx + fz * fz) + 1e-9)
     need = 0.0
-    for i in range(3):  # heel, ball, end of the toes
-        share = 0.0 if i == 0 else 1.0 if i == 1 else reach
-        dx, dz = heel[0] + share * fx - line[0, 0], heel[2] + share * fz - line[0, 1]
-        along, apart = dx * x + dz * z, side * (dx * z - dz * x)
-        beyond = max(-along, along - length)
-        room = SOFTNESS * math.log1p(math.exp((WIDTH - apart) / SOFTNESS))
-        if apart < 0.0:  # a foot that is wholly on the other side stays there
-            room *= _smooth(1.0 + apart / WIDTH)
-        need = max(need, _smooth(1.0 - beyond / FADE) * room)
-    need *= _smooth((HIGH - min(heel[1], ball[1]) + height) / (HIGH - LOW))
-    x, z = need * side * z, -need * side * x
+    for i in range(3):
+        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
+    low = min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
+    need *= _smooth((HIGH - low + height) / (HIGH - LOW))
+    x, z = there[1, 0] - there[0, 0], there[1, 1] - there[0, 1]
+    size = math.sqrt(x * x + z * z) + 1e-9
+    x, z = need * side * z / size, -need * side * x / size
     out[0], out[2] = c * x + s * z, -s * x + c * z
+
+
+@kernel
+def _outline(m, body, foot, out):
+    """A foot's centre line as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
+    shown_kernel(m, 2 * foot, out[0])
+    shown_kernel(m, 2 * foot + 1, out[1])
+    x, z = out[1, 0] - out[0, 0], out[1, 1] - out[0, 1]
+    share = body.toe_end[2] / max(math.sqrt(x * x + z * z), STEEP)
+    out[2, 0], out[2, 1] = out[1, 0] + share * x, out[1, 1] + share * z
+
+
+@kernel
+def _room(line, point, side):
+    """How far [m] a point (2,) must still go to that side (1 left, −1 right) of a foot's line (3, 2)."""
+    x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
+    length = math.sqrt(x * x + z * z) + 1e-9
+    x, z = x / length, z / length
+    dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
+    along, apart = dx * x + dz * z, side * (dx * z - dz * x)
+    room = SOFTNESS * math.log1p(math.exp((WIDTH - apart) / SOFTNESS))
+    if apart < 0.0:  # a foot that is far on the other side stays there
+        room *= _smooth((ASTRAY + apart) / (0.5 * ASTRAY))
+    return _smooth(1.0 - max(-along, along - length) / FADE) * _smooth(length / STEEP - 1.0) * room
 
 
 @kernel

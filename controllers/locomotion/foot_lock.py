@@ -1,11 +1,12 @@
 """Footing: feet that stand do not move, feet that swing arrive without a jump.
 
-For each foot two points are watched, heel and ball. A point that begins to stand is locked where
-it is; while locked it stays there whatever the blend does under it, and when released the
-distance between lock and blend decays as a critically damped spring (inertialisation). The foot
-is turned so that it passes through both points, the toe bends so that it does not sink, and the
-leg follows by two-bone inverse kinematics. A leg that is too short first lifts its heel about the
-ball, as legs do, then lowers the pelvis a little, and only then lets go.
+For each foot two points are watched, heel and ball, and how firmly each grips the floor: 0 … 1, from the blend's
+labels. What is shown is the blend's foot plus an offset along the floor and a turn. A point that grips takes none of
+the blend's movement, one that is free takes all of it, and between them a share: so a foot comes to stand, and
+leaves, without a jump of speed. While a foot swings its offset goes to zero by the time it lands, as a cubic does.
+The foot is turned so that it passes through both points, the toe bends so that it does not sink, and the leg follows
+by two-bone inverse kinematics. A leg that is too short first lifts its heel about the ball, as legs do, then lowers
+the pelvis a little, and only then lets go.
 """
 
 from __future__ import annotations
@@ -18,33 +19,35 @@ from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
 from .cycles import EVENTS
 from .foot_clearance import HALFLIFE, aside_kernel
-from .kernel import LABELS_AT
+from .foot_points import on_floor, shown_kernel
+from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
-STANDING = 0.06
-"""A point begins to stand where its blended label exceeds this: early, so that no foot creeps in …"""
-LEAVING = (0.08, 0.40)
-"""… and leaves where it falls below this, walking and running: a runner's foot must not be held back …"""
+TAKING, LEAVING = (0.05, 0.35), (0.2, 0.9)
+"""A point is free while its blended label is below the first, and held while it is above the second: early as it
+comes to stand, so that it does not creep in, and early as it leaves, so that the leg is not held back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
+GRIP_RATE = 25.0
+"""How fast a grip may change [1/s]."""
+SOONEST = 0.06
+"""An offset is given at least this long to go [s] …"""
+LATEST = 0.45
+"""… and at most this."""
 LAND_HALFLIFE = 0.03
-"""A landing point comes down to the floor with this half-life [s]."""
+"""A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
 """How fast a swinging foot is lifted over the floor it must clear [s]."""
-OFFSET_HALFLIFE = 0.07
-"""A released foot returns to the blend with this half-life [s]."""
 PELVIS_HALFLIFE = 0.08
 """The pelvis follows what the legs need with this half-life [s]."""
 PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
-RELEASE = 0.25
-"""A lock further than this from where the blend wants the point lets go [m]."""
 RISE_RATE = 8.0
 """A heel rises for its leg's sake no faster than this [rad/s] …"""
-RISE_HALFLIFE = 0.04
+RISE_HALFLIFE = 0.12
 """… and sinks back with this half-life once its ball is free [s]."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
@@ -55,16 +58,23 @@ CLOSE = 0.03
 
 
 @kernel
-def place_feet(m, body, legs, clearance, positions, orientations, local, dt, work):
-    """Hold standing feet, land swinging ones, bend the legs after them."""
-    ankle = np.empty((2, 3))
-    before = m.offset.copy()
-    _hold_standing(m, legs.height, dt)
-    _hold_free(m, body, before, legs.height, dt)
+def place_feet(m, body, legs, clearance, before, positions, orientations, local, dt, work):
+    """Hold standing feet, land swinging ones, bend the legs after them.
+
+    before: (4, 2) where the blend's contact points were one step ago, in the world.
+    """
+    ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
+    on_floor(m, now)
+    for k in range(4):
+        _take_hold(m, k, legs.height, dt)
+    for foot in range(2):
+        _offset(m, foot, before, now, dt)
+        _step_aside(m, body, foot, legs.height, dt)
+        lift[foot] = _swing_lift(m, foot, clearance, dt)
     need = 0.0
     for foot in range(2):
         hip = legs.hip[foot]
-        _turn_foot(m, body, foot, hip + 2, legs.height, clearance, orientations, ankle[foot], dt, work)
+        _turn_foot(m, body, foot, hip + 2, legs.height, lift[foot], orientations, ankle[foot], dt, work)
         reach = (REACH - 0.001) * leg_length(body, hip)
         _give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], dt, work)
         flat = (positions[hip, 0] - ankle[foot, 0]) ** 2 + (positions[hip, 2] - ankle[foot, 2]) ** 2
@@ -80,20 +90,92 @@ def place_feet(m, body, legs, clearance, positions, orientations, local, dt, wor
         for j in range(hip, hip + 3):
             positions[j, 1] -= m.pelvis
         leg_kernel(positions, orientations, hip, ankle[foot], work)
-        toe_kernel(body, hip + 2, legs.height, positions, orientations, local, work)
+        toe_kernel(body, hip + 2, legs.height + lift[foot], positions, orientations, local, work)
         localise_kernel(orientations, 0, hip, local)
         localise_kernel(orientations, hip, hip + 1, local)
         localise_kernel(orientations, hip + 1, hip + 2, local)
 
 
 @kernel
-def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, work):
+def _take_hold(m, k, height, dt):
+    """How firmly point k grips: fully at rest, else by its blended label, and only once it is low."""
+    wanted = 1.0
+    if not m.settled:
+        loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING
+        share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
+        wanted = share * share * (3.0 - 2.0 * share)
+        if m.torn[k // 2]:  # it was let go, until it is well into its swing
+            wanted = 0.0
+            if 0.3 < _swing_progress(m, k // 2) < 1.0:
+                m.torn[k // 2] = 0
+        if wanted > m.grip[k] and m.points[k, 1] + m.raised[k] > height + GATE:
+            wanted = m.grip[k]
+    step = GRIP_RATE * dt
+    m.grip[k] += min(max(wanted - m.grip[k], -step), step)
+    m.standing[k] = 1 if m.grip[k] > 0.5 else 0
+    below = m.grip[k] * (height - m.points[k, 1])
+    m.raised[k], m.raised_rate[k] = spring_kernel(m.raised[k], m.raised_rate[k], below, LAND_HALFLIFE, dt)
+
+
+@kernel
+def _offset(m, foot, before, now, dt):
+    """The offset of what is shown from the blend: x, z of the ball in the world and the foot's turn."""
+    h, b = 2 * foot, 2 * foot + 1
+    offset, rate = m.offset[foot], m.offset_rate[foot]
+    grip = max(m.grip[h], m.grip[b])
+    if grip <= 0.0:
+        left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) * m.row[DURATION_AT] / math.sqrt(m.stretch)
+        u = min(dt / min(max(left, SOONEST), LATEST), 1.0)
+        for i in range(3):
+            x, v = offset[i], rate[i] * dt / u
+            offset[i] = x * (1.0 - u * u * (3.0 - 2.0 * u)) + v * u * (1.0 - u) ** 2
+            rate[i] = (6.0 * x * u * (u - 1.0) + v * (1.0 - u) * (1.0 - 3.0 * u)) * u / dt
+        return
+    heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
+    was_x, was_z = before[h, 0] - before[b, 0], before[h, 1] - before[b, 1]
+    x, z = now[h, 0] - now[b, 0], now[h, 1] - now[b, 1]
+    blended = math.atan2(was_z * x - was_x * z, was_x * x + was_z * z)
+    c, s = math.cos(offset[2]), math.sin(offset[2])
+    px = before[b, 0] + offset[0] + heel * (c * was_x + s * was_z)
+    pz = before[b, 1] + offset[1] + heel * (c * was_z - s * was_x)
+    px += (1.0 - grip) * (now[b, 0] - before[b, 0] + heel * (x - was_x))
+    pz += (1.0 - grip) * (now[b, 1] - before[b, 1] + heel * (z - was_z))
+    turn = offset[2] - m.grip[h] * m.grip[b] * blended
+    c, s = math.cos(turn), math.sin(turn)
+    px -= now[b, 0] + heel * (c * x + s * z)
+    pz -= now[b, 1] + heel * (c * z - s * x)
+    rate[0], rate[1], rate[2] = (px - offset[0]) / dt, (pz - offset[1]) / dt, (turn - offset[2]) / dt
+    offset[0], offset[1], offset[2] = px, pz, turn
+    m.swing[foot] = math.sqrt(px * px + pz * pz)
+
+
+@kernel
+def _step_aside(m, body, foot, height, dt):
+    """A foot that swings gives way to the other one; one that lands so keeps it, as an offset."""
+    if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
+        m.offset[foot, 0] += m.aside[foot, 0]
+        m.offset[foot, 1] += m.aside[foot, 2]
+        for i in range(3):
+            m.aside[foot, i] = m.aside_rate[foot, i] = 0.0
+        return
+    wanted = np.empty(3)
+    aside_kernel(m, body, foot, height, wanted)
+    share = min(_swing_progress(m, foot) / YIELDING, 1.0)
+    for i in range(3):
+        m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
+                                                                share * wanted[i], HALFLIFE, dt)
+
+
+@kernel
+def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
     """Turn foot 0 or 1 (joint a) by the smallest rotation that points it from heel to ball as they
     shall be, and write where its ankle then must be (3,): hung on the ball, or on the heel."""
     heel, ball = 2 * foot, 2 * foot + 1
-    axis, turned = work[0, 0], work[1]
-    lift = _swing_lift(m, foot, clearance, dt)
-    h, b = _target(m, heel, height, lift), _target(m, ball, height, lift)
+    axis, turned, h, b = work[0, 0], work[1], work[2, 0], work[2, 1]
+    for k, out in ((heel, h), (ball, b)):
+        shown_kernel(m, k, out)
+        out[2] = out[1]
+        out[1] = max(m.points[k, 1] + m.raised[k], height + (1.0 - m.grip[k]) * lift)
     x, y, z = b[0] - h[0], b[1] - h[1], b[2] - h[2]
     u = m.points[ball, 0] - m.points[heel, 0]
     v = m.points[ball, 1] - m.points[heel, 1]
@@ -107,11 +189,7 @@ def _turn_foot(m, body, foot, a, height, clearance, orientations, ankle, dt, wor
         for i in range(3):
             for k in range(3):
                 orientations[a, i, k] = turned[i, k]
-    hang = 0.5
-    if m.standing[ball] == 1:
-        hang = 1.0
-    elif m.standing[heel] == 1:
-        hang = 0.0
+    hang = (m.grip[ball] + 0.01) / (m.grip[heel] + m.grip[ball] + 0.02)
     m.anchor[foot] += (hang - m.anchor[foot]) * (1.0 - 2.0 ** (-dt / ANCHOR_HALFLIFE))
     hang = m.anchor[foot]
     for i in range(3):
@@ -146,7 +224,7 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
         wanted = soft_reach(distance_kernel(positions[hip], ankle), reach)
         rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
         if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
-            m.standing[2 * foot], m.standing[2 * foot + 1] = 2, 2
+            m.torn[foot] = 1
         m.rise[foot] = min(rise, m.rise[foot] + RISE_RATE * dt)
     else:
         m.rise[foot] *= 2.0 ** (-dt / RISE_HALFLIFE)
@@ -169,8 +247,8 @@ def at_rest(m, legs):
     if m.weights[legs.rest] < 0.98 or abs(m.command[0]) + abs(m.command[1]) + abs(m.command[2]) > 0.02:
         return False
     for foot in range(2):
-        offset = m.offset[2 * foot + 1]
-        if offset[0] ** 2 + offset[2] ** 2 > CLOSE * CLOSE or m.lift[foot] > 0.003:
+        x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 2]
+        if x * x + z * z > CLOSE * CLOSE or m.lift[foot] > 0.003:
             return False
     return True
 
@@ -190,78 +268,3 @@ def _swing_lift(m, foot, clearance, dt):
         wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * progress)
     m.lift[foot], m.lift_rate[foot] = spring_kernel(m.lift[foot], m.lift_rate[foot], wanted, LIFT_HALFLIFE, dt)
     return max(m.lift[foot], 0.0)
-
-
-@kernel
-def _hold_standing(m, height, dt):
-    """Lock the points that begin to stand, release those that end, keep the standing on their locks."""
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    for k in range(4):
-        stands = _stands(m, k, height)
-        x = m.ground[0] + c * m.points[k, 0] + s * m.points[k, 2]
-        z = m.ground[1] - s * m.points[k, 0] + c * m.points[k, 2]
-        offset, rate = m.offset[k], m.offset_rate[k]
-        if stands and m.standing[k] != 1:
-            m.standing[k] = 1
-            m.lock[k, 0], m.lock[k, 1] = x + offset[0], z + offset[2]
-        elif not stands and m.standing[k] == 1:
-            m.standing[k] = 2
-            m.swing[k // 2] = math.sqrt(offset[0] ** 2 + offset[2] ** 2)
-        if m.standing[k] == 1:
-            offset[0], offset[2] = m.lock[k, 0] - x, m.lock[k, 1] - z
-            rate[0], rate[2] = 0.0, 0.0
-            below = height - m.points[k, 1]
-            offset[1], rate[1] = spring_kernel(offset[1], rate[1], below, LAND_HALFLIFE, dt)
-            if offset[0] ** 2 + offset[2] ** 2 > RELEASE * RELEASE:
-                m.standing[k] = 2
-
-
-@kernel
-def _hold_free(m, body, before, height, dt):
-    """Take the free points along with their foot's standing point, or else back to the blend, but
-    aside of the other foot.
-
-    before: (4, 3) the offsets one step ago.
-    """
-    aside, wanted = m.aside.copy(), np.empty(3)
-    for foot in range(2):
-        aside_kernel(m, body, foot, height, wanted)
-        share = min(_swing_progress(m, foot) / YIELDING, 1.0)
-        for i in range(3):
-            m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
-                                                                    share * wanted[i], HALFLIFE, dt)
-    for k in range(4):
-        if m.standing[k] == 1:
-            continue
-        other = k ^ 1
-        for i in range(3):
-            was, goal = aside[k // 2, i], m.aside[k // 2, i]
-            if m.standing[other] == 1:
-                was, goal = 0.0, 0.0
-                if i != 1:
-                    was, goal = before[other, i], m.offset[other, i]
-            m.offset[k, i], m.offset_rate[k, i] = spring_kernel(m.offset[k, i] + goal - was, m.offset_rate[k, i],
-                                                                goal, OFFSET_HALFLIFE, dt)
-
-
-@kernel
-def _target(m, k, height, lift):
-    """Where contact point k shall be: x, y, z in the ground frame."""
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    least = height if m.standing[k] == 1 else height + lift
-    return (m.points[k, 0] + c * m.offset[k, 0] - s * m.offset[k, 2],
-            max(m.points[k, 1] + m.offset[k, 1], least),
-            m.points[k, 2] + s * m.offset[k, 0] + c * m.offset[k, 2])
-
-
-@kernel
-def _stands(m, k, height):
-    """Whether point k stands: always at rest, else by its blended label, and only once it is low."""
-    if m.settled:
-        return True
-    label = m.row[LABELS_AT + k]
-    if m.standing[k] == 1:
-        return label > LEAVING[m.family] or m.row_rate[LABELS_AT + k] > 0.0
-    if m.standing[k] == 2 and 0.3 < _swing_progress(m, k // 2) < 1.0:
-        m.standing[k] = 0  # it has left for good: the next contact may take hold
-    return m.standing[k] == 0 and label > STANDING and m.points[k, 1] + m.offset[k, 1] < height + GATE

@@ -47,6 +47,7 @@ class Space(NamedTuple):
     hull: np.ndarray
     anchor: np.ndarray
     lane: np.ndarray
+    straight: np.ndarray
     bend: np.ndarray
 
 
@@ -64,7 +65,7 @@ def space_tables(space: ControlSpace, members: np.ndarray) -> Space:
     """The kernel's view of a control space over the library's primitives `members` (Q,)."""
     return Space(*(np.ascontiguousarray(a) for a in (
         members[space.simplices].astype(np.int64), space.neighbours, space.transform,
-        space.hull, space.anchor / SCALE, space.lane / SCALE[0], space.bend / SCALE)))
+        space.hull, space.anchor / SCALE, space.lane / SCALE[0], np.array(space.straight()) / SCALE[0], space.bend / SCALE)))
 
 
 def series_table(library: Library) -> np.ndarray:

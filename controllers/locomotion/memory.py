@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..body import compose, contact_height, relative
+from ..body import compose, contact_height
 from .kernel import COLUMNS
 from .library import Library
 
@@ -21,20 +21,21 @@ WALK, RUN = 0, 1
 class Settings(NamedTuple):
     """What one may tune. Times in seconds, lengths in metres, speeds in m/s.
 
-    command_halflife: how fast a wish is taken up. acceleration: the most legs can push [m/s²];
-    turning may change by four times that number [rad/s²].
-    weight_halflife: smoothing of the blend's weights. drift_halflife: of the standing foot's say in
-    the root's velocity. switch_halflife: of the hand-over between walking and running, which
-    happens above run_above and below walk_below. correct: fixed-point corrections of the query.
+    agility: what legs can do beside a person's, whose number is 1: how fast a wish is taken up and
+    how hard legs may push both grow with it. command_halflife: how fast a wish is taken up.
+    acceleration: the most legs push [m/s²], also around a curve; turning may change by four times
+    that number [rad/s²]. weight_halflife: smoothing of the blend's weights. switch_halflife: of the
+    hand-over between walking and running, for which wishes above run_above and below walk_below
+    ask. correct: fixed-point corrections of the query.
     footing: whether feet are held. clearance: how high feet swing at least. breath: how deeply a
     body at rest breathes: how far the chest turns [rad], while the hips sway 0.3 m for each rad.
     """
 
-    command_halflife: float = 0.10
-    acceleration: float = 4.5
-    weight_halflife: float = 0.06
-    drift_halflife: float = 0.03
-    switch_halflife: float = 0.10
+    agility: float = 1.0
+    command_halflife: float = 0.20
+    acceleration: float = 4.0
+    weight_halflife: float = 0.08
+    switch_halflife: float = 0.18
     run_above: float = 1.85
     walk_below: float = 1.70
     correct: int = 3
@@ -83,14 +84,16 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("ground", "f8", 3),  # x, z [m], θ [rad]
         ("velocity", "f4", 3),  # achieved (v_f, ω, v_l)
         ("command", "f4", 3), ("rate", "f4", 3),  # the shaped wish and its rate
-        ("family", "i4"), ("simplex", "i4", 2),  # WALK or RUN; last simplex in each one's space
+        ("family", "i4"), ("wanted", "i4"),  # WALK or RUN: what is, and what the wish asks for
+        ("simplex", "i4", 2), ("stretch", "f4"),  # last simplex in each one's space; the command over what its gaits reach
         ("weights", "f4", -(-primitives // 128) * 128), ("phase", "f4"),
         ("settled", "i4"),  # at rest, both feet in place
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame
-        ("standing", "i4", 4),  # 0 free, 1 locked, 2 let go until the foot is well into its swing
-        ("lock", "f8", (4, 2)),  # x, z where each point is locked, in the world
-        ("offset", "f4", (4, 3)), ("offset_rate", "f4", (4, 3)),  # shown minus blended, in the world
+        ("grip", "f4", 4),  # how firmly each point is held: 0 free … 1
+        ("standing", "i4", 4), ("torn", "i4", 2),  # whether each point stands; feet let go until well into their swing
+        ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
+        ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left
@@ -107,10 +110,9 @@ def memory_dtype(primitives: int) -> np.dtype:
 def put(memory: np.ndarray, ground: np.ndarray) -> None:
     """Carry characters (...), in place, to other ground frames (..., 3), with all that they know in the world."""
     there, here = ground[..., None, :], memory["ground"][..., None, :]
-    memory["lock"] = compose(there, relative(here, _flat(memory["lock"])))[..., :2]
     turn = (there - here) * [0.0, 0.0, 1.0]
-    for name in ("offset", "offset_rate", "aside", "aside_rate"):
-        memory[name][..., [0, 2]] = compose(turn, _flat(memory[name][..., [0, 2]]))[..., :2]
+    for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
+        memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
     memory["ground"] = ground
 
 

@@ -1,4 +1,4 @@
-"""Root motion: the ground frame moves so that the standing foot stays, and the pose goes with it."""
+"""Root motion: the ground frame moves as it is commanded, and the pose goes with it."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ import math
 import numpy as np
 
 from ..compiled import kernel
+from .foot_points import foot_points
 from .kernel import HIPS_AT, LABELS_AT
 
-
-@kernel
-def _foot_points(body, legs, positions, orientations, out):
-    for foot in range(2):
-        a = legs.hip[foot] + 2
-        for i in range(3):
-            heel = positions[a, i]
-            for k in range(3):
-                heel += orientations[a, i, k] * body.heel[k]
-            out[2 * foot, i] = heel
-            out[2 * foot + 1, i] = positions[a + 1, i]
+DRIFT_HALFLIFE = 0.03
+"""Of the standing foot's say where a blend's velocity is measured [s]."""
 
 
 @kernel
-def move_root(m, settings, body, legs, positions, orientations, velocities, dt):
+def follow_command(m, dt):
+    """Move the ground frame at the shaped command, which is what the blend does on average; at rest it stays."""
+    for i in range(3):
+        m.velocity[i] = 0.0 if m.settled else m.command[i]
+    _advance(m, dt)
+
+
+@kernel
+def follow_feet(m, body, legs, positions, orientations, velocities, dt):
     """Move the ground frame so that the standing foot stays: the blend's own mean velocity plus
-    what the standing points say beyond it, low-passed."""
+    what the standing points say beyond it, low-passed. So a blend's true velocity is measured."""
     v_f, omega, v_l = 0.0, 0.0, 0.0
     for i in range(m.weights.shape[0]):
         w = m.weights[i]
@@ -36,27 +36,30 @@ def move_root(m, settings, body, legs, positions, orientations, velocities, dt):
     turn = omega * dt
     c, s = math.cos(turn), math.sin(turn)
     points = np.empty((4, 3), np.float32)
-    _foot_points(body, legs, positions, orientations, points)
+    foot_points(body, legs, positions, orientations, points)
     trust, lateral, forward = 1e-6, 0.0, 0.0
     for k in range(4):
         stand = min(max(m.row[LABELS_AT + k], 0.0), 1.0)
-        if m.settled:
-            stand = 1.0
         lateral += stand * (m.points[k, 0] - (c * points[k, 0] + s * points[k, 2]))
         forward += stand * (m.points[k, 2] - (-s * points[k, 0] + c * points[k, 2]))
         trust += stand
         for i in range(3):
             m.points[k, i] = points[k, i]
     share = min(trust, 1.0)
-    gain = 1.0 - 2.0 ** (-dt / settings.drift_halflife)
+    gain = 1.0 - 2.0 ** (-dt / DRIFT_HALFLIFE)
     m.drift[0] += gain * (share * (lateral / trust / dt - v_l) - m.drift[0])
     m.drift[1] += gain * (share * (forward / trust / dt - v_f) - m.drift[1])
-    v_l += m.drift[0]
-    v_f += m.drift[1]
-    m.velocity[0], m.velocity[1], m.velocity[2] = v_f, omega, v_l
+    m.velocity[0], m.velocity[1], m.velocity[2] = v_f + m.drift[1], omega, v_l + m.drift[0]
+    _advance(m, dt)
+
+
+@kernel
+def _advance(m, dt):
+    """The ground frame after dt at the present velocity, by the middle of the turn."""
+    turn = m.velocity[1] * dt
     c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
-    m.ground[0] += (c * v_l + s * v_f) * dt
-    m.ground[1] += (-s * v_l + c * v_f) * dt
+    m.ground[0] += (c * m.velocity[2] + s * m.velocity[0]) * dt
+    m.ground[1] += (-s * m.velocity[2] + c * m.velocity[0]) * dt
     m.ground[2] = math.pi - (math.pi - m.ground[2] - turn) % (2.0 * math.pi)
 
 

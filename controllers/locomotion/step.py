@@ -10,14 +10,26 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
 from .foot_lock import at_rest, place_feet
+from .gait_change import change_kernel
+from .foot_points import foot_points, on_floor
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
-from .root_motion import move_root, to_world_kernel
+from .root_motion import follow_command, to_world_kernel
+
+LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
+"""A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
+half by its strides, so that walks and runs meet between them."""
+PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
+"""A standing foot this far off [m] makes one step sooner, the more the farther, by at most this share."""
+STRETCH_HALFLIFE = 0.08
+"""Strides lengthen and shorten with this half-life [s]."""
+FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
+"""Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other."""
 
 
 @kernel(nogil=True)
-def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, velocities, root, local):
+def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
     root: (N, 3) [m]. local: (N, J, 3, 3). Both float32, in the world. Runs without the interpreter's
@@ -29,20 +41,25 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
     scratch = np.empty(SCRATCH, np.float32)
     fresh = np.empty(COLUMNS, np.float32)
     work = np.empty((5, 3, 3), np.float64)
-    b, p, q = np.empty(4), np.empty(3), np.empty(3)
+    before = np.empty((4, 2))
+    b, p, q, c = np.empty(4), np.empty(3), np.empty(3), np.empty(3)
     for n in range(memory.shape[0]):
         m = memory[n]
         _shape_command(m, wish[n], dt, settings, walk, run, p, q)
-        _weigh(m, settings, dt, walk, run, table, fresh, b, p, q)
+        _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
         advance_phase(m, wish[n], dt)
         blend_series(m, settings, table, fresh, legs, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
-        move_root(m, settings, body, legs, positions, orientations, velocities, dt)
+        on_floor(m, before)
+        follow_command(m, dt)
+        foot_points(body, legs, positions, orientations, m.points)
+        _stride(m, positions)
         if settings.footing:
-            place_feet(m, body, legs, settings.clearance, positions, orientations, local[n], dt, work)
+            place_feet(m, body, legs, settings.clearance, before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
-                m.standing[k] = 1 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0
+                m.grip[k] = 1.0 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0.0
+                m.standing[k] = 1 if m.grip[k] > 0.5 else 0
         if at_rest(m, legs):
             m.settled = 1
         to_world_kernel(m, fresh, root[n], local[n])
@@ -51,45 +68,70 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, veloci
 @kernel
 def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
-    no faster than legs can push."""
+    no faster than legs can push, and only while a foot stands to push on."""
+    m.wanted = RUN if wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
     for i in range(3):
         p[i] = wish[i] / SCALE[i]
-    if wish[0] > (settings.run_above if m.family == WALK else settings.walk_below):
-        inner_kernel(run, p, inner)
-        clamp_kernel(run, p, inner)
-    else:
-        inner_kernel(walk, p, inner)
-        clamp_kernel(walk, p, inner)
+    _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
     for i in range(3):
-        before = m.command[i]
-        x, v = spring_kernel(before, m.rate[i], p[i] * SCALE[i], settings.command_halflife, dt)
-        most = settings.acceleration if i != 1 else 4.0 * settings.acceleration
-        step = x - before
-        if abs(step) > most * dt:
-            step = math.copysign(most * dt, step)
-            v = step / dt
-        m.command[i], m.rate[i] = before + step, v
+        p[i] *= SCALE[i]
+    most = settings.acceleration * settings.agility
+    round_curve = most / max(math.hypot(p[0], p[2]), 0.1)
+    p[1] = min(max(p[1], -round_curve), round_curve)
+    ground = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
+    if ground <= 0.0:
+        return
+    halflife = settings.command_halflife / settings.agility
+    x = np.empty(3)
+    for i in range(3):
+        x[i], m.rate[i] = spring_kernel(m.command[i], m.rate[i], p[i], halflife, ground * dt)
+        x[i] -= m.command[i]
+    push = math.hypot(x[0], x[2]) / (most * ground * dt)
+    turn = abs(x[1]) / (4.0 * most * ground * dt)
+    for i in range(3):
+        over = max(turn if i == 1 else push, 1.0)
+        if over > 1.0:
+            x[i] /= over
+            m.rate[i] = x[i] / (ground * dt)
+        m.command[i] += x[i]
 
 
 @kernel
-def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
+def _within(space, p, inner, family):
+    """Bring a scaled wish `p` (3,) into a space. Walks go a little faster than any that was recorded, runs
+    slower, straight on, so that the two meet."""
+    ahead = p[0]
+    p[0] = _reached(space, ahead, family)
+    stretch = ahead / p[0] if p[0] > 0.0 else 1.0
+    inner_kernel(space, p, inner)
+    clamp_kernel(space, p, inner)
+    p[0] *= min(max(stretch, LEAST_STRETCH), MOST_STRETCH)
+
+
+@kernel
+def _reached(space, ahead, family):
+    """The scaled forward speed, of one that is stretched to, that a family has recorded."""
+    return min(ahead, space.straight[1]) if family == WALK else max(ahead, space.straight[0])
+
+
+@kernel
+def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     """Choose the family, locate the command in its space, low-pass the weights."""
-    common = 0.25 < m.phase < 0.42 or 0.75 < m.phase < 0.92  # the same foot stands in both families
-    wanted = m.family
-    if m.command[0] > settings.run_above:
-        wanted = RUN
-    elif m.command[0] < settings.walk_below:
-        wanted = WALK
-    switch = wanted != m.family and (common or m.settled != 0)
+    common, phase = change_kernel(changes, m.family, m.phase)
+    switch = m.wanted != m.family and common and not m.settled and (
+        m.command[0] > FASTEST_WALK if m.wanted == RUN else m.command[0] < SLOWEST_RUN)
     if switch:
-        m.family = wanted
+        m.family = m.wanted
+        m.phase = phase
     keep = 2.0 ** (-dt / settings.weight_halflife)
-    if m.family == WALK:
-        simplex = query_kernel(walk, m.command, m.simplex[0], settings.correct, b, p, q)
-        vertices = walk.vertices[simplex]
-    else:
-        simplex = query_kernel(run, m.command, m.simplex[1], settings.correct, b, p, q)
-        vertices = run.vertices[simplex]
+    space = walk if m.family == WALK else run
+    for i in range(3):
+        c[i] = m.command[i]
+    c[0] = _reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
+    stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
+    m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
+    simplex = query_kernel(space, c, m.simplex[m.family], settings.correct, b, p, q)
+    vertices = space.vertices[simplex]
     m.simplex[m.family] = simplex
     if switch:
         keep = 0.0
@@ -116,6 +158,16 @@ def _weigh(m, settings, dt, walk, run, table, fresh, b, p, q):
 
 
 @kernel
+def _stride(m, positions):
+    """Lengthen or shorten the stride, about the pelvis, by what the cadence leaves of the stretch."""
+    longer = math.sqrt(m.stretch) - 1.0
+    for foot in range(2):
+        shift = longer * (0.5 * (m.points[2 * foot, 2] + m.points[2 * foot + 1, 2]) - positions[0, 2])
+        m.points[2 * foot, 2] += shift
+        m.points[2 * foot + 1, 2] += shift
+
+
+@kernel
 def _one_of(i, vertices):
     return i == vertices[0] or i == vertices[1] or i == vertices[2] or i == vertices[3]
 
@@ -135,7 +187,12 @@ def advance_phase(m, wish, dt):
 
 @kernel
 def _next_phase(m, dt):
-    return (m.phase + dt / max(m.row[DURATION_AT], 0.3)) % 1.0
+    late = 0.0  # a foot that stands far from where it should makes one step sooner
+    for foot in range(2):
+        if m.standing[2 * foot] or m.standing[2 * foot + 1]:
+            late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
+    hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
+    return (m.phase + dt * hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)) % 1.0
 
 
 @kernel

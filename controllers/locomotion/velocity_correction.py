@@ -18,7 +18,7 @@ from .control_space import ControlSpace, thin
 from .kernel import COLUMNS, DURATION_AT, SCRATCH, body_tables, pose_kernel, series_table
 from .library import Library, LibraryError
 from .memory import Settings, legs_of, memory_dtype
-from .root_motion import move_root
+from .root_motion import follow_feet
 from .step import advance_phase, blend_series
 
 CYCLES = 3
@@ -30,7 +30,7 @@ def steady_velocities(library: Library, weights: np.ndarray) -> np.ndarray:
     weights = np.asarray(weights, np.float32)
     memory = np.zeros(len(weights), memory_dtype(len(library.primitives)))
     memory["weights"][:, :weights.shape[1]] = weights
-    memory["row"][:, DURATION_AT] = 1.0
+    memory["row"][:, DURATION_AT] = memory["stretch"] = 1.0
     frames = np.zeros((len(weights), 2, 3))
     time = np.zeros(len(weights))
     _walk_cycles(memory, frames, time, 1 / 240, Settings(), body_tables(library), legs_of(library),
@@ -52,7 +52,7 @@ def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velociti
             advance_phase(m, wish, dt)
             blend_series(m, settings, table, fresh, legs, dt)
             pose_kernel(body, fresh, local, positions, orientations, scratch)
-            move_root(m, settings, body, legs, positions, orientations, velocities, dt)
+            follow_feet(m, body, legs, positions, orientations, velocities, dt)
             if wraps >= 1:
                 time[n] += dt
                 turned += (m.ground[2] - heading + np.pi) % (2 * np.pi) - np.pi

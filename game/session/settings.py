@@ -41,7 +41,6 @@ SETTINGS = (
     Setting("locomotion.command_halflife", 0.02, 0.6, "s"),
     Setting("locomotion.acceleration", 1.0, 12.0, "m/s²"),
     Setting("locomotion.weight_halflife", 0.01, 0.4, "s"),
-    Setting("locomotion.drift_halflife", 0.005, 0.3, "s"),
     Setting("locomotion.switch_halflife", 0.02, 0.5, "s"),
     # the two speeds can't cross, or a walker would dither between gaits
     Setting("locomotion.run_above", 1.75, 3.0, "m/s"),

@@ -10,11 +10,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from gambol.controllers.body import (Skeleton, anatomy, centre_of_mass, contact_height, contact_points, detect_contacts,
                                      end_positions, feet_apart, foot_drift, forward_kinematics)
 
 GRAVITY = 9.81
+LIGHT = 0.5
+"""The least load at which friction is told, in body weights."""
 RUNS = 1.9
 """A body whose mass centre is faster than this [m/s] is judged as a runner."""
 SHORTEST = 4
@@ -63,17 +66,21 @@ class Motion:
 
     @cached_property
     def running(self) -> np.ndarray:
-        """Who runs when (T, N)."""
-        return np.linalg.norm(self.com_velocity[..., [0, 2]], axis=-1) > RUNS
+        """Who runs when (T, N): faster than RUNS, or at more than half of it with a flight a third of a second away."""
+        speed = np.linalg.norm(self.com_velocity[..., [0, 2]], axis=-1)
+        flight = (self.com_acceleration[..., 1] < -0.7 * GRAVITY) & (speed > 0.5 * RUNS)
+        near = maximum_filter1d(flight.astype(np.int8), 2 * (self.rate // 3) + 1, axis=0) > 0
+        return (speed > RUNS) | near
 
     @cached_property
     def friction(self) -> np.ndarray:
-        """What the ground must give sideways over what it gives upward (T, N); 0 while it carries less than a
-        tenth of the weight and is not asked for more than 0.1 g: a flight."""
+        """What the ground must give sideways over what it gives upward (T, N).
+
+        A load below LIGHT weights counts as that much: a body's flight in recordings is no exact parabola, and what
+        the model of its masses is off by would read as slipping.
+        """
         across = np.linalg.norm(self.com_acceleration[..., [0, 2]], axis=-1)
-        up = GRAVITY + self.com_acceleration[..., 1]
-        flies = (up < 0.1 * GRAVITY) & (across < 0.1 * GRAVITY)
-        return np.where(flies, 0.0, across / np.maximum(up, 0.1 * GRAVITY))
+        return across / np.maximum(GRAVITY + self.com_acceleration[..., 1], LIGHT * GRAVITY)
 
     @cached_property
     def joints(self) -> np.ndarray:
