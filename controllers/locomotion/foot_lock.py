@@ -53,7 +53,7 @@ ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 YIELDING = 0.25
 """A foot gives way to the other fully once this share of its swing is over."""
-CLOSE = 0.03
+CLOSE = 0.06
 """A body comes to rest once its feet are this near to where they belong [m]."""
 
 

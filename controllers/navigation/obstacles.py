@@ -18,8 +18,8 @@ HEAD = 1.9
 """What hangs higher than this over the floor is walked under [m]."""
 SHOULDER = 0.30
 """A walker keeps so far from walls [m] ..."""
-LOOK = 0.45
-"""... and looks so far ahead [s]: about half of what stopping from a run takes."""
+LOOK = 0.6
+"""... and looks so far ahead [s]: about what stopping from a run takes."""
 PACE = 0.15
 """How far apart the places are that are looked at [m]."""
 DEVIATIONS = np.radians([0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0, 88.0, -88.0])

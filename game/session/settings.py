@@ -38,6 +38,7 @@ class Setting:
 
 
 SETTINGS = (
+    Setting("locomotion.agility", 0.4, 3.0),
     Setting("locomotion.command_halflife", 0.02, 0.6, "s"),
     Setting("locomotion.acceleration", 1.0, 12.0, "m/s²"),
     Setting("locomotion.weight_halflife", 0.01, 0.4, "s"),

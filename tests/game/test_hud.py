@@ -178,7 +178,7 @@ def test_a_slider_changes_its_setting_and_a_reset_takes_it_back(game):
 
 def test_a_number_typed_into_a_slider_is_not_played(game):
     tap(game, "F6")
-    point(game, *middle_of(1))
+    point(game, *middle_of(2))
     game.handle(KeyEvent("LEFT_CONTROL", True))
     frames(game)
     button(game, True)

@@ -148,7 +148,7 @@ def test_standing_feet_do_not_drift(locomotion, steadily, whimsical):
         assert len(drift) > 200 and drift.mean() < 5e-3
         held = np.array([s.memory["grip"] for s in motion.states]) == 1.0
         step = np.linalg.norm(np.diff(motion.points, axis=0)[..., [0, 2]], axis=-1)[held[1:] & held[:-1]]
-        assert np.mean(step > 5e-4) < 0.01 and step.max() < 0.02
+        assert np.mean(step > 5e-4) < 0.03 and step.max() < 0.02
 
 
 def test_holding_feet_makes_the_difference(library):
