@@ -1,5 +1,6 @@
 """What is compiled beside a game: in which order, and that nobody waits for one who has ended."""
 
+import inspect
 import io
 from pathlib import Path
 
@@ -41,6 +42,16 @@ def test_a_part_is_ready_once_it_is_compiled_for_that_library(folder):
     assert all(preparing.ready(part, walker) for part in preparing.PARTS)
     walker.library = type("Another", (), {"primitives": walker.library.primitives[:-1]})
     assert preparing.ready("jump", walker) and not preparing.ready("walk", walker)
+
+
+def test_what_is_compiled_ahead_is_what_a_step_calls(monkeypatch):
+    """Kernels are named with what they are told: as many things as they take."""
+    told = []
+    monkeypatch.setattr(preparing, "_compile", lambda kernel, *like: told.append(
+        inspect.signature(getattr(kernel, "py_func", kernel)).bind(*like)))
+    preparing.feet(Locomotion.load())
+    preparing.rest(Locomotion.load())
+    assert len(told) >= 5
 
 
 def test_walking_is_ready_before_jumping(told, monkeypatch, folder):

@@ -25,7 +25,7 @@ from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
 
 PARTS = ("walk", "jump")
-KERNELS = 122
+KERNELS = 127
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 
@@ -76,19 +76,20 @@ def _note(part: str, walker: Locomotion) -> None:
 def feet(walker: Locomotion) -> None:
     """Compile what places the feet: half of a step."""
     memory, body, legs, places, turns, local, dt = _some(walker)
-    _compile(step.place_feet, memory, body, legs, walker.settings.clearance, places, turns, local, dt, np.zeros((5, 3, 3)))
+    _compile(step.place_feet, memory, body, legs, walker.settings.clearance, np.zeros((4, 2)), places, turns, local, dt,
+             np.zeros((5, 3, 3)))
 
 
 def rest(walker: Locomotion) -> None:
     """Compile what a step needs before it places the feet."""
     memory, body, legs, places, turns, local, dt = _some(walker)
-    _, _, walk, run, table, velocities = walker.tables
+    _, _, walk, run, table, changes = walker.tables
     settings, row, three = walker.settings, np.zeros(COLUMNS, np.float32), np.zeros(3)
-    _compile(step._weigh, memory, settings, dt, walk, run, table, row, np.zeros(4), three, three)
+    _compile(step._weigh, memory, settings, dt, walk, run, table, changes, row, np.zeros(4), three, three, three)
     _compile(step._shape_command, memory, three, dt, settings, walk, run, three, three)
     _compile(step.blend_series, memory, settings, table, row, legs, dt)
     _compile(step.pose_kernel, body, row, local, places, turns, np.zeros(SCRATCH, np.float32))
-    _compile(step.move_root, memory, settings, body, legs, places, turns, velocities, dt)
+    _compile(step.follow_command, memory, dt)
 
 
 def place(walker: Locomotion) -> None:
