@@ -78,22 +78,25 @@ def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     most = settings.acceleration * settings.agility
     round_curve = most / max(math.hypot(p[0], p[2]), 0.1)
     p[1] = min(max(p[1], -round_curve), round_curve)
-    ground = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
-    if ground <= 0.0:
-        return
     halflife = settings.command_halflife / settings.agility
-    x = np.empty(3)
-    for i in range(3):
-        x[i], m.rate[i] = spring_kernel(m.command[i], m.rate[i], p[i], halflife, ground * dt)
-        x[i] -= m.command[i]
-    push = math.hypot(x[0], x[2]) / (most * ground * dt)
-    turn = abs(x[1]) / (4.0 * most * ground * dt)
-    for i in range(3):
-        over = max(turn if i == 1 else push, 1.0)
-        if over > 1.0:
-            x[i] /= over
-            m.rate[i] = x[i] / (ground * dt)
-        m.command[i] += x[i]
+    before = m.command[1]  # shoulders turn in half the time, and in the air, too
+    m.command[1], m.rate[1] = spring_kernel(before, m.rate[1], p[1], 0.5 * halflife, dt)
+    turn = (m.command[1] - before) / (4.0 * most * dt)
+    if abs(turn) > 1.0:
+        m.command[1], m.rate[1] = before + math.copysign(4.0 * most * dt, turn), math.copysign(4.0 * most, turn)
+    push = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
+    if push <= 0.0:
+        return
+    forward, forward_rate = spring_kernel(m.command[0], m.rate[0], p[0], halflife, push * dt)
+    lateral, lateral_rate = spring_kernel(m.command[2], m.rate[2], p[2], halflife, push * dt)
+    forward, lateral = forward - m.command[0], lateral - m.command[2]
+    over = math.hypot(forward, lateral) / (most * push * dt)
+    if over > 1.0:
+        forward, lateral = forward / over, lateral / over
+        forward_rate, lateral_rate = forward / (push * dt), lateral / (push * dt)
+    m.command[0] += forward
+    m.command[2] += lateral
+    m.rate[0], m.rate[2] = forward_rate, lateral_rate
 
 
 @kernel
