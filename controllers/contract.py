@@ -37,12 +37,14 @@ class Intent:
     around: what stands about, anything with a box's centre, size and heading or a pillar's foot,
     radius and height (`gambol.game.scene.scene` has both). points: (n, 3) [m] in the world, where the points on
     the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish.
+    look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
     leap: Leap | None = None
     around: Sequence[Any] = ()
     points: np.ndarray | None = None
+    look: np.ndarray | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

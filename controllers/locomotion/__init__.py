@@ -7,14 +7,14 @@ from .controller import DEFAULT_LIBRARY, Locomotion
 from .coverage import picture, report
 from .cycles import ACCELERATION_RATE, joint_acceleration
 from .kernel import COLUMNS, SCRATCH
-from .library import HIPS, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
+from .library import HIPS, LABELS, Idle, Library, LibraryError, Primitive, channels, reference_rotations
 from .library_build import build_library, collect, read_recipe
 from .memory import RUN, Settings, memory_dtype, walks
 from .selection import neighbours, select
 
 __all__ = [
     "ACCELERATION_RATE", "COLUMNS", "DEFAULT_LIBRARY", "HIPS", "LABELS", "RUN", "SCALE", "SCRATCH", "Blender",
-    "ControlSpace", "Library", "LibraryError", "Locomotion", "Primitive", "Settings", "build_library", "channels",
+    "ControlSpace", "Idle", "Library", "LibraryError", "Locomotion", "Primitive", "Settings", "build_library", "channels",
     "collect", "fourier", "joint_acceleration", "memory_dtype", "neighbours", "picture", "read_recipe",
     "reference_rotations", "report", "select", "step", "thin", "walks",
 ]

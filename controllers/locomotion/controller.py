@@ -17,6 +17,7 @@ from ..contract import CharacterState, Controller, Intent, Status, level, second
 from .control_space import ControlSpace
 from .entry import entered
 from .gait_change import changes
+from .idle import ENDS, idling
 from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
 from .memory import Settings, legs_of, memory_dtype, plain, put
@@ -44,7 +45,7 @@ class Locomotion(Controller):
         self.tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
                         space_tables(self.run, runs) if self.run else
                         space_tables(self.walk, library.family("walk")),
-                        series_table(library), changes(library, self.walk, self.run))
+                        series_table(library), changes(library, self.walk, self.run), idling(library))
         self._dtype = memory_dtype(len(library.primitives))
         self._library = zlib.crc32(self.tables[4].tobytes())
 
@@ -82,6 +83,9 @@ class Locomotion(Controller):
         memory["phase"] = 0.25
         memory["row"][..., DURATION_AT] = memory["stretch"] = 1.0
         memory["library"] = self._library
+        memory["luck"] = _luck(ground)
+        if len(self.tables[6].must) > ENDS:
+            memory["moment"] = memory["luck"] % np.flatnonzero(~self.tables[6].must)[-1]
         state = CharacterState(ground, np.zeros(ground.shape), Pose(np.zeros(ground.shape), np.zeros(3)),
                                np.zeros(ground.shape[:-1] + (4,), bool), memory, floor)
         state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)  # finds the pose
@@ -113,16 +117,29 @@ class Locomotion(Controller):
         wish[:] = np.broadcast_to(intent.velocity, shape + (3,)).reshape(-1, 3)
         wish[~np.isfinite(wish).all(-1)] = 0.0
         np.clip(wish, -20.0, 20.0, out=wish)
+        memory["alert"] = intent.leap is not None
+        memory["looks"] = 0
+        if intent.look is not None:
+            self._look(memory, intent.look, shape, state.floor)
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
-        body, legs, walk, run, table, change = self.tables
-        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, change, root, local)
+        body, legs, walk, run, table, change, idle = self.tables
+        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, change, idle, root, local)
         root[:, 1] += np.broadcast_to(state.floor, shape).reshape(-1)
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)
         return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory,
                               state.floor), pose
+
+    @staticmethod
+    def _look(memory: np.ndarray, look: ArrayLike, shape: tuple[int, ...], floor: np.ndarray | float) -> None:
+        """Note the places (..., 3) that characters (N,) are told to look at, over their own floors; none that is not finite."""
+        place = np.array(np.broadcast_to(np.asarray(look, float), shape + (3,)))
+        place[..., 1] -= floor
+        place = place.reshape(-1, 3)
+        memory["looks"] = sound = np.isfinite(place).all(-1)
+        memory["look"] = np.where(sound[:, None], np.clip(place, -1e6, 1e6), 0.0)
 
     def _knows(self, memory) -> bool:
         return (isinstance(memory, np.ndarray) and memory.dtype == self._dtype
@@ -153,3 +170,12 @@ class Locomotion(Controller):
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""
         return Status("running")
+
+
+def _luck(ground: np.ndarray) -> np.ndarray:
+    """A number (...) of its own for every place (..., 3), never 0: who begins elsewhere idles otherwise."""
+    mixed = ground.view(np.uint64).copy() if ground.flags.c_contiguous else np.ascontiguousarray(ground).view(np.uint64)
+    with np.errstate(over="ignore"):
+        mixed = (mixed ^ (mixed >> np.uint64(29))) * np.uint64(0x9E3779B97F4A7C15)
+        mixed = (mixed[..., 0] * np.uint64(3) + mixed[..., 1] * np.uint64(5) + mixed[..., 2] * np.uint64(7)) >> np.uint64(32)
+    return (mixed | np.uint64(1)).astype(np.uint32)

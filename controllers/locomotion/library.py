@@ -9,7 +9,7 @@ import zlib
 from dataclasses import asdict, dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -46,6 +46,14 @@ class Primitive:
     averaged: int = 1
 
 
+class Idle(NamedTuple):
+    """Somebody standing about. coefficients: (K, 3 J + 3) of uniform cubic B-splines of joints and hips, less the
+    rest primitive's, all stretches one after another. ends: (S,) where each stretch ends among them."""
+
+    coefficients: np.ndarray
+    ends: np.ndarray
+
+
 @dataclass(frozen=True, eq=False)
 class Library:
     """P primitives on a skeleton of J joints.
@@ -66,6 +74,7 @@ class Library:
     provenance: str = ""
     bends: dict[str, np.ndarray] = field(default_factory=dict)
     accelerations: dict[str, np.ndarray] = field(default_factory=dict)
+    idle: Idle | None = None
 
     def family(self, name: str) -> np.ndarray:
         """The numbers of the primitives of one family; "walk" has rest among them."""
@@ -90,6 +99,8 @@ class Library:
     def _write(self, file, about: dict) -> None:
         families: dict[str, Any] = {f"bend_{family}": bend for family, bend in self.bends.items()}
         families |= {f"acceleration_{family}": a for family, a in self.accelerations.items()}
+        if self.idle is not None:
+            families |= {"idle": self.idle.coefficients.astype(np.float16), "idle_ends": self.idle.ends}
         np.savez_compressed(file, velocities=self.velocities, reference=self.reference,
                             coefficients=self.coefficients.astype(np.float32), **families,
                             about=np.frombuffer(json.dumps(about).encode(), np.uint8))
@@ -107,7 +118,8 @@ class Library:
                 library = Library(skeleton, primitives, file["velocities"],
                                   file["coefficients"].astype(float), file["reference"], about["provenance"],
                                   *({k.removeprefix(start): file[k] for k in file.files if k.startswith(start)}
-                                    for start in ("bend_", "acceleration_")))
+                                    for start in ("bend_", "acceleration_")),
+                                  Idle(file["idle"].astype(np.float32), file["idle_ends"]) if "idle" in file.files else None)
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
@@ -131,6 +143,11 @@ class Library:
         for name, bend in self.bends.items():
             if bend.ndim != 2 or bend.shape[1] != 5 or not np.isfinite(bend).all():
                 raise LibraryError(f"{path}: bend_{name} must be finite (E, 5), not {bend.shape}")
+        if self.idle is not None:
+            rows, ends = self.idle
+            if rows.ndim != 2 or rows.shape[1] != 3 * joints + 3 or not np.isfinite(rows).all() or ends.ndim != 1 \
+                    or ends.dtype.kind != "i" or np.any(np.diff(ends, prepend=0) < 1) or ends[-1:].sum() != len(rows):
+                raise LibraryError(f"{path}: idle must be finite (K, {3 * joints + 3}) with stretches that end within it")
         if sum(p.family == "rest" for p in self.primitives) != 1:
             raise LibraryError(f"{path}: a library needs one primitive of rest")
 

@@ -15,6 +15,7 @@ from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotation
 from ..files import reason, tables
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
+from .idle import idle_of
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
 from .selection import Choice, neighbours, select
 from .velocity_correction import settle
@@ -158,7 +159,9 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
                            + "".join(f"\n{problem}" for problem in found.problems))
     stills = [one for one, source, _ in found.tracks if source.rest]
     library = assemble(found.cycles, found.actor, walk + run, stills, provenance)
-    library = replace(library, accelerations=natural_accelerations(found.tracks))
+    rest = library.coefficients[library.rest, 0, :LABELS]
+    library = replace(library, accelerations=natural_accelerations(found.tracks),
+                      idle=idle_of(stills, library.reference, rest))
     return settle(library, progress), found.problems + [f"no cycle for {label}" for label in missing]
 
 

@@ -29,6 +29,8 @@ class Settings(NamedTuple):
     ask. correct: fixed-point corrections of the query.
     footing: whether feet are held. clearance: how high feet swing at least. breath: how deeply a
     body at rest breathes: how far the chest turns [rad], while the hips sway 0.3 m for each rad.
+    idle: how much somebody who stands shifts weight, glances and moves, as recorded; 0 not at all.
+    gaze: how far a head turns to where its body goes or to what it is told to look at; 0 not at all.
     """
 
     agility: float = 1.0
@@ -42,6 +44,8 @@ class Settings(NamedTuple):
     footing: bool = True
     clearance: float = 0.018
     breath: float = 0.012
+    idle: float = 1.0
+    gaze: float = 1.0
 
 
 def plain(settings: Settings) -> Settings:
@@ -51,7 +55,7 @@ def plain(settings: Settings) -> Settings:
 
 class Legs(NamedTuple):
     """What the step must know of body and library: joint numbers (hip: (2,), left and right;
-    shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive."""
+    head: (2,), neck and head; shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive."""
 
     hip: np.ndarray
     chest: int
@@ -104,6 +108,10 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
         ("fade", "f4"),  # its half-life [s]
         ("breath", "f4"),  # phase of breathing
+        ("rested", "f4"), ("presence", "f4"),  # how long it has stood [s], how far its idling shows
+        ("moment", "f4"), ("luck", "u4"), ("alert", "i4"),  # where in the recorded idling it is, and what comes next
+        ("looks", "i4"), ("look", "f4", 3),  # whether there is a place to look at, and which
+        ("gaze", "f4", 2), ("gaze_rate", "f4", 2),  # how far the head turns and nods
     ], align=True)
 
 

@@ -11,6 +11,8 @@ from ..compiled import kernel
 from .control_space import SCALE
 from .foot_lock import at_rest, place_feet
 from .gait_change import change_kernel
+from .gaze import gaze_kernel
+from .idle import add_idle, idle_kernel
 from .foot_points import foot_points, on_floor
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
@@ -29,7 +31,7 @@ FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 
 
 @kernel(nogil=True)
-def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, root, local):
+def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
     root: (N, 3) [m]. local: (N, J, 3, 3). Both float32, in the world. Runs without the interpreter's
@@ -48,7 +50,10 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         _shape_command(m, wish[n], dt, settings, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
         advance_phase(m, wish[n], dt)
+        idle_kernel(m, idle, settings.idle, dt)
         blend_series(m, settings, table, fresh, legs, dt)
+        add_idle(m, idle, fresh)
+        gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
         on_floor(m, before)
         follow_command(m, dt)

@@ -50,6 +50,8 @@ SETTINGS = (
     Setting("locomotion.footing", 0, 1, whole=True),
     Setting("locomotion.clearance", 0.0, 0.08, "m"),
     Setting("locomotion.breath", 0.0, 0.05, "rad"),
+    Setting("locomotion.idle", 0.0, 1.5),
+    Setting("locomotion.gaze", 0.0, 1.0),
     Setting("steering.gain", 1.0, 10.0, "1/s"),
     Setting("steering.turn", 0.5, 4.0, "rad/s"),
     Setting("steering.fade", 0.02, 0.5, "m/s"),

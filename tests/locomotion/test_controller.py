@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body.ground_frame import compose
 from gambol.controllers.contract import Intent
-from gambol.controllers.locomotion import LibraryError, Locomotion
+from gambol.controllers.locomotion import LibraryError, Locomotion, Settings
 from playing import FPS, WISHES, hold, mean_velocity, play, whims
 
 law = settings(max_examples=15, deadline=None)
@@ -117,9 +117,9 @@ def test_no_wish_makes_a_broken_pose(locomotion, wishes, dt):
 
 
 @pytest.mark.parametrize("wish", ((0, 0, 17.0), (-15.0, 0, 0), (20.0, 0, 0)), ids=str)
-def test_too_much_is_forgotten_as_soon_as_enough(locomotion, wish):
+def test_too_much_is_forgotten_as_soon_as_enough(library, wish):
     """Stopping takes no longer after an absurd wish than after one that could be met."""
-    motion = play(locomotion, np.concatenate([hold(5, wish), hold(2.5, (0, 0, 0))]))
+    motion = play(Locomotion(library, Settings(idle=0.0)), np.concatenate([hold(5, wish), hold(2.5, (0, 0, 0))]))
     assert np.abs(np.diff(motion.root[-20:], axis=0)).max() * FPS < 0.05
 
 
@@ -225,8 +225,9 @@ def test_nobody_has_to_have_walked_backward(locomotion, tmp_path):
 
 @law
 @given(seeds, st.floats(-30, 30), st.floats(-30, 30), st.floats(-np.pi, np.pi))
-def test_motion_is_the_same_from_every_place_and_in_every_direction(locomotion, seed, x, z, heading):
-    """Turning and shifting the start turns and shifts the whole motion."""
+def test_motion_is_the_same_from_every_place_and_in_every_direction(library, seed, x, z, heading):
+    """Turning and shifting the start turns and shifts the whole motion, but for how somebody idles who stands there."""
+    locomotion = Locomotion(library, Settings(idle=0.0))
     frame = np.array([x, z, heading])
     wish = whims(np.random.default_rng(seed), 3.0, 1)
     here, there = play(locomotion, wish), play(locomotion, wish, frame[None])
@@ -235,7 +236,7 @@ def test_motion_is_the_same_from_every_place_and_in_every_direction(locomotion, 
     np.testing.assert_allclose(there.root[..., 1], here.root[..., 1], atol=1e-3)
     turn = np.array([[np.cos(heading), 0, np.sin(heading)], [0, 1, 0], [-np.sin(heading), 0, np.cos(heading)]])
     np.testing.assert_allclose(there.rotations[:, 0, 0], turn @ here.rotations[:, 0, 0], atol=5e-3)
-    np.testing.assert_allclose(there.rotations[:, 0, 1:], here.rotations[:, 0, 1:], atol=5e-3)
+    np.testing.assert_allclose(there.rotations[:, 0, 1:], here.rotations[:, 0, 1:], atol=2e-2)
     np.testing.assert_array_equal([s.contacts for s in there.states], [s.contacts for s in here.states])
 
 
@@ -244,5 +245,5 @@ def test_the_size_of_the_step_does_not_matter(locomotion):
     *ends, finest = [play(locomotion, hold(1.5, *WISHES).repeat(n, axis=0), dt=1 / (FPS * n)).states[-1].memory for n in (1, 4, 17)]
     for end in ends:
         assert np.abs(end["weights"] - finest["weights"]).max() < 0.01
-        assert np.abs((end["phase"] - finest["phase"] + 0.5) % 1 - 0.5).max() < 0.03
+        assert np.abs((end["phase"] - finest["phase"] + 0.5) % 1 - 0.5).max() < 0.05
         assert np.abs(end["ground"] - finest["ground"]).max() < 0.05

@@ -1,0 +1,46 @@
+"""Where a head turns: to a place it is told to look at, or else to where its body is about to go."""
+
+from __future__ import annotations
+
+import math
+
+from ..body import spring_kernel
+from ..compiled import kernel
+from .kernel import HIPS_AT, LANES
+
+AHEAD = 0.35
+"""A turning body looks to where it will face so much later [s] …"""
+ASIDE = 0.5
+"""… and one that goes sideways turns its head this share of the way there."""
+FARTHEST, NODS = 1.1, 0.5
+"""A head turns and nods this far [rad]; what lies behind it is not looked at."""
+HALFLIFE = 0.14
+"""Half-life of a head's turn [s]."""
+SLOW = 0.25
+"""Below this speed [m/s] it counts less and less where somebody goes."""
+EYES = 0.62
+"""Eyes are this much higher than the hips [m]."""
+
+
+@kernel
+def gaze_kernel(m, wish, amount, neck, row, dt):
+    """Turn neck and head (joints `neck` and `neck` + 1) of a series row by dt; wish: (3,) v_f, ω, v_l."""
+    turn, nod = 0.0, 0.0
+    if not m.looks:
+        speed = math.hypot(wish[0], wish[2])
+        turn = AHEAD * wish[1]
+        if wish[0] > -0.1:
+            turn += ASIDE * math.atan2(wish[2], max(wish[0], 1e-6)) * speed * speed / (speed * speed + SLOW * SLOW)
+    else:
+        x, z = m.look[0] - m.ground[0], m.look[2] - m.ground[1]
+        turn = (math.atan2(x, z) - m.ground[2] + math.pi) % (2.0 * math.pi) - math.pi
+        nod = -math.atan2(m.look[1] - row[HIPS_AT + 1] - EYES, max(math.hypot(x, z), 0.1))
+        behind = min(max((math.pi - abs(turn)) / (math.pi - 2.0), 0.0), 1.0)  # nobody looks through the back of his head
+        turn, nod = turn * behind, nod * behind
+    turn = amount * min(max(turn, -FARTHEST), FARTHEST)
+    nod = amount * min(max(nod, -NODS), NODS)
+    m.gaze[0], m.gaze_rate[0] = spring_kernel(m.gaze[0], m.gaze_rate[0], turn, HALFLIFE, dt)
+    m.gaze[1], m.gaze_rate[1] = spring_kernel(m.gaze[1], m.gaze_rate[1], nod, HALFLIFE, dt)
+    for j in range(neck, neck + 2):  # half by the neck, half by the head
+        row[j] += 0.5 * m.gaze[1]
+        row[LANES + j] += 0.5 * m.gaze[0]
