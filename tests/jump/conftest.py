@@ -7,14 +7,14 @@ import pytest
 
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump.controller import Jump
-from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.locomotion import Locomotion, Settings
 
 FPS = 60
 
 
 @pytest.fixture(scope="session")
 def locomotion():
-    return Locomotion.load()
+    return Locomotion.load(settings=Settings(idle=0.0))
 
 
 @pytest.fixture(scope="session")

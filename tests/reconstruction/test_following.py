@@ -14,7 +14,7 @@ from gambol.controllers.body.human import STATURE
 from gambol.controllers.body.rotations import exp
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump, Physique
-from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.reconstruction.control_points import SETS, parse
 from gambol.controllers.reconstruction.controller import LOST, Following, Reconstruction, towards
 from gambol.controllers.reconstruction.evaluation.metrics import position_error
@@ -84,7 +84,7 @@ def test_a_clip_that_is_in_the_database_is_followed(known, clip, points):
 
 
 def person(follower, height=STATURE):
-    walker = Locomotion.load()
+    walker = Locomotion.load(settings=Settings(idle=0.0))
     walker = walker if height == STATURE else Scaled(walker, height / STATURE)
     return Supervisor({"locomotion": walker, "jump": Jump(Physique(height=height)), "reconstruction": follower})
 
