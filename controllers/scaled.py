@@ -15,14 +15,14 @@ import numpy as np
 
 from .body import Pose, Skeleton
 from .contract import LONGEST, CharacterState, Controller, Intent, Status, seconds
+from .navigation import is_box
 
 
 @dataclass(frozen=True, eq=False)
 class Scaled(Controller):
-    """A walker in another size. What stands about and jumps is no matter of its own and not passed on.
+    """A walker in another size. Jumps are no matter of its own and not passed on.
 
-    factor: the legs' length over that of
-    the skeleton it is made for.
+    factor: the legs' length over that of the skeleton it is made for.
     """
 
     controller: Controller
@@ -88,13 +88,23 @@ class Scaled(Controller):
         return np.array([self.factor**0.5, self.factor**-0.5, self.factor**0.5])
 
     def _asked(self, intent: Intent) -> Intent:
-        return Intent(intent.velocity / self._speeds)
+        look = None if intent.look is None else np.asarray(intent.look, float) / self.factor
+        around = tuple(_Shrunk(thing, self.factor) for thing in intent.around if is_box(thing))
+        return Intent(intent.velocity / self._speeds, around=around, look=look)
 
     def _grown(self, state: CharacterState) -> CharacterState:
         return _resized(state, self.factor, state.velocity * self._speeds)
 
     def _shrunk(self, state: CharacterState) -> CharacterState:
         return _resized(state, 1.0 / self.factor, state.velocity / self._speeds)
+
+
+class _Shrunk:
+    """A box as a body sees it that is taken for another's size."""
+
+    def __init__(self, box: Any, factor: float):
+        self.centre, self.size = (np.asarray(one, float) / factor for one in (box.centre, box.size))
+        self.heading, self.slope = box.heading, getattr(box, "slope", 0.0)
 
 
 def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:

@@ -41,8 +41,9 @@ float past_solids(vec3 at, vec3 n) {
     float sees = creased(p.y);
     for (int k = 0; k < 3 * int(count.y); k += 3) {
         vec3 q = p - solid[k].xyz, half_size = solid[k + 1].xyz;
-        vec2 turn = solid[k + 2].xy;
+        vec3 turn = solid[k + 2].xyz;
         q = vec3(turn.x * q.x - turn.y * q.z, q.y, turn.y * q.x + turn.x * q.z);
+        q.y -= turn.z * q.z;
         if (solid[k].w > 0.5) q = vec3(length(q.xz), q.y, 0.0);
         vec3 d = max(abs(q) - half_size, 0.0);
         sees *= creased(length(d));

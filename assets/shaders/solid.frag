@@ -8,6 +8,7 @@ in vec3 v_local;
 flat in vec3 v_half;
 flat in vec3 v_turn;
 flat in vec3 v_tint;
+flat in float v_slope;
 out vec4 colour;
 const float BEVEL = 0.018;
 
@@ -21,6 +22,7 @@ vec3 bevelled() {
         local = vec3(local.x / r * n.x, n.y, local.z / r * n.x);
     } else {
         local -= clamp(local, low, core);
+        local.z -= v_slope * local.y;
     }
     return vec3(v_turn.x * local.x + v_turn.y * local.z, local.y, v_turn.x * local.z - v_turn.y * local.x);
 }

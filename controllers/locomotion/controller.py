@@ -22,6 +22,7 @@ from .kernel import DURATION_AT, body_tables, series_table, space_tables
 from .library import Library
 from .memory import Settings, legs_of, memory_dtype, plain, put
 from .step import step_kernel
+from .uneven_ground import FLAT, tops
 from .velocity_correction import space_of
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
@@ -121,16 +122,19 @@ class Locomotion(Controller):
         memory["looks"] = 0
         if intent.look is not None:
             self._look(memory, intent.look, shape, state.floor)
+        ground = tops(intent.around) if len(intent.around) else FLAT
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
         body, legs, walk, run, table, change, idle = self.tables
-        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, change, idle, root, local)
-        root[:, 1] += np.broadcast_to(state.floor, shape).reshape(-1)
+        floor = np.array(np.broadcast_to(state.floor, shape), float).reshape(-1)
+        here = floor.copy()
+        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, change, idle, ground, here, root, local)
+        root[:, 1] += floor
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)
         return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory,
-                              state.floor), pose
+                              here.reshape(shape) if len(ground) else state.floor), pose
 
     @staticmethod
     def _look(memory: np.ndarray, look: ArrayLike, shape: tuple[int, ...], floor: np.ndarray | float) -> None:

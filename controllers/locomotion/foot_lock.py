@@ -23,6 +23,7 @@ from .foot_points import on_floor, shown_kernel
 from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
+from .uneven_ground import follow_ground, lie_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -53,24 +54,29 @@ ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 YIELDING = 0.25
 """A foot gives way to the other fully once this share of its swing is over."""
+OVER = 0.25
+"""A foot swings higher by this share of how much higher or deeper the other stands."""
 CLOSE = 0.06
 """A body comes to rest once its feet are this near to where they belong [m]."""
 
 
 @kernel
-def place_feet(m, body, legs, clearance, before, positions, orientations, local, dt, work):
+def place_feet(m, body, legs, clearance, tops, floor, before, positions, orientations, local, dt, work):
     """Hold standing feet, land swinging ones, bend the legs after them.
 
-    before: (4, 2) where the blend's contact points were one step ago, in the world.
+    tops, floor: of the ground (`uneven_ground`). before: (4, 2) where the blend's contact points were one step ago, in
+    the world.
     """
     ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
     on_floor(m, now)
+    if tops.shape[0] > 0:
+        follow_ground(m, tops, floor, SWING[m.family], dt)
     for k in range(4):
         _take_hold(m, k, legs.height, dt)
     for foot in range(2):
         _offset(m, foot, before, now, dt)
         _step_aside(m, body, foot, legs.height, dt)
-        lift[foot] = _swing_lift(m, foot, clearance, dt)
+        lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = 0.0
     for foot in range(2):
         hip = legs.hip[foot]
@@ -81,16 +87,17 @@ def place_feet(m, body, legs, clearance, before, positions, orientations, local,
         if flat < reach * reach:
             need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
         else:
-            need = PELVIS_DROP
-    need = min(need, PELVIS_DROP)
+            need = 1.0
+    most = PELVIS_DROP + 0.5 * abs(m.base[1] - m.base[0])
+    need = min(need, most)
     drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
-    m.pelvis = min(max(drop, 0.0), PELVIS_DROP)
+    m.pelvis = min(max(drop, 0.0), most)
     for foot in range(2):
         hip = legs.hip[foot]
         for j in range(hip, hip + 3):
             positions[j, 1] -= m.pelvis
         leg_kernel(positions, orientations, hip, ankle[foot], work)
-        toe_kernel(body, hip + 2, legs.height + lift[foot], positions, orientations, local, work)
+        toe_kernel(body, hip + 2, legs.height + lie_kernel(m, 2 * foot + 1) + lift[foot], positions, orientations, local, work)
         localise_kernel(orientations, 0, hip, local)
         localise_kernel(orientations, hip, hip + 1, local)
         localise_kernel(orientations, hip + 1, hip + 2, local)
@@ -108,12 +115,12 @@ def _take_hold(m, k, height, dt):
             wanted = 0.0
             if 0.3 < _swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
-        if wanted > m.grip[k] and m.points[k, 1] + m.raised[k] > height + GATE:
+        if wanted > m.grip[k] and m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE:
             wanted = m.grip[k]
     step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
-    below = m.grip[k] * (height - m.points[k, 1])
+    below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
     m.raised[k], m.raised_rate[k] = spring_kernel(m.raised[k], m.raised_rate[k], below, LAND_HALFLIFE, dt)
 
 
@@ -127,8 +134,9 @@ def _offset(m, foot, before, now, dt):
         left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) * m.row[DURATION_AT] / math.sqrt(m.stretch)
         u = min(dt / min(max(left, SOONEST), LATEST), 1.0)
         for i in range(3):
-            x, v = offset[i], rate[i] * dt / u
-            offset[i] = x * (1.0 - u * u * (3.0 - 2.0 * u)) + v * u * (1.0 - u) ** 2
+            goal = m.land[foot, i] if i < 2 else 0.0
+            x, v = offset[i] - goal, rate[i] * dt / u
+            offset[i] = goal + x * (1.0 - u * u * (3.0 - 2.0 * u)) + v * u * (1.0 - u) ** 2
             rate[i] = (6.0 * x * u * (u - 1.0) + v * (1.0 - u) * (1.0 - 3.0 * u)) * u / dt
         return
     heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
@@ -175,7 +183,7 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
     for k, out in ((heel, h), (ball, b)):
         shown_kernel(m, k, out)
         out[2] = out[1]
-        out[1] = max(m.points[k, 1] + m.raised[k], height + (1.0 - m.grip[k]) * lift)
+        out[1] = max(m.points[k, 1] + m.raised[k], height + lie_kernel(m, k) + (1.0 - m.grip[k]) * lift)
     x, y, z = b[0] - h[0], b[1] - h[1], b[2] - h[2]
     u = m.points[ball, 0] - m.points[heel, 0]
     v = m.points[ball, 1] - m.points[heel, 1]
@@ -203,7 +211,7 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
     for k in range(3):
         under_heel += orientations[a, 1, k] * body.heel[k]
         under_ball += orientations[a, 1, k] * body.offsets[a + 1, k]
-    ankle[1] += max(0.0, height - min(under_heel, under_ball))
+    ankle[1] += max(0.0, height - min(under_heel - lie_kernel(m, heel), under_ball - lie_kernel(m, ball)))
 
 
 @kernel

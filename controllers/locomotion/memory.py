@@ -98,6 +98,9 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("standing", "i4", 4), ("torn", "i4", 2),  # whether each point stands; feet let go until well into their swing
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
+        ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
+        ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where it came down in the ground frame; how far aside it will
+        ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left
@@ -119,7 +122,7 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     """Carry characters (...), in place, to other ground frames (..., 3), with all that they know in the world."""
     there, here = ground[..., None, :], memory["ground"][..., None, :]
     turn = (there - here) * [0.0, 0.0, 1.0]
-    for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
+    for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("land", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
     memory["ground"] = ground
 

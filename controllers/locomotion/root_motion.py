@@ -69,7 +69,7 @@ def to_world_kernel(m, row, root, local):
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     x, z = row[HIPS_AT], row[HIPS_AT + 2]
     root[0] = m.ground[0] + c * x + s * z
-    root[1] = row[HIPS_AT + 1] - m.pelvis
+    root[1] = row[HIPS_AT + 1] - m.pelvis + m.level
     root[2] = m.ground[1] - s * x + c * z
     for k in range(3):
         x, z = local[0, 0, k], local[0, 2, k]

@@ -18,6 +18,7 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
 from .root_motion import follow_command, to_world_kernel
+from .uneven_ground import stand_on
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
@@ -31,9 +32,11 @@ FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 
 
 @kernel(nogil=True)
-def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, root, local):
+def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, tops, floors,
+                root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
+    tops: the ground (`uneven_ground`), of which none makes it flat. floors: (N,) [m] how high each stands, rewritten.
     root: (N, 3) [m]. local: (N, J, 3, 3). Both float32, in the world. Runs without the interpreter's
     lock, so threads may step parts of a crowd side by side.
     """
@@ -60,7 +63,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         foot_points(body, legs, positions, orientations, m.points)
         _stride(m, positions)
         if settings.footing:
-            place_feet(m, body, legs, settings.clearance, before, positions, orientations, local[n], dt, work)
+            place_feet(m, body, legs, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
                 m.grip[k] = 1.0 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0.0
@@ -68,6 +71,8 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         if at_rest(m, legs):
             m.settled = 1
         to_world_kernel(m, fresh, root[n], local[n])
+        if tops.shape[0] > 0:
+            floors[n] += stand_on(m)
 
 
 @kernel

@@ -12,10 +12,12 @@ from typing import Any, Protocol, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike
 
-STEP = 0.12
+STEP = 0.21
 """No higher step is taken without a jump [m]."""
 HEAD = 1.9
 """What hangs higher than this over the floor is walked under [m]."""
+KNEE = 0.05
+"""What stands lower than a step and this beside a walker is in nobody's way [m]."""
 SHOULDER = 0.30
 """A walker keeps so far from walls [m] ..."""
 LOOK = 0.6
@@ -27,7 +29,7 @@ DEVIATIONS = np.radians([0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0, 88.0, -88.0
 
 
 class Box(Protocol):
-    """A solid box: centre [m], full size [m], heading [rad]."""
+    """A solid box: centre [m], full size [m], heading [rad]; it may rise along its own z by its `slope`, a ramp."""
 
     @property
     def centre(self) -> Sequence[float] | np.ndarray: ...
@@ -68,6 +70,7 @@ def gap(points: np.ndarray, thing: Any) -> np.ndarray:
     elif is_box(thing):
         c, s = np.cos(thing.heading), np.sin(thing.heading)
         local = (points - np.asarray(thing.centre)) @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+        local[:, 1] -= getattr(thing, "slope", 0.0) * local[:, 2]
         outside = np.abs(local) - 0.5 * np.asarray(thing.size)
     else:  # a goal stops nobody
         return np.full(len(points), np.inf)
@@ -81,8 +84,9 @@ def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -
         if is_box(thing):
             c, s = np.cos(thing.heading), np.sin(thing.heading)
             dx, dz = x - thing.centre[0], z - thing.centre[2]
-            top = thing.centre[1] + 0.5 * thing.size[1]
-            if (abs(c * dx - s * dz) <= 0.5 * thing.size[0] and abs(s * dx + c * dz) <= 0.5 * thing.size[2]
+            along = s * dx + c * dz
+            top = thing.centre[1] + 0.5 * thing.size[1] + getattr(thing, "slope", 0.0) * along
+            if (abs(c * dx - s * dz) <= 0.5 * thing.size[0] and abs(along) <= 0.5 * thing.size[2]
                     and height < top <= below):
                 height = top
     return height
@@ -104,15 +108,25 @@ def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[
     for turn in DEVIATIONS:
         c, s = np.cos(turn), np.sin(turn)
         tried = c * np.array([c * velocity[0] + s * velocity[1], -s * velocity[0] + c * velocity[1]])
-        rooms = (_room(place + tried * later, floor, around) for later in ahead)
-        if all(left > 0.0 for left in rooms) if room > 0.0 else _room(place + tried * ahead[0], floor, around) > room:
+        if _free(place, tried, ahead, floor, around) if room > 0.0 else _room(place + tried * ahead[0], floor, around) > room:
             return tried
     return np.zeros(2)
 
 
+def _free(place: np.ndarray, velocity: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
+    """Whether there is room wherever one comes in the times ahead [s], going up and down steps and ramps as they come."""
+    for later in ahead:
+        there = place + velocity * later
+        if _room(there, floor, around) <= 0.0:
+            return False
+        floor = floor_at(there[0], there[1], around, floor + STEP)
+    return True
+
+
 def _room(place: np.ndarray, floor: float, around: Sequence[Any]) -> float:
     """How much room is left there [m]: negative where a wall is too near, or the floor does not go on."""
-    body = np.array([[place[0], floor + height, place[1]] for height in (STEP + SHOULDER, 1.0, HEAD - SHOULDER)])
-    left = min(gap(body, thing).min() for thing in around) - SHOULDER
-    over_an_edge = abs(floor_at(place[0], place[1], around, floor + STEP) - floor) > STEP
-    return min(left, -SHOULDER) if over_an_edge else left
+    here = floor_at(place[0], place[1], around, floor + STEP)
+    if abs(here - floor) > STEP:
+        return -SHOULDER
+    body = np.array([[place[0], here + height, place[1]] for height in (STEP + SHOULDER + KNEE, 1.0, HEAD - SHOULDER)])
+    return min(gap(body, thing).min() for thing in around) - SHOULDER

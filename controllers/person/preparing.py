@@ -76,7 +76,7 @@ def _note(part: str, walker: Locomotion) -> None:
 def feet(walker: Locomotion) -> None:
     """Compile what places the feet: half of a step."""
     memory, body, legs, places, turns, local, dt = _some(walker)
-    _compile(step.place_feet, memory, body, legs, walker.settings.clearance, np.zeros((4, 2)), places, turns, local, dt,
+    _compile(step.place_feet, memory, body, legs, walker.settings.clearance, np.zeros((0, 8)), 0.0, np.zeros((4, 2)), places, turns, local, dt,
              np.zeros((5, 3, 3)))
 
 

@@ -52,7 +52,8 @@ def _solids(props: tuple[Prop, ...], margin: float) -> _Solids | None:
         return None
     heading = np.array([b.heading for b in boxes])
     cosine, sine, zero = np.cos(heading), np.sin(heading), np.zeros(len(boxes))
-    to_local = np.stack([cosine, zero, -sine, zero, zero + 1.0, zero, sine, zero, cosine], -1).reshape(-1, 3, 3)
+    slope = np.array([b.slope for b in boxes])
+    to_local = np.stack([cosine, zero, -sine, -slope * sine, zero + 1.0, -slope * cosine, sine, zero, cosine], -1).reshape(-1, 3, 3)
     foot = np.array([p.foot for p in pillars], float).reshape(-1, 3)
     return _Solids(np.array([b.centre for b in boxes], float).reshape(-1, 3),
                    0.5 * np.array([b.size for b in boxes], float).reshape(-1, 3) + margin, to_local,

@@ -60,7 +60,7 @@ def limbs(figures: Sequence[Figure]) -> np.ndarray:
 
 
 def solid_rows(solids: Sequence[Box | Pillar]) -> np.ndarray:
-    """Rows (N, 12): centre and 1 if round, half its size and 0, cosine and sine of its heading, two zeros."""
+    """Rows (N, 12): centre and 1 if round, half its size and 0, cosine and sine of its heading, its slope, zero."""
     rows = np.zeros((len(solids), 12))
     for row, solid in zip(rows, solids):
         if isinstance(solid, Pillar):
@@ -68,7 +68,7 @@ def solid_rows(solids: Sequence[Box | Pillar]) -> np.ndarray:
             row[4:7], row[8] = (solid.radius, 0.5 * solid.height, solid.radius), 1.0
         else:
             row[:3], row[4:7] = solid.centre, 0.5 * np.array(solid.size)
-            row[8:10] = np.cos(solid.heading), np.sin(solid.heading)
+            row[8:11] = np.cos(solid.heading), np.sin(solid.heading), solid.slope
     return rows
 
 

@@ -72,7 +72,7 @@ class Scenario(Table):
 
     def stage(self) -> tuple[Prop, ...]:
         """Everything that stands there, in SI units."""
-        return STAGES.get(self.stage_name or "", ()) + tuple(prop.prop() for prop in self.props)
+        return STAGES.get(self.stage_name or "", ()) + tuple(thing for prop in self.props for thing in prop.props())
 
     @property
     def followers(self) -> tuple[tuple[ActorTable, FollowsTable], ...]:

@@ -109,12 +109,16 @@ class Figure:
 
 @dataclass(frozen=True)
 class Box:
-    """A solid box on the stage (walls, platforms): centre [m], full size [m], heading [rad]."""
+    """A solid box on the stage (walls, platforms, steps): centre [m], full size [m], heading [rad].
+
+    slope: how it rises along its own z, metres a metre: a ramp is a box whose top and bottom are pushed aslant.
+    """
 
     centre: tuple[float, float, float]
     size: tuple[float, float, float]
     heading: float = 0.0
     tint: tuple[float, float, float] = (0.36, 0.37, 0.40)
+    slope: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,175 @@
+"""Ground that is not flat: the tops of boxes and ramps that feet can step on, and how high it lies under a foot.
+
+Heights are told over the character's own floor, on which it stood last; a top that is farther above or below than a
+step is no ground for a foot.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..body import spring_kernel
+from ..compiled import kernel
+from ..navigation import is_box
+from .foot_points import shown_kernel
+from .kernel import DURATION_AT
+
+STEP = 0.24
+"""A foot comes down no more than this higher or deeper than the other stands [m] …"""
+SEEN = 0.5
+"""… and ground that is farther than this from the body's level is none [m]."""
+SHIFTS = np.array([0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15, -0.2, -0.25, -0.3, -0.35, -0.4, -0.45, -0.5])
+"""How much farther or nearer a foot comes down where it would not stand well, in the order in which it is tried [m]."""
+FLAT = np.zeros((0, 8))
+"""No tops: the ground is the character's own floor."""
+
+
+def tops(around: Sequence[Any]) -> np.ndarray:
+    """The tops (M, 8) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
+    along [m], height [m], slope along."""
+    rows = [(b.centre[0], b.centre[2], math.cos(b.heading), math.sin(b.heading), 0.5 * b.size[0], 0.5 * b.size[2],
+             b.centre[1] + 0.5 * b.size[1], getattr(b, "slope", 0.0)) for b in around if is_box(b)]
+    return np.array(rows, float) if rows else FLAT
+
+
+@kernel
+def ground_kernel(tops, x, z, floor, level, out):
+    """Write into `out` (3,) how high the ground lies at x, z over `floor` [m], and how it rises along x and z.
+
+    floor: absolute. level: of the body, over the floor. Whether there is ground near it; what is not counts as level.
+    """
+    best, found = -1e9, False
+    out[0], out[1], out[2] = level, 0.0, 0.0
+    if abs(-floor - level) <= SEEN:  # the world's own floor
+        best, found, out[0] = -floor, True, -floor
+    for k in range(tops.shape[0]):
+        dx, dz = x - tops[k, 0], z - tops[k, 1]
+        c, s = tops[k, 2], tops[k, 3]
+        across, along = c * dx - s * dz, s * dx + c * dz
+        if abs(across) > tops[k, 4] or abs(along) > tops[k, 5]:
+            continue
+        high = tops[k, 6] + tops[k, 7] * along - floor
+        if abs(high - level) <= SEEN and (not found or high > best):
+            best, found = high, True
+            out[0], out[1], out[2] = high, tops[k, 7] * s, tops[k, 7] * c
+    return found
+
+
+RISES, SINKS = 0.6, 0.4
+"""A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
+TILT_HALFLIFE = 0.05
+"""A foot takes on the slope that it will come down on with this half-life [s]."""
+LEVEL_HALFLIFE = 0.12
+"""A body's level follows its feet with this half-life [s]."""
+LOW = 0.06
+"""A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
+FOOT = 0.14
+"""From heel to ball [m]: a foot comes down on the higher of what lies under them."""
+SAME = 0.02
+"""Grounds nearer to each other than this are the same one [m]."""
+
+
+@kernel
+def follow_ground(m, tops, floor, swing, dt):
+    """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
+    body's level, which follows both. swing: the share of the cycle for which a foot swings."""
+    under, place = np.empty(3), np.empty(2)
+    for foot in range(2):
+        ball = 2 * foot + 1
+        if max(m.grip[ball - 1], m.grip[ball]) > 0.0:
+            if m.held[foot] == 0:
+                shown_kernel(m, ball, place)
+                m.struck[foot, 0], m.struck[foot, 1] = place[0], place[1]
+                _under(m, tops, floor, place, 0.0, 0.0, under)
+                m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
+                m.held[foot] = 1
+            m.left[foot] = m.base[foot]
+            continue
+        m.held[foot] = 0
+        progress = min(((m.phase - 0.5 * foot) % 1.0) / swing, 1.0)
+        place[0], place[1] = m.struck[foot, 0], m.struck[foot, 1]
+        _come_down(m, tops, floor, foot, place, (1.0 - progress) * swing * m.row[DURATION_AT], under)
+        share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
+        share = min(max(share, 0.0), 1.0)
+        m.base[foot] = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        for i in range(2):
+            m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
+    low, high = min(m.base[0], m.base[1]), max(m.base[0], m.base[1])
+    before = m.level
+    m.level, m.level_rate = spring_kernel(m.level, m.level_rate, min(0.5 * (low + high), low + LOW + 0.25 * (high - low)),
+                                          LEVEL_HALFLIFE, dt)
+    for k in range(4):  # what is shown stays where it is
+        m.raised[k] -= m.level - before
+
+
+@kernel
+def _come_down(m, tops, floor, foot, place, later, out):
+    """Where a foot comes down: as far beside where it would as it must to stand whole and no step too high."""
+    speed = math.hypot(m.velocity[0], m.velocity[2])
+    m.land[foot, 0] = m.land[foot, 1] = 0.0
+    other = m.base[1 - foot]
+    for shift in SHIFTS:
+        whole = _under(m, tops, floor, place, later, shift if speed > 0.1 else 0.0, out)
+        if whole and abs(out[0] - other) <= STEP or speed <= 0.1:
+            c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+            if speed > 0.1:
+                m.land[foot, 0] = shift * (c * m.velocity[2] + s * m.velocity[0]) / speed
+                m.land[foot, 1] = shift * (-s * m.velocity[2] + c * m.velocity[0]) / speed
+            return
+    _under(m, tops, floor, place, later, 0.0, out)
+    if abs(out[0] - other) > STEP:
+        out[0], out[1], out[2] = other, 0.0, 0.0
+
+
+@kernel
+def _under(m, tops, floor, place, later, shift, out):
+    """The ground (3,) under a foot whose ball comes down at `place` (2,) of the ground frame in `later` seconds, `shift`
+    farther along its way; whether heel and ball have the same under them."""
+    speed = math.hypot(m.velocity[0], m.velocity[2])
+    turn = m.velocity[1] * later
+    c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
+    x = m.ground[0] + (c * m.velocity[2] + s * m.velocity[0]) * later
+    z = m.ground[1] + (-s * m.velocity[2] + c * m.velocity[0]) * later
+    c, s = math.cos(m.ground[2] + turn), math.sin(m.ground[2] + turn)
+    x, z = x + c * place[0] + s * place[1], z - s * place[0] + c * place[1]
+    if shift != 0.0:
+        x += shift * (c * m.velocity[2] + s * m.velocity[0]) / speed
+        z += shift * (-s * m.velocity[2] + c * m.velocity[0]) / speed
+    heel = np.empty(3)
+    found = ground_kernel(tops, x, z, floor, m.level, out)
+    found = ground_kernel(tops, x - FOOT * s, z - FOOT * c, floor, m.level, heel) and found
+    there = heel[0] + FOOT * (s * heel[1] + c * heel[2])
+    whole = found and abs(there - out[0]) < SAME
+    if there > out[0]:
+        out[0], out[1], out[2] = there, heel[1], heel[2]
+    return whole
+
+
+@kernel
+def lie_kernel(m, k):
+    """How high the ground under contact point k lies over the body's level [m]."""
+    foot = k // 2
+    lie = m.base[foot] - m.level
+    if k == 2 * foot and (m.tilt[foot, 0] != 0.0 or m.tilt[foot, 1] != 0.0):
+        x, z = m.points[k, 0] - m.points[k + 1, 0], m.points[k, 2] - m.points[k + 1, 2]
+        c, s = math.cos(m.ground[2] + m.offset[foot, 2]), math.sin(m.ground[2] + m.offset[foot, 2])
+        lie += m.tilt[foot, 0] * (c * x + s * z) + m.tilt[foot, 1] * (c * z - s * x)
+    return lie
+
+
+@kernel
+def stand_on(m):
+    """Tell heights over the ground of the foot that stands firmly, from now on, and return how much higher that is [m]."""
+    rise = 0.0
+    for foot in range(2):
+        if max(m.grip[2 * foot], m.grip[2 * foot + 1]) >= 1.0:
+            rise = m.base[foot]
+    m.level -= rise
+    for foot in range(2):
+        m.base[foot] -= rise
+        m.left[foot] -= rise
+    return rise
