@@ -76,7 +76,7 @@ FAULTS = [
     ('start = [2, 0, 90]', 'start = [2, 0, 90]\nenters = 1.5\nleaves = 1', "actors[1]: `enters` comes before `leaves`; got 1.5 and 1"),
     ('start = [2, 0, 90]', 'start = [2, 0, 90]\nenters = -1', "actors[1].enters: input should be greater than or equal to 0, got -1"),
     ("duration = 2", 'duration = 2\nposter = 2', "poster is a moment of the film, before its end at 2 s; got 2"),
-    ("duration = 2", 'duration = 2\nprops = [{ kind = "tree" }]', "props[0]: kind should be one of box, pillar, goal, got 'tree'"),
+    ("duration = 2", 'duration = 2\nprops = [{ kind = "tree" }]', "props[0]: kind should be one of box, ramp, stairs, pillar, goal, got 'tree'"),
     ("duration = 2", 'duration = 2\nprops = [{ kind = "pillar", foot = [0, 0, 0], radius = 0 }]', "props[0].radius: input should be greater than 0, got 0"),
     ("duration = 2", 'duration = 2\nprops = [{ kind = "pillar", foot = [0, 0, 0], hight = 1 }]', "props[0].hight: there is no such field; did you mean height?"),
     ("duration = 2", 'duration = 2\nprops = [{ centre = [0, 1, 0] }]', "props[0].size: is missing, and needed"),
