@@ -54,7 +54,7 @@ ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 YIELDING = 0.25
 """A foot gives way to the other fully once this share of its swing is over."""
-OVER = 0.25
+OVER = 0.3
 """A foot swings higher by this share of how much higher or deeper the other stands."""
 CLOSE = 0.06
 """A body comes to rest once its feet are this near to where they belong [m]."""

@@ -99,7 +99,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
-        ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where it came down in the ground frame; how far aside it will
+        ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where the blend came down in the ground frame; how far aside it will
         ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world

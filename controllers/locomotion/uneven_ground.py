@@ -59,7 +59,7 @@ def ground_kernel(tops, x, z, floor, level, out):
     return found
 
 
-RISES, SINKS = 0.6, 0.4
+RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
@@ -67,8 +67,8 @@ LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
-FOOT = 0.14
-"""From heel to ball [m]: a foot comes down on the higher of what lies under them."""
+FOOT, TOE = 0.14, 0.08
+"""From heel to ball and on to the toes' end [m]: a foot comes down on the higher of what lies under heel and ball."""
 SAME = 0.02
 """Grounds nearer to each other than this are the same one [m]."""
 
@@ -80,17 +80,22 @@ def follow_ground(m, tops, floor, swing, dt):
     under, place = np.empty(3), np.empty(2)
     for foot in range(2):
         ball = 2 * foot + 1
-        if max(m.grip[ball - 1], m.grip[ball]) > 0.0:
-            if m.held[foot] == 0:
-                shown_kernel(m, ball, place)
-                m.struck[foot, 0], m.struck[foot, 1] = place[0], place[1]
-                _under(m, tops, floor, place, 0.0, 0.0, under)
-                m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
-                m.held[foot] = 1
+        firm = max(m.grip[ball - 1], m.grip[ball]) >= 1.0
+        if firm and m.held[foot] == 1:
             m.left[foot] = m.base[foot]
             continue
-        m.held[foot] = 0
         progress = min(((m.phase - 0.5 * foot) % 1.0) / swing, 1.0)
+        if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
+            shown_kernel(m, ball, place)
+            if m.held[foot] == 0 or firm:
+                _under(m, tops, floor, place, 0.0, 0.0, under)
+                m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
+            m.left[foot] = m.base[foot]
+            if firm:
+                m.struck[foot, 0], m.struck[foot, 1] = m.points[ball, 0], m.points[ball, 2]
+                m.held[foot] = 1
+            continue
+        m.held[foot] = 0
         place[0], place[1] = m.struck[foot, 0], m.struck[foot, 1]
         _come_down(m, tops, floor, foot, place, (1.0 - progress) * swing * m.row[DURATION_AT], under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
@@ -139,11 +144,13 @@ def _under(m, tops, floor, place, later, shift, out):
     if shift != 0.0:
         x += shift * (c * m.velocity[2] + s * m.velocity[0]) / speed
         z += shift * (-s * m.velocity[2] + c * m.velocity[0]) / speed
-    heel = np.empty(3)
+    heel, toe = np.empty(3), np.empty(3)
     found = ground_kernel(tops, x, z, floor, m.level, out)
     found = ground_kernel(tops, x - FOOT * s, z - FOOT * c, floor, m.level, heel) and found
     there = heel[0] + FOOT * (s * heel[1] + c * heel[2])
     whole = found and abs(there - out[0]) < SAME
+    if ground_kernel(tops, x + TOE * s, z + TOE * c, floor, m.level, toe):  # toes may hang over an edge, but not be in a riser
+        whole = whole and toe[0] < out[0] + TOE * (s * out[1] + c * out[2]) + SAME
     if there > out[0]:
         out[0], out[1], out[2] = there, heel[1], heel[2]
     return whole

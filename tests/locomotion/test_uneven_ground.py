@@ -1,0 +1,117 @@
+"""Kerbs, stairs and ramps: the ground under a foot, and whoever walks up, along and down."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gambol.controllers.body import contact_points, forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion.uneven_ground import SEEN, ground_kernel, tops
+from gambol.controllers.navigation import floor_at
+from gambol.controllers.scaled import Scaled
+
+FPS = 60
+
+
+def box(centre, size, heading=0.0, slope=0.0):
+    return SimpleNamespace(centre=centre, size=size, heading=heading, slope=slope)
+
+
+def flight(steps, rise, tread, start=2.0, width=2.4, landing=2.0):
+    """Stairs ahead of one who looks along z, a landing, and down again."""
+    end = start + steps * tread
+    up = [box((0, 0.5 * h, 0.5 * (a + end)), (width, h, end - a)) for k in range(steps)
+          for h, a in [((k + 1) * rise, start + k * tread)]]
+    top = [box((0, 0.5 * steps * rise, end + 0.5 * landing), (width, steps * rise, landing))]
+    down = [box((0, 0.5 * h, end + landing + 0.5 * b), (width, h, b)) for k in range(steps)
+            for h, b in [((steps - k) * rise, (k + 1) * tread)]]
+    return tuple(up + top + down)
+
+
+def ramp(degrees, length, start=2.0, landing=2.0, width=2.4):
+    """A ramp, a landing, and down again."""
+    slope = math.tan(math.radians(degrees))
+    high, far = slope * length, start + length + landing
+    return (box((0, 0.5 * high - 0.5, start + 0.5 * length), (width, 1.0, length), slope=slope),
+            box((0, 0.5 * high, start + length + 0.5 * landing), (width, high, landing)),
+            box((0, 0.5 * high - 0.5, far + 0.5 * length), (width, 1.0, length), slope=-slope))
+
+
+WAYS = {"a kerb of 15 cm": ((box((0, 0.075, 4.0), (3, 0.15, 2)),), 1.2), "stairs of 12 cm": (flight(5, 0.12, 0.32), 0.9),
+        "stairs of 17 cm": (flight(5, 0.17, 0.29), 0.7), "stairs of 20 cm": (flight(4, 0.20, 0.28), 0.6),
+        "a ramp of 15 degrees": (ramp(15, 3.0), 1.1), "a ramp, running": (ramp(8, 5.0), 2.8)}
+
+
+def walked(locomotion, around, speed, seconds):
+    """States, and how high heels and balls (T, 4) are over the ground under them [m]."""
+    state, states = locomotion.start(), []
+    for _ in range(round(seconds * FPS)):
+        state, _ = locomotion.step(state, Intent(np.array([speed, 0.0, 0.0]), around=around), 1 / FPS)
+        states.append(state)
+    points = contact_points(locomotion.skeleton, *forward_kinematics(
+        locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float)))
+    ground = np.array([[floor_at(x, z, around) for x, _, z in frame] for frame in points])
+    return states, points[..., 1] - ground - 0.02
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_it_goes_up_along_and_down(locomotion, name):
+    """Feet that stand are on the ground, or a heel or toes over an edge; the body is as high over its feet as ever."""
+    around, speed = WAYS[name]
+    high = max(b.centre[1] + 0.5 * b.size[1] for b in around if b.slope == 0.0)
+    states, clear = walked(locomotion, around, speed, {2.8: 6.5, 0.6: 14.0, 0.7: 12.0}.get(speed, 10.0))
+    held = np.array([s.memory["grip"] for s in states]) >= 1.0
+    floors = np.array([float(s.floor) for s in states])
+    assert floors.max() == pytest.approx(high, abs=0.02) and floors[-1] == pytest.approx(0.0, abs=1e-9)
+    assert np.mean(clear[held] < -0.02) < 0.02 and np.mean(clear[held] < 0.02) > 0.7
+    assert np.mean(clear < -0.05) < 0.02, "swinging feet pass over edges"
+    pelvis = np.array([s.pose.root[1] for s in states]) - floors
+    assert pelvis.min() > 0.70 and pelvis.max() < 1.25
+    assert np.abs(np.diff([s.pose.root[1] for s in states])).max() < 0.03
+
+
+def test_feet_on_a_slope_lie_along_it(locomotion):
+    states, clear = walked(locomotion, ramp(12, 4.0), 1.0, 5.0)
+    on = np.array([2.6 < s.ground[1] < 5.4 for s in states])
+    both = (np.array([s.memory["grip"] for s in states]) >= 1.0)[:, 2:].all(-1) & on
+    assert both.sum() > 10 and np.median(np.abs(clear[both][:, 2:])) < 0.004 and clear[both][:, 2:].min() > -0.01
+
+
+def test_far_things_change_nothing(locomotion):
+    """Who walks on the floor walks as where nothing stands about."""
+    ends = [walked(locomotion, around, 1.1, 3.0)[0][-1] for around in ((), (box((50.0, 0.5, 50.0), (1, 1, 1)),))]
+    np.testing.assert_allclose(ends[0].pose.root, ends[1].pose.root, atol=1e-5)
+    np.testing.assert_allclose(ends[0].pose.rotations, ends[1].pose.rotations, atol=1e-4)
+
+
+def test_what_is_too_high_for_a_step_is_no_ground(locomotion):
+    """Feet stay below a table's edge that steering would never lead one into."""
+    states, _ = walked(locomotion, (box((0, 0.35, 3.0), (3, 0.7, 2)),), 0.8, 3.0)
+    assert max(float(s.floor) for s in states) == 0.0
+
+
+def test_a_child_climbs_in_its_own_size(locomotion):
+    child = Scaled(locomotion, 0.7)
+    state, around = child.start(), (box((0, 0.06, 3.0), (3, 0.12, 3)),)
+    for _ in range(150):
+        state, _ = child.step(state, Intent(np.array([0.9, 0.0, 0.0]), around=around), 1 / FPS)
+    assert float(state.floor) == pytest.approx(0.12, abs=1e-6) and 1.6 < state.ground[1] < 4.2
+
+
+coordinate = st.floats(-3.0, 3.0, allow_subnormal=False)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(coordinate, coordinate, st.floats(0.0, 0.4), st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(-3.0, 3.0),
+                          st.sampled_from((0.0, 0.0, 0.1, -0.2))), max_size=5), coordinate, coordinate)
+def test_ground_is_what_navigation_says_it_is(boxes, x, z):
+    """The highest top within reach, as `floor_at` finds it."""
+    around = [box((a, 0.5 * h, b), (w, h, d), turn, slope) for a, b, h, w, d, turn, slope in boxes]
+    out = np.empty(3)
+    found = ground_kernel(tops(around), x, z, 0.0, 0.0, out)
+    expected = floor_at(x, z, around, SEEN)
+    assert found and out[0] == pytest.approx(max(expected, 0.0), abs=1e-9)
