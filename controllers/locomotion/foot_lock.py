@@ -27,9 +27,10 @@ from .uneven_ground import follow_ground, lie_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
-TAKING, LEAVING = (0.05, 0.35), (0.2, 0.9)
+TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
 """A point is free while its blended label is below the first, and held while it is above the second: early as it
-comes to stand, so that it does not creep in, and early as it leaves, so that the leg is not held back …"""
+comes to stand, so that it does not creep in, and early as it leaves, walking and running, so that the leg is not held
+back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
 GRIP_RATE = 25.0
@@ -108,7 +109,7 @@ def _take_hold(m, k, height, dt):
     """How firmly point k grips: fully at rest, else by its blended label, and only once it is low."""
     wanted = 1.0
     if not m.settled:
-        loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING
+        loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
         wanted = share * share * (3.0 - 2.0 * share)
         if m.torn[k // 2]:  # it was let go, until it is well into its swing

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body import contact_points, forward_kinematics, rotations as rot
+from ..body import contact_points, forward_kinematics, rotations as rot, spring_kernel
 from ..compiled import kernel
 from .cycles import RATE, Track
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES
@@ -32,7 +32,7 @@ LEAVES = 0.18
 """How likely it does where it may."""
 LOOKS_AHEAD = 0.4
 """A difference of 1 m/s between two moments counts as this many metres."""
-AFTER, COMES, GOES = 1.0, 0.8, 0.12
+AFTER, COMES, GOES = 1.0, 0.8, 0.25
 """Somebody who stands begins to idle after this time [s], within this half-life [s], and stops within this one [s]."""
 ENDS = 5
 """So many coefficients before the end of a stretch it must be left."""
@@ -141,7 +141,7 @@ def idle_kernel(m, idle, liveliness, dt):
         return
     m.rested = m.rested + dt if m.settled else 0.0
     shows = liveliness if m.rested > AFTER and not m.alert else 0.0
-    m.presence += (shows - m.presence) * (1.0 - 2.0 ** (-dt / (COMES if shows > m.presence else GOES)))
+    m.presence, m.presence_rate = spring_kernel(m.presence, m.presence_rate, shows, COMES if shows > m.presence else GOES, dt)
     before = int(m.moment)
     m.moment += dt * PER_SECOND
     now = int(m.moment)

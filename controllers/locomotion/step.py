@@ -28,7 +28,9 @@ PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
-"""Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other."""
+"""Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
+STRAIGHT = 0.2
+"""… and who goes no faster to the side than this [m/s]."""
 
 
 @kernel(nogil=True)
@@ -86,7 +88,7 @@ def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     for i in range(3):
         p[i] *= SCALE[i]
     most = settings.acceleration * settings.agility
-    round_curve = most / max(math.hypot(p[0], p[2]), 0.1)
+    round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
     p[1] = min(max(p[1], -round_curve), round_curve)
     halflife = settings.command_halflife / settings.agility
     before = m.command[1]  # shoulders turn in half the time, and in the air, too
@@ -131,7 +133,7 @@ def _reached(space, ahead, family):
 def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     """Choose the family, locate the command in its space, low-pass the weights."""
     common, phase = change_kernel(changes, m.family, m.phase)
-    switch = m.wanted != m.family and common and not m.settled and (
+    switch = m.wanted != m.family and common and not m.settled and abs(m.command[2]) < STRAIGHT and (
         m.command[0] > FASTEST_WALK if m.wanted == RUN else m.command[0] < SLOWEST_RUN)
     if switch:
         m.family = m.wanted

@@ -106,9 +106,12 @@ def figures(motion: Motion) -> dict[str, float]:
     """The figures of one motion."""
     worst = motion.joints.max(-1)
     walking = ~motion.running
+    slips = {name: (100 * (motion.friction[who] > 0.6).mean(), 100 * (motion.friction[who] > 1.0).mean()) if who.any() else (0.0, 0.0)
+             for name, who in (("walk", walking), ("run", ~walking))}
     drift = motion.drift()
     scuffs = motion.scuffs()
-    return dict(frames=worst.size, over06=100 * (motion.friction > 0.6).mean(), over1=100 * (motion.friction > 1.0).mean(),
+    return dict(frames=worst.size, walk06=slips["walk"][0], walk1=slips["walk"][1], run06=slips["run"][0], run1=slips["run"][1],
+                runs=float((~walking).mean()), over06=100 * (motion.friction > 0.6).mean(), over1=100 * (motion.friction > 1.0).mean(),
                 joints3=100 * (worst[walking] > 3).mean() if walking.any() else 0.0, joint=float(worst[walking].max(initial=0.0)),
                 joint_run=float(worst[~walking].max(initial=0.0)), apart=100 * float(motion.apart.min()),
                 near=100 * float((motion.apart < 0.07).mean()), drift=100 * float(drift.mean()) if len(drift) else 0.0,
@@ -118,9 +121,17 @@ def figures(motion: Motion) -> dict[str, float]:
 
 def told(rows) -> str:
     """Some motions' figures in one line."""
-    mean, most = (lambda k: float(np.average([r[k] for r in rows], weights=[r["frames"] for r in rows])),
-                  lambda k: max(r[k] for r in rows))
-    return (f"friction over 0.6: {mean('over06'):.2f} %, over 1: {mean('over1'):.2f} % · joints over 3× walking {mean('joints3'):.2f} %, worst "
+    frames, runs = (np.array([r[k] for r in rows], float) for k in ("frames", "runs"))
+
+    def mean(name, weights=frames):
+        return float(np.average([r[name] for r in rows], weights=weights + 1e-9))
+
+    def most(name):
+        return max(r[name] for r in rows)
+
+    walking, running = frames * (1.0 - runs), frames * runs
+    return (f"friction over 0.6, over 1: walking {mean('walk06', walking):.2f}, {mean('walk1', walking):.2f} %, running "
+            f"{mean('run06', running):.1f}, {mean('run1', running):.1f} % · joints over 3× walking {mean('joints3'):.2f} %, worst "
             f"{most('joint'):.1f}× (runs {most('joint_run'):.1f}×) · drift a stance {mean('drift'):.2f} cm, worst {most('drift_worst'):.1f} · feet apart "
             f"{min(r['apart'] for r in rows):.1f} cm, under 7 cm in {mean('near'):.2f} % · scuffs {mean('scuffs'):.1f} % of swings above 1 m/s · "
             f"mass centre's peak {most('com'):.1f} m/s²")
@@ -254,8 +265,9 @@ def at_rest(motion: Motion) -> str:
             f"{100 * np.linalg.norm(np.diff(every, axis=0), axis=-1).sum(0).mean():.0f} cm")
 
 
-RECORDED = {"starts": "wd2_start_*", "stops": "wd2_stop_*", "crossings": "wd2_cross_walk_*", "walks": "wd2_WalkForward*",
-            "turns": "wd2_*turn*", "idles": "wd2_idle*"}
+RECORDED = {"starts": "woody2/wd2_start_*", "stops": "woody2/wd2_stop_*", "crossings": "woody2/wd2_cross_walk_*",
+            "walks": "woody2/wd2_WalkForward*", "turns": "woody2/wd2_*turn*", "runs (CMU)": "cmu/[01][96]/*_[03][1-6].amc",
+            "idles": "woody2/wd2_idle*"}
 
 
 def recorded(folder: Path, library: Library) -> None:
@@ -264,8 +276,8 @@ def recorded(folder: Path, library: Library) -> None:
 
     print("Recorded, the same actor:")
     for name, pattern in RECORDED.items():
-        clips = [load(path) for path in sorted((folder / "woody2").glob(pattern + ".bvh"))]
-        clips = [clip for clip in clips if len(clip) * clip.frame_time > 1.5]
+        clips = [load(path) for path in sorted(folder.glob(pattern))]
+        clips = [clip for clip in clips if len(clip) * clip.frame_time > 0.9]
         rows = []
         for clip in clips:
             body = retarget(clip, calibration=calibrate([clip]))
