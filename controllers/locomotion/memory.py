@@ -34,7 +34,7 @@ class Settings(NamedTuple):
     """
 
     agility: float = 1.0
-    command_halflife: float = 0.20
+    command_halflife: float = 0.22
     acceleration: float = 4.0
     weight_halflife: float = 0.08
     switch_halflife: float = 0.18

@@ -52,7 +52,7 @@ def test_who_walks_or_aims_does_not_idle(locomotion):
     presence = np.array([s.memory["presence"][0] for s in motion.states])
     assert presence[50] == 0.0 and presence[299] > 0.9 and presence[-1] < 0.05
     state = motion.states[299]
-    for _ in range(36):
+    for _ in range(72):
         state, _ = locomotion.step(state, Intent(leap=Leap(None)), 1 / FPS)
     assert state.memory["presence"].max() < 0.05
 
