@@ -20,7 +20,7 @@ KNEE = 0.05
 """What stands lower than a step and this beside a walker is in nobody's way [m]."""
 SHOULDER = 0.30
 """A walker keeps so far from walls [m] ..."""
-LOOK = 0.8
+LOOK = 0.75
 """... and looks so far ahead [s]: about what stopping from a run takes."""
 PACE = 0.15
 """How far apart the places are that are looked at [m]."""

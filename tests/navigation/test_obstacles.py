@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.navigation import steer
 from gambol.controllers.navigation.obstacles import HEAD, SHOULDER, floor_at, gap, slide
 from gambol.game.scene.scene import Box
 
@@ -16,21 +16,16 @@ angles = st.floats(-np.pi, np.pi)
 speeds = st.floats(0.1, 4.0)
 
 
-def along(velocity, heading):
-    """A velocity (2,) in the world as an intent's, for somebody who faces a heading."""
-    c, s = np.cos(heading), np.sin(heading)
-    return np.array([s * velocity[0] + c * velocity[1], 0.0, c * velocity[0] - s * velocity[1]])
-
-
 @pytest.mark.parametrize("thing", [BOX, WALL], ids=["box", "wall"])
 @pytest.mark.parametrize("speed", [1.3, 3.2])
 def test_nobody_walks_or_runs_into_a_box(thing, speed):
+    """Steered as in play, where somebody turns to where he goes."""
     walker = Locomotion.load()
     for aside in (0.0, 0.7):
         state, nearest = walker.start((aside, 0.0, 0.0)), np.inf
         for _ in range(240):
             wish = slide(state.ground[:2], (0.0, speed), 0.0, [thing])
-            state, _ = walker.step(state, Intent(along(wish, state.ground[2])), 1 / 60)
+            state, _ = walker.step(state, steer(state.ground, wish, turning=state.velocity[1]), 1 / 60)
             nearest = min(nearest, gap(np.array([[state.ground[0], 0.5, state.ground[1]]]), thing)[0])
         assert 0.1 < nearest < 1.0, "he came to it, and not into it"
 
