@@ -119,7 +119,7 @@ def _follows(library: Library, coefficients: np.ndarray, ends: np.ndarray) -> tu
     rows = coefficients + rest[:coefficients.shape[1]]
     local = library.reference @ rot.exp(rows[:, :-3].reshape(len(rows), -1, 3))
     places = forward_kinematics(library.skeleton, rows[:, -3:], local)[0].reshape(len(rows), -1)
-    speeds = np.gradient(places, 1.0 / PER_SECOND, axis=0)
+    speeds = np.asarray(np.gradient(places, 1.0 / PER_SECOND, axis=0))
     features = np.concatenate([places, LOOKS_AHEAD * speeds], -1).astype(np.float32)
     square = (features**2).sum(-1)
     apart = np.sqrt(np.maximum(square[:, None] + square - 2.0 * features @ features.T, 0.0))

@@ -117,8 +117,7 @@ class Library:
                 primitives = tuple(Primitive(**{**p, "events": tuple(p["events"])}) for p in about["primitives"])
                 library = Library(skeleton, primitives, file["velocities"],
                                   file["coefficients"].astype(float), file["reference"], about["provenance"],
-                                  *({k.removeprefix(start): file[k] for k in file.files if k.startswith(start)}
-                                    for start in ("bend_", "acceleration_")),
+                                  _named(file, "bend_"), _named(file, "acceleration_"),
                                   Idle(file["idle"].astype(np.float32), file["idle_ends"]) if "idle" in file.files else None)
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
@@ -150,6 +149,11 @@ class Library:
                 raise LibraryError(f"{path}: idle must be finite (K, {3 * joints + 3}) with stretches that end within it")
         if sum(p.family == "rest" for p in self.primitives) != 1:
             raise LibraryError(f"{path}: a library needs one primitive of rest")
+
+
+def _named(file: Any, start: str) -> dict[str, np.ndarray]:
+    """The arrays of a file whose names begin so, by what follows."""
+    return {name.removeprefix(start): file[name] for name in file.files if name.startswith(start)}
 
 
 def reference_rotations(cycles: list[Cycle]) -> np.ndarray:
