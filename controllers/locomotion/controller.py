@@ -142,9 +142,9 @@ class Locomotion(Controller):
         place = np.array(np.broadcast_to(np.asarray(look, float), shape + (3,)))
         place[..., 1] -= floor
         place = place.reshape(-1, 3)
-        sound: np.ndarray = np.isfinite(place).all(-1, keepdims=True)
-        memory["looks"] = sound[:, 0]
-        memory["look"] = np.where(sound, np.clip(place, -1e6, 1e6), 0.0)
+        sound = np.asarray(np.isfinite(place).all(-1))
+        memory["looks"] = sound
+        memory["look"] = np.where(sound[:, None], np.clip(place, -1e6, 1e6), 0.0)
 
     def _knows(self, memory) -> bool:
         return (isinstance(memory, np.ndarray) and memory.dtype == self._dtype
