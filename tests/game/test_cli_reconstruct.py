@@ -170,8 +170,11 @@ ENDS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if os.
 
 
 @pytest.mark.parametrize("end", [None, *ENDS])
-def test_streams_are_recorded_until_they_are_ended_and_never_lost(stream, end):
+def test_streams_are_recorded_until_they_are_ended_and_never_lost(stream, end, request):
     """By Ctrl-C, by whoever ends the program from outside, and when the time is up."""
+    deaf = signal.signal(signal.SIGINT, signal.default_int_handler)  # where tests run as a shell's background job
+    request.addfinalizer(lambda: signal.signal(signal.SIGINT, deaf))
+
     def then(seconds):
         if end and seconds > 1.99:
             signal.raise_signal(end)
