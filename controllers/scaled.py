@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import LONGEST, CharacterState, Controller, Intent, Status, seconds
-from .navigation import is_box
+from .contract import LONGEST, CharacterState, Controller, Intent, Leap, Status, seconds
+from .navigation import is_box, slope
 
 
 @dataclass(frozen=True, eq=False)
 class Scaled(Controller):
-    """A walker in another size. Jumps are no matter of its own and not passed on.
+    """A walker in another size. It is told that a jump is wanted, which is another's matter, but not where.
 
     factor: the legs' length over that of the skeleton it is made for.
     """
@@ -90,7 +90,7 @@ class Scaled(Controller):
     def _asked(self, intent: Intent) -> Intent:
         look = None if intent.look is None else np.asarray(intent.look, float) / self.factor
         around = tuple(_Shrunk(thing, self.factor) for thing in intent.around if is_box(thing))
-        return Intent(intent.velocity / self._speeds, around=around, look=look)
+        return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, look=look)
 
     def _grown(self, state: CharacterState) -> CharacterState:
         return _resized(state, self.factor, state.velocity * self._speeds)
@@ -104,7 +104,7 @@ class _Shrunk:
 
     def __init__(self, box: Any, factor: float):
         self.centre, self.size = (np.asarray(one, float) / factor for one in (box.centre, box.size))
-        self.heading, self.slope = box.heading, getattr(box, "slope", 0.0)
+        self.heading, self.slope = box.heading, slope(box)
 
 
 def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:

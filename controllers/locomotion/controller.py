@@ -92,7 +92,7 @@ class Locomotion(Controller):
         state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)  # finds the pose
         memory = state.memory.copy()
         memory["grip"], memory["offset"], memory["offset_rate"] = 1.0, 0.0, 0.0
-        memory["raised"] = legs_of(self.library).height - memory["points"][..., 1]
+        memory["raised"] = self.tables[1].height - memory["points"][..., 1]
         memory["raised_rate"] = 0.0
         state, _ = self.step(replace(state, memory=memory), Intent(np.zeros(3)), 1 / 60)  # and how feet stand in it
         memory = state.memory.copy()
@@ -179,7 +179,7 @@ class Locomotion(Controller):
 
 def _luck(ground: np.ndarray) -> np.ndarray:
     """A number (...) of its own for every place (..., 3), never 0: who begins elsewhere idles otherwise."""
-    mixed = ground.view(np.uint64).copy() if ground.flags.c_contiguous else np.ascontiguousarray(ground).view(np.uint64)
+    mixed = np.ascontiguousarray(ground).view(np.uint64)
     with np.errstate(over="ignore"):
         mixed = (mixed ^ (mixed >> np.uint64(29))) * np.uint64(0x9E3779B97F4A7C15)
         mixed = (mixed[..., 0] * np.uint64(3) + mixed[..., 1] * np.uint64(5) + mixed[..., 2] * np.uint64(7)) >> np.uint64(32)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
-from ..navigation import is_box
+from ..navigation import is_box, slope
 from .foot_points import shown_kernel
 from .kernel import DURATION_AT
 
@@ -24,6 +24,8 @@ SEEN = 0.5
 """… and ground that is farther than this from the body's level is none [m]."""
 SHIFTS = np.array([0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15, -0.2, -0.25, -0.3, -0.35, -0.4, -0.45, -0.5])
 """How much farther or nearer a foot comes down where it would not stand well, in the order in which it is tried [m]."""
+SLOW = 0.1
+"""Slower than this [m/s] nobody chooses where a foot comes down."""
 FLAT = np.zeros((0, 8))
 """No tops: the ground is the character's own floor."""
 
@@ -32,7 +34,7 @@ def tops(around: Sequence[Any]) -> np.ndarray:
     """The tops (M, 8) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
     along [m], height [m], slope along."""
     rows = [(b.centre[0], b.centre[2], math.cos(b.heading), math.sin(b.heading), 0.5 * b.size[0], 0.5 * b.size[2],
-             b.centre[1] + 0.5 * b.size[1], getattr(b, "slope", 0.0)) for b in around if is_box(b)]
+             b.centre[1] + 0.5 * b.size[1], slope(b)) for b in around if is_box(b)]
     return np.array(rows, float) if rows else FLAT
 
 
@@ -42,10 +44,10 @@ def ground_kernel(tops, x, z, floor, level, out):
 
     floor: absolute. level: of the body, over the floor. Whether there is ground near it; what is not counts as level.
     """
-    best, found = -1e9, False
+    found = False
     out[0], out[1], out[2] = level, 0.0, 0.0
     if abs(-floor - level) <= SEEN:  # the world's own floor
-        best, found, out[0] = -floor, True, -floor
+        found, out[0] = True, -floor
     for k in range(tops.shape[0]):
         dx, dz = x - tops[k, 0], z - tops[k, 1]
         c, s = tops[k, 2], tops[k, 3]
@@ -53,8 +55,8 @@ def ground_kernel(tops, x, z, floor, level, out):
         if abs(across) > tops[k, 4] or abs(along) > tops[k, 5]:
             continue
         high = tops[k, 6] + tops[k, 7] * along - floor
-        if abs(high - level) <= SEEN and (not found or high > best):
-            best, found = high, True
+        if abs(high - level) <= SEEN and (not found or high > out[0]):
+            found = True
             out[0], out[1], out[2] = high, tops[k, 7] * s, tops[k, 7] * c
     return found
 
@@ -86,9 +88,11 @@ def follow_ground(m, tops, floor, swing, dt):
             continue
         progress = min(((m.phase - 0.5 * foot) % 1.0) / swing, 1.0)
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
-            shown_kernel(m, ball, place)
             if m.held[foot] == 0 or firm:
-                _under(m, tops, floor, place, 0.0, 0.0, under)
+                shown_kernel(m, ball, place)
+                c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+                _under(m, tops, floor, m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1],
+                       c, s, under)
                 m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
             m.left[foot] = m.base[foot]
             if firm:
@@ -96,8 +100,7 @@ def follow_ground(m, tops, floor, swing, dt):
                 m.held[foot] = 1
             continue
         m.held[foot] = 0
-        place[0], place[1] = m.struck[foot, 0], m.struck[foot, 1]
-        _come_down(m, tops, floor, foot, place, (1.0 - progress) * swing * m.row[DURATION_AT], under)
+        _come_down(m, tops, floor, foot, (1.0 - progress) * swing * m.row[DURATION_AT], under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
         m.base[foot] = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
@@ -112,38 +115,36 @@ def follow_ground(m, tops, floor, swing, dt):
 
 
 @kernel
-def _come_down(m, tops, floor, foot, place, later, out):
-    """Where a foot comes down: as far beside where it would as it must to stand whole and no step too high."""
-    speed = math.hypot(m.velocity[0], m.velocity[2])
-    m.land[foot, 0] = m.land[foot, 1] = 0.0
-    other = m.base[1 - foot]
-    for shift in SHIFTS:
-        whole = _under(m, tops, floor, place, later, shift if speed > 0.1 else 0.0, out)
-        if whole and abs(out[0] - other) <= STEP or speed <= 0.1:
-            c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-            if speed > 0.1:
-                m.land[foot, 0] = shift * (c * m.velocity[2] + s * m.velocity[0]) / speed
-                m.land[foot, 1] = shift * (-s * m.velocity[2] + c * m.velocity[0]) / speed
-            return
-    _under(m, tops, floor, place, later, 0.0, out)
-    if abs(out[0] - other) > STEP:
-        out[0], out[1], out[2] = other, 0.0, 0.0
-
-
-@kernel
-def _under(m, tops, floor, place, later, shift, out):
-    """The ground (3,) under a foot whose ball comes down at `place` (2,) of the ground frame in `later` seconds, `shift`
-    farther along its way; whether heel and ball have the same under them."""
-    speed = math.hypot(m.velocity[0], m.velocity[2])
+def _come_down(m, tops, floor, foot, later, out):
+    """Where a foot comes down in `later` seconds, and the ground (3,) there: as far beside where it would as it must to
+    stand whole and no step too high."""
     turn = m.velocity[1] * later
     c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
     x = m.ground[0] + (c * m.velocity[2] + s * m.velocity[0]) * later
     z = m.ground[1] + (-s * m.velocity[2] + c * m.velocity[0]) * later
     c, s = math.cos(m.ground[2] + turn), math.sin(m.ground[2] + turn)
-    x, z = x + c * place[0] + s * place[1], z - s * place[0] + c * place[1]
-    if shift != 0.0:
-        x += shift * (c * m.velocity[2] + s * m.velocity[0]) / speed
-        z += shift * (-s * m.velocity[2] + c * m.velocity[0]) / speed
+    x, z = x + c * m.struck[foot, 0] + s * m.struck[foot, 1], z - s * m.struck[foot, 0] + c * m.struck[foot, 1]
+    along_x, along_z = c * m.velocity[2] + s * m.velocity[0], -s * m.velocity[2] + c * m.velocity[0]
+    speed = math.hypot(along_x, along_z)
+    m.land[foot, 0] = m.land[foot, 1] = 0.0
+    other = m.base[1 - foot]
+    if speed <= SLOW:
+        _under(m, tops, floor, x, z, c, s, out)
+        return
+    for shift in SHIFTS:
+        shift_x, shift_z = shift * along_x / speed, shift * along_z / speed
+        if _under(m, tops, floor, x + shift_x, z + shift_z, c, s, out) and abs(out[0] - other) <= STEP:
+            m.land[foot, 0], m.land[foot, 1] = shift_x, shift_z
+            return
+    _under(m, tops, floor, x, z, c, s, out)
+    if abs(out[0] - other) > STEP:
+        out[0], out[1], out[2] = other, 0.0, 0.0
+
+
+@kernel
+def _under(m, tops, floor, x, z, c, s, out):
+    """The ground (3,) under a foot whose ball is at x, z in the world, heading with cosine c and sine s; whether heel and
+    ball have the same under them, and the toes are clear."""
     heel, toe = np.empty(3), np.empty(3)
     found = ground_kernel(tops, x, z, floor, m.level, out)
     found = ground_kernel(tops, x - FOOT * s, z - FOOT * c, floor, m.level, heel) and found

@@ -55,6 +55,11 @@ def is_box(thing: Any) -> TypeGuard[Box]:
     return hasattr(thing, "size")
 
 
+def slope(box: Box) -> float:
+    """How a box rises along its own z, metres a metre; level where it does not say so."""
+    return getattr(box, "slope", 0.0)
+
+
 def is_pillar(thing: Any) -> TypeGuard[Pillar]:
     """Whether a thing stands in the way as a pillar."""
     return hasattr(thing, "foot")
@@ -70,7 +75,7 @@ def gap(points: np.ndarray, thing: Any) -> np.ndarray:
     elif is_box(thing):
         c, s = np.cos(thing.heading), np.sin(thing.heading)
         local = (points - np.asarray(thing.centre)) @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-        local[:, 1] -= getattr(thing, "slope", 0.0) * local[:, 2]
+        local[:, 1] -= slope(thing) * local[:, 2]
         outside = np.abs(local) - 0.5 * np.asarray(thing.size)
     else:  # a goal stops nobody
         return np.full(len(points), np.inf)
@@ -85,7 +90,7 @@ def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -
             c, s = np.cos(thing.heading), np.sin(thing.heading)
             dx, dz = x - thing.centre[0], z - thing.centre[2]
             along = s * dx + c * dz
-            top = thing.centre[1] + 0.5 * thing.size[1] + getattr(thing, "slope", 0.0) * along
+            top = thing.centre[1] + 0.5 * thing.size[1] + slope(thing) * along
             if (abs(c * dx - s * dz) <= 0.5 * thing.size[0] and abs(along) <= 0.5 * thing.size[2]
                     and height < top <= below):
                 height = top

@@ -22,7 +22,7 @@ class BoxTable(Table):
 
     def props(self) -> tuple[Box, ...]:
         """The same in SI units."""
-        return Box(self.centre, self.size, math.radians(self.heading), self.tint),
+        return (Box(self.centre, self.size, math.radians(self.heading), self.tint),)
 
 
 class RampTable(Table):
@@ -42,7 +42,7 @@ class RampTable(Table):
         turn, slope, deep = math.radians(self.heading), self.rise / self.length, self.rise + 0.1
         x, y, z = self.foot
         middle = (x + 0.5 * self.length * math.sin(turn), y + 0.5 * (self.rise - deep), z + 0.5 * self.length * math.cos(turn))
-        return Box(middle, (self.width, deep, self.length), turn, self.tint, slope),
+        return (Box(middle, (self.width, deep, self.length), turn, self.tint, slope),)
 
 
 class StairsTable(Table):
@@ -80,7 +80,7 @@ class PillarTable(Table):
 
     def props(self) -> tuple[Pillar, ...]:
         """The same as the renderer takes it."""
-        return Pillar(self.foot, self.radius, self.height, self.tint),
+        return (Pillar(self.foot, self.radius, self.height, self.tint),)
 
 
 class GoalTable(Table):
@@ -93,7 +93,7 @@ class GoalTable(Table):
 
     def props(self) -> tuple[Goal, ...]:
         """The same as the renderer takes it."""
-        return Goal(self.place, self.radius, self.tint),
+        return (Goal(self.place, self.radius, self.tint),)
 
 
 PROPS = ("box", "ramp", "stairs", "pillar", "goal")

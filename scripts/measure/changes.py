@@ -1,6 +1,6 @@
 """Measure what people do: start, stop, turn, change gait, at every phase, and ten minutes of restless hands.
 
-    python scripts/measure/changes.py [--quick] [--recordings DIR] [--strips DIR] [--only PART ...] [--character SETTING=VALUE ...]
+    python scripts/measure/changes.py [--quick] [--recordings DIR] [--strips DIR] [--only PART ...] [--set SETTING=VALUE ...]
 
 All figures are told from the final pose alone (`_motion.py`): mass centre by segment masses, friction that the ground
 must give, joint accelerations over the recordings' own 99th percentile, feet. DIR is the folder of motion capture: the
@@ -11,13 +11,16 @@ moments of every part as stick figures.
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from _figures import at_rest, figures, told
 from _motion import Motion
-from _plots import pictures, pyplot
+from _plots import pictures
+from _recorded import recorded
+from _strips import draw
 
 
 from gambol.controllers.contract import Intent
@@ -64,11 +67,8 @@ class Bench:
             wanted = np.arange(PHASES) / PHASES
             chosen = [steady[int(np.abs((phase - w + 0.5) % 1 - 0.5).argmin())] for w in wanted]
         memory = np.array([s.memory for s in chosen])
-        ground = np.tile([0.0, 0.0, 0.0], (PHASES, 1))
-        from dataclasses import replace
         # everyone at the origin, looking the same way
-        state = replace(self.locomotion.start(memory["ground"]), memory=memory, ground=ground)
-        return state
+        return replace(self.locomotion.start(memory["ground"]), memory=memory, ground=np.zeros((PHASES, 3)))
 
 
 def pairs(bench: Bench):
@@ -100,41 +100,6 @@ def pairs(bench: Bench):
 
 QUICK = {("2.5", "1.3"), ("rest", "1.3"), ("1.3", "rest"), ("2.5", "rest"), ("1.3", "2.5"), ("1.3", "left"), ("1.3", "back"),
          ("rest", "spot left"), ("1.3", "0.7"), ("back", "1.3"), ("left", "right"), ("rest", "2.5"), ("1.3", "diagonal left")}
-
-
-def figures(motion: Motion) -> dict[str, float]:
-    """The figures of one motion."""
-    worst = motion.joints.max(-1)
-    walking = ~motion.running
-    slips = {name: (100 * (motion.friction[who] > 0.6).mean(), 100 * (motion.friction[who] > 1.0).mean()) if who.any() else (0.0, 0.0)
-             for name, who in (("walk", walking), ("run", ~walking))}
-    drift = motion.drift()
-    scuffs = motion.scuffs()
-    return dict(frames=worst.size, walk06=slips["walk"][0], walk1=slips["walk"][1], run06=slips["run"][0], run1=slips["run"][1],
-                runs=float((~walking).mean()), over06=100 * (motion.friction > 0.6).mean(), over1=100 * (motion.friction > 1.0).mean(),
-                joints3=100 * (worst[walking] > 3).mean() if walking.any() else 0.0, joint=float(worst[walking].max(initial=0.0)),
-                joint_run=float(worst[~walking].max(initial=0.0)), apart=100 * float(motion.apart.min()),
-                near=100 * float((motion.apart < 0.07).mean()), drift=100 * float(drift.mean()) if len(drift) else 0.0,
-                drift_worst=100 * float(drift.max(initial=0.0)), scuffs=100 * float(scuffs.mean()) if len(scuffs) else 0.0,
-                com=float(np.linalg.norm(motion.com_acceleration[..., [0, 2]], axis=-1).max()))
-
-
-def told(rows) -> str:
-    """Some motions' figures in one line."""
-    frames, runs = (np.array([r[k] for r in rows], float) for k in ("frames", "runs"))
-
-    def mean(name, weights=frames):
-        return float(np.average([r[name] for r in rows], weights=weights + 1e-9))
-
-    def most(name):
-        return max(r[name] for r in rows)
-
-    walking, running = frames * (1.0 - runs), frames * runs
-    return (f"friction over 0.6, over 1: walking {mean('walk06', walking):.2f}, {mean('walk1', walking):.2f} %, running "
-            f"{mean('run06', running):.1f}, {mean('run1', running):.1f} % · joints over 3× walking {mean('joints3'):.2f} %, worst "
-            f"{most('joint'):.1f}× (runs {most('joint_run'):.1f}×) · drift a stance {mean('drift'):.2f} cm, worst {most('drift_worst'):.1f} · feet apart "
-            f"{min(r['apart'] for r in rows):.1f} cm, under 7 cm in {mean('near'):.2f} % · scuffs {mean('scuffs'):.1f} % of swings above 1 m/s · "
-            f"mass centre's peak {most('com'):.1f} m/s²")
 
 
 def stops(bench: Bench) -> None:
@@ -257,83 +222,6 @@ def idle(bench: Bench):
     return []
 
 
-def at_rest(motion: Motion) -> str:
-    """How the mass centre travels."""
-    flat = motion.com[..., [0, 2]]
-    every = motion.com[::motion.rate // 5][..., [0, 2]]
-    return (f"mass centre within {100 * np.ptp(flat, axis=0).max(-1).mean():.1f} cm, its way "
-            f"{100 * np.linalg.norm(np.diff(every, axis=0), axis=-1).sum(0).mean():.0f} cm")
-
-
-RECORDED = {"starts": "woody2/wd2_start_*", "stops": "woody2/wd2_stop_*", "crossings": "woody2/wd2_cross_walk_*",
-            "walks": "woody2/wd2_WalkForward*", "turns": "woody2/wd2_*turn*", "runs (CMU)": "cmu/[01][96]/*_[03][1-6].amc",
-            "idles": "woody2/wd2_idle*"}
-
-
-def recorded(folder: Path, library: Library) -> None:
-    """The same figures of one actor's recordings, on Gambol's skeleton."""
-    from gambol.controllers.mocap import calibrate, load, retarget
-
-    print("Recorded, the same actor:")
-    for name, pattern in RECORDED.items():
-        clips = [load(path) for path in sorted(folder.glob(pattern))]
-        clips = [clip for clip in clips if len(clip) * clip.frame_time > 0.9]
-        rows = []
-        for clip in clips:
-            body = retarget(clip, calibration=calibrate([clip]))
-            rotations = body.local_rotations() if hasattr(body, "local_rotations") else _matrices(body)
-            motion = Motion(body.skeleton, round(1 / body.frame_time), body.root[:, None], rotations[:, None], library.accelerations)
-            rows.append((figures(motion), motion))
-        if rows:
-            print(f"  {name} ({len(rows)}): " + told([row for row, _ in rows]))
-            speed = [np.linalg.norm(m.com_velocity[..., [0, 2]], axis=-1)[:, 0] for _, m in rows]
-            if name == "idles":
-                print("    " + "; ".join(f"{len(m.roots) / m.rate:.0f} s: " + at_rest(m) for _, m in rows))
-            if name == "starts":
-                times = [_rise(s, m.rate) for s, (_, m) in zip(speed, rows)]
-                print(f"    from 10 to 90 % of the speed: median {np.median(times):.2f} s")
-
-
-def _matrices(clip):
-    from scipy.spatial.transform import Rotation
-    return Rotation.from_quat(clip.quaternions.reshape(-1, 4)).as_matrix().reshape(*clip.quaternions.shape[:2], 3, 3)
-
-
-def _rise(speed, rate) -> float:
-    top = np.percentile(speed, 90)
-    high = int(np.argmax(speed > 0.9 * top))
-    low = high - int(np.argmax(speed[:high + 1][::-1] < 0.1 * top))
-    return (high - low) / rate
-
-
-def draw(worst, folder: Path, name: str) -> None:
-    """The ten worst moments as strips of stick figures, from the side and from above."""
-    plt = pyplot()
-    figure, axes = plt.subplots(len(worst), 1, figsize=(15, 2.1 * len(worst)))
-    for axis, (value, label, motion, n, t) in zip(np.atleast_1d(axes), worst):
-        positions, parents = motion.kinematics[0][:, n], motion.skeleton.parents
-        for k, frame in enumerate(range(t - 10, t + 11, 2)):
-            if not 0 <= frame < len(positions):
-                continue
-            p = positions[frame]
-            heading = motion.com_velocity[min(max(t, 0), len(positions) - 1), n][[0, 2]]
-            way = heading / (np.linalg.norm(heading) + 1e-9)
-            along = (p[:, [0, 2]] - positions[t, 0, [0, 2]]) @ way + 0.9 * k
-            for j in range(1, len(parents)):
-                i = parents[j]
-                side = motion.skeleton.names[j]
-                colour = "tab:red" if side.startswith("Left") else "tab:blue" if side.startswith("Right") else "k"
-                axis.plot(along[[i, j]], p[[i, j], 1], color=colour, lw=1.2)
-            axis.text(0.9 * k, -0.1, f"{(frame - t) / FPS:+.2f}", fontsize=6)
-        axis.set_aspect("equal")
-        axis.axhline(0, color="0.7", lw=0.5)
-        joint = motion.skeleton.names[int(motion.joints[t, n].argmax())]
-        axis.set_title(f"{label}: {joint} {value:.1f}×", fontsize=8)
-        axis.axis("off")
-    figure.savefig(folder / f"{name}.png")
-    plt.close(figure)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--library", default=DEFAULT_LIBRARY)
@@ -345,7 +233,10 @@ def main() -> None:
     arguments = parser.parse_args()
     pictures(parser, arguments.strips)
     library = Library.load(arguments.library)
-    given = Settings(**{k: float(v) for k, v in (one.split("=") for one in arguments.set)})
+    try:
+        given = Settings(**{name: float(value) for name, _, value in (one.partition("=") for one in arguments.set)})
+    except (TypeError, ValueError) as error:
+        parser.error(f"--set: needs NAME=VALUE of {', '.join(Settings._fields)} ({error})")
     bench = Bench(Locomotion(library, given), arguments.quick)
     if arguments.recordings:
         recorded(arguments.recordings, library)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body import contact_points, forward_kinematics
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.locomotion.uneven_ground import SEEN, ground_kernel, tops
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.scaled import Scaled
@@ -100,6 +100,14 @@ def test_a_child_climbs_in_its_own_size(locomotion):
     for _ in range(150):
         state, _ = child.step(state, Intent(np.array([0.9, 0.0, 0.0]), around=around), 1 / FPS)
     assert float(state.floor) == pytest.approx(0.12, abs=1e-6) and 1.6 < state.ground[1] < 4.2
+
+
+def test_a_child_that_aims_stops_idling(locomotion):
+    """What another controller is wanted for is known to a walker in another size, too."""
+    child = Scaled(locomotion, 0.7)
+    state, _ = child.step(child.start(), Intent(leap=Leap(np.zeros(3))), 1 / FPS)
+    assert state.memory["alert"] == 1
+    assert child.step(state, Intent(), 1 / FPS)[0].memory["alert"] == 0
 
 
 coordinate = st.floats(-3.0, 3.0, allow_subnormal=False)
