@@ -33,7 +33,7 @@ class Blender:
         """
         output = self.output(len(phase)) if output is None else output
         simplex = np.zeros(len(phase), np.int64) if simplex is None else simplex
-        body, _, walk, _, table, *_ = self._tables
+        body, walk, table = self._tables.body, self._tables.walk, self._tables.series
         _blend(body, walk, table, self._count, self._correct, velocity, phase, simplex, *output)
         return output
 

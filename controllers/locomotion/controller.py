@@ -16,12 +16,12 @@ from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from .control_space import ControlSpace
 from .entry import entered
-from .gait_change import changes
-from .idle import ENDS, idling
-from .kernel import DURATION_AT, body_tables, series_table, space_tables
+from .idle import ENDS
+from .kernel import DURATION_AT
 from .library import Library
-from .memory import Settings, legs_of, memory_dtype, plain, put
+from .memory import Settings, memory_dtype, plain, put
 from .step import step_kernel
+from .tables import tables_of
 from .uneven_ground import FLAT, tops
 from .velocity_correction import space_of
 
@@ -39,16 +39,12 @@ class Locomotion(Controller):
         self.library = library
         self.settings = plain(settings)
         self.walk = space_of(library, "walk")
-        runs = library.family("run")
         self.run = space_of(library, "run")
         if self.run is None:  # no runs recorded: walking serves at any speed
             self.settings = self.settings._replace(run_above=np.inf)
-        self.tables = (body_tables(library), legs_of(library), space_tables(self.walk, library.family("walk")),
-                        space_tables(self.run, runs) if self.run else
-                        space_tables(self.walk, library.family("walk")),
-                        series_table(library), changes(library, self.walk, self.run), idling(library))
+        self.tables = tables_of(library, self.walk, self.run)
         self._dtype = memory_dtype(len(library.primitives))
-        self._library = zlib.crc32(self.tables[4].tobytes())
+        self._library = zlib.crc32(self.tables.series.tobytes())
 
     @staticmethod
     def load(path: str | PathLike[str] | None = None, settings: Settings = Settings()) -> Locomotion:
@@ -85,14 +81,14 @@ class Locomotion(Controller):
         memory["row"][..., DURATION_AT] = memory["stretch"] = 1.0
         memory["library"] = self._library
         memory["luck"] = _luck(ground)
-        if len(self.tables[6].must) > ENDS:
-            memory["moment"] = memory["luck"] % np.flatnonzero(~self.tables[6].must)[-1]
+        if len(self.tables.idle.must) > ENDS:
+            memory["moment"] = memory["luck"] % np.flatnonzero(~self.tables.idle.must)[-1]
         state = CharacterState(ground, np.zeros(ground.shape), Pose(np.zeros(ground.shape), np.zeros(3)),
                                np.zeros(ground.shape[:-1] + (4,), bool), memory, floor)
         state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)  # finds the pose
         memory = state.memory.copy()
         memory["grip"], memory["offset"], memory["offset_rate"] = 1.0, 0.0, 0.0
-        memory["raised"] = self.tables[1].height - memory["points"][..., 1]
+        memory["raised"] = self.tables.legs.height - memory["points"][..., 1]
         memory["raised_rate"] = 0.0
         state, _ = self.step(replace(state, memory=memory), Intent(np.zeros(3)), 1 / 60)  # and how feet stand in it
         memory = state.memory.copy()
@@ -126,10 +122,9 @@ class Locomotion(Controller):
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
-        body, legs, walk, run, table, change, idle = self.tables
         floor = np.array(np.broadcast_to(state.floor, shape), float).reshape(-1)
         here = floor.copy()
-        step_kernel(memory, wish, dt, self.settings, body, legs, walk, run, table, change, idle, ground, here, root, local)
+        step_kernel(memory, wish, dt, self.settings, *self.tables, ground, here, root, local)
         root[:, 1] += floor
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)

@@ -105,12 +105,12 @@ def stance(track: Track, family: str) -> np.ndarray:
     feet = np.stack([point[:, :2].any(1), point[:, 2:].any(1)], 1)
     shortest = int((0.06 if family == "run" else 0.10) * RATE)
     for foot in feet.T:
-        _drop_short(foot, int(0.06 * RATE), False)
-        _drop_short(foot, shortest, True)
+        drop_short(foot, int(0.06 * RATE), False)
+        drop_short(foot, shortest, True)
     return feet
 
 
-def _drop_short(mask: np.ndarray, shortest: int, value: bool) -> None:
+def drop_short(mask: np.ndarray, shortest: int, value: bool) -> None:
     """Flip, in place, the inner runs of `value` shorter than `shortest` frames."""
     edges = np.flatnonzero(np.diff(mask)) + 1
     bounds = np.concatenate([[0], edges, [len(mask)]])

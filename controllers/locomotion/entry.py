@@ -69,7 +69,7 @@ def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray) -> None:
     memory["command"] = memory["velocity"] = query
     memory["settled"], memory["phase"] = 0, ABOUT_TO_STEP
     row = np.empty(COLUMNS, np.float32)
-    series_kernel(locomotion.tables[4], memory["weights"], np.float32(ABOUT_TO_STEP), row)
+    series_kernel(locomotion.tables.series, memory["weights"], np.float32(ABOUT_TO_STEP), row)
     memory["row"], memory["stretch"] = row, 1.0
 
 

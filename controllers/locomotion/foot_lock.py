@@ -23,6 +23,7 @@ from .foot_points import on_floor, shown_kernel
 from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
+from .first_stride import shift_left
 from .uneven_ground import follow_ground, lie_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
@@ -106,9 +107,9 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
 
 @kernel
 def _take_hold(m, k, height, dt):
-    """How firmly point k grips: fully at rest, else by its blended label, and only once it is low."""
+    """How firmly point k grips: fully at rest and until a start leaves it, else by its blended label, and only once it is low."""
     wanted = 1.0
-    if not m.settled:
+    if not (m.settled or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
         wanted = share * share * (3.0 - 2.0 * share)

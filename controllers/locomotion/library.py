@@ -54,6 +54,13 @@ class Idle(NamedTuple):
     ends: np.ndarray
 
 
+class Start(NamedTuple):
+    """What the first strides from rest have beyond the blend. coefficients: (2, 2, K, 3 J + 3) with the left or the right
+    foot first, of a start straight on and for each rad/s that it turns to that side: uniform cubic B-splines."""
+
+    coefficients: np.ndarray
+
+
 @dataclass(frozen=True, eq=False)
 class Library:
     """P primitives on a skeleton of J joints.
@@ -75,6 +82,7 @@ class Library:
     bends: dict[str, np.ndarray] = field(default_factory=dict)
     accelerations: dict[str, np.ndarray] = field(default_factory=dict)
     idle: Idle | None = None
+    start: Start | None = None
 
     def family(self, name: str) -> np.ndarray:
         """The numbers of the primitives of one family; "walk" has rest among them."""
@@ -101,6 +109,8 @@ class Library:
         families |= {f"acceleration_{family}": a for family, a in self.accelerations.items()}
         if self.idle is not None:
             families |= {"idle": self.idle.coefficients.astype(np.float16), "idle_ends": self.idle.ends}
+        if self.start is not None:
+            families |= {"start": self.start.coefficients.astype(np.float16)}
         np.savez_compressed(file, velocities=self.velocities, reference=self.reference,
                             coefficients=self.coefficients.astype(np.float32), **families,
                             about=np.frombuffer(json.dumps(about).encode(), np.uint8))
@@ -118,7 +128,8 @@ class Library:
                 library = Library(skeleton, primitives, file["velocities"],
                                   file["coefficients"].astype(float), file["reference"], about["provenance"],
                                   _named(file, "bend_"), _named(file, "acceleration_"),
-                                  Idle(file["idle"].astype(np.float32), file["idle_ends"]) if "idle" in file.files else None)
+                                  Idle(file["idle"].astype(np.float32), file["idle_ends"]) if "idle" in file.files else None,
+                                  Start(file["start"].astype(np.float32)) if "start" in file.files else None)
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
@@ -147,6 +158,11 @@ class Library:
             if rows.ndim != 2 or rows.shape[1] != 3 * joints + 3 or not np.isfinite(rows).all() or ends.ndim != 1 \
                     or ends.dtype.kind != "i" or np.any(np.diff(ends, prepend=0) < 1) or ends[-1:].sum() != len(rows):
                 raise LibraryError(f"{path}: idle must be finite (K, {3 * joints + 3}) with stretches that end within it")
+        if self.start is not None:
+            given = self.start.coefficients
+            if given.ndim != 4 or given.shape != (2, 2, given.shape[2], 3 * joints + 3) or given.shape[2] < 4 \
+                    or not np.isfinite(given).all():
+                raise LibraryError(f"{path}: start must be finite (2, 2, K, {3 * joints + 3}) with K of 4 at least")
         if sum(p.family == "rest" for p in self.primitives) != 1:
             raise LibraryError(f"{path}: a library needs one primitive of rest")
 

@@ -18,6 +18,7 @@ from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
 from .idle import idle_of
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
 from .selection import Choice, neighbours, select
+from .first_stride_build import starts
 from .velocity_correction import settle
 
 Progress = Callable[[str, int, int], None]
@@ -162,7 +163,9 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
     rest = library.coefficients[library.rest, 0, :LABELS]
     library = replace(library, accelerations=natural_accelerations(found.tracks),
                       idle=idle_of(stills, library.reference, rest))
-    return settle(library, progress), found.problems + [f"no cycle for {label}" for label in missing]
+    library = settle(library, progress)
+    library = replace(library, start=starts(stills, library))
+    return library, found.problems + [f"no cycle for {label}" for label in missing]
 
 
 def natural_accelerations(tracks: list[tuple[Track, Source, str]]) -> dict[str, np.ndarray]:

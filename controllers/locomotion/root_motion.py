@@ -16,10 +16,14 @@ DRIFT_HALFLIFE = 0.03
 
 @kernel
 def follow_command(m, dt):
-    """Move the ground frame at the shaped command, which is what the blend does on average; at rest it stays."""
+    """Move the ground frame at the shaped command, which is what the blend does on average; at rest it stays.
+
+    By the mean of the step's two ends, so that the size of a step does not matter.
+    """
+    v_f, omega, v_l = m.velocity[0], m.velocity[1], m.velocity[2]
     for i in range(3):
         m.velocity[i] = 0.0 if m.settled else m.command[i]
-    _advance(m, dt)
+    _advance(m, 0.5 * (v_f + m.velocity[0]), 0.5 * (omega + m.velocity[1]), 0.5 * (v_l + m.velocity[2]), dt)
 
 
 @kernel
@@ -50,16 +54,16 @@ def follow_feet(m, body, legs, positions, orientations, velocities, dt):
     m.drift[0] += gain * (share * (lateral / trust / dt - v_l) - m.drift[0])
     m.drift[1] += gain * (share * (forward / trust / dt - v_f) - m.drift[1])
     m.velocity[0], m.velocity[1], m.velocity[2] = v_f + m.drift[1], omega, v_l + m.drift[0]
-    _advance(m, dt)
+    _advance(m, m.velocity[0], omega, m.velocity[2], dt)
 
 
 @kernel
-def _advance(m, dt):
-    """The ground frame after dt at the present velocity, by the middle of the turn."""
-    turn = m.velocity[1] * dt
+def _advance(m, v_f, omega, v_l, dt):
+    """The ground frame after dt at a velocity, by the middle of the turn."""
+    turn = omega * dt
     c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
-    m.ground[0] += (c * m.velocity[2] + s * m.velocity[0]) * dt
-    m.ground[1] += (-s * m.velocity[2] + c * m.velocity[0]) * dt
+    m.ground[0] += (c * v_l + s * v_f) * dt
+    m.ground[1] += (-s * v_l + c * v_f) * dt
     m.ground[2] = math.pi - (math.pi - m.ground[2] - turn) % (2.0 * math.pi)
 
 

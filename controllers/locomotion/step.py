@@ -18,6 +18,7 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
 from .root_motion import follow_command, to_world_kernel
+from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
 from .uneven_ground import stand_on
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
@@ -34,8 +35,8 @@ STRAIGHT = 0.2
 
 
 @kernel(nogil=True)
-def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, tops, floors,
-                root, local):
+def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, start, tops,
+                floors, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
     tops: the ground (`uneven_ground`), of which none makes it flat. floors: (N,) [m] how high each stands, rewritten.
@@ -52,12 +53,15 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     b, p, q, c = np.empty(4), np.empty(3), np.empty(3), np.empty(3)
     for n in range(memory.shape[0]):
         m = memory[n]
+        leave_rest(m, wish[n])
         _shape_command(m, wish[n], dt, settings, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
-        advance_phase(m, wish[n], dt)
+        advance_phase(m, settings.agility, dt)
+        start_kernel(m, start, wish[n], dt)
         idle_kernel(m, idle, settings.idle, dt)
         blend_series(m, settings, table, fresh, legs, dt)
         add_idle(m, idle, fresh)
+        add_start(m, start, fresh)
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
         on_floor(m, before)
@@ -91,14 +95,16 @@ def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
     p[1] = min(max(p[1], -round_curve), round_curve)
     halflife = settings.command_halflife / settings.agility
+    lean = leans(m, _share_of_cycle(m, settings.agility, 0.5 * dt))
     before = m.command[1]  # shoulders turn in half the time, and in the air, too
-    m.command[1], m.rate[1] = spring_kernel(before, m.rate[1], p[1], 0.5 * halflife, dt)
+    m.command[1], m.rate[1] = spring_kernel(before, m.rate[1], p[1], 0.5 * halflife, lean * dt)
     turn = (m.command[1] - before) / (4.0 * most * dt)
     if abs(turn) > 1.0:
         m.command[1], m.rate[1] = before + math.copysign(4.0 * most * dt, turn), math.copysign(4.0 * most, turn)
     push = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
     if push <= 0.0:
         return
+    push *= lean
     forward, forward_rate = spring_kernel(m.command[0], m.rate[0], p[0], halflife, push * dt)
     lateral, lateral_rate = spring_kernel(m.command[2], m.rate[2], p[2], halflife, push * dt)
     forward, lateral = forward - m.command[0], lateral - m.command[2]
@@ -167,7 +173,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
         for d in range(LABELS_AT):
             m.blend[d] = m.row[d] - fresh[d]
         m.row[DURATION_AT] = fresh[DURATION_AT]  # at the other family's pace, too
-        series_kernel(table, m.weights, _next_phase(m, dt), fresh)
+        series_kernel(table, m.weights, (m.phase + _share_of_cycle(m, settings.agility, dt)) % 1.0, fresh)
         for d in range(LABELS_AT):
             m.blend_rate[d] = m.row_rate[d] - (fresh[d] - (m.row[d] - m.blend[d])) / dt
 
@@ -188,26 +194,30 @@ def _one_of(i, vertices):
 
 
 @kernel
-def advance_phase(m, wish, dt):
-    """Run the phase on at dφ/dt = 1 / duration(φ); at rest it waits, and starts with a swing."""
+def advance_phase(m, agility, dt):
+    """Run the phase on; at rest it waits."""
     if m.settled:
-        if wish[0] ** 2 + wish[1] ** 2 + wish[2] ** 2 < 1e-6:
-            return
-        # a body at rest starts in the middle of a swing, with the other foot under it
-        left_first = wish[1] > 0.05 or (wish[1] >= -0.05 and wish[2] >= 0.0)
-        m.phase = 0.03 if left_first else 0.53
-        m.settled = 0
-    m.phase = _next_phase(m, dt)
+        return
+    step = _share_of_cycle(m, agility, dt)
+    m.onset = max(m.onset - step, 0.0)
+    m.phase = (m.phase + step) % 1.0
 
 
 @kernel
-def _next_phase(m, dt):
+def _share_of_cycle(m, agility, dt):
+    """How far the phase runs in dt: dφ/dt = 1 / duration(φ), sooner while a foot is far off, and no faster than weight
+    is shifted before a start's first toe-off."""
     late = 0.0  # a foot that stands far from where it should makes one step sooner
     for foot in range(2):
         if m.standing[2 * foot] or m.standing[2 * foot + 1]:
             late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
     hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
-    return (m.phase + dt * hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)) % 1.0
+    pace = hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)
+    left = shift_left(m)
+    if left <= 0.0:
+        return pace * dt
+    shifting = min(pace, agility * BEFORE / SHIFT)
+    return min(shifting * dt, left) + pace * max(dt - left / shifting, 0.0)
 
 
 @kernel

@@ -43,13 +43,13 @@ def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velociti
     joints = body.parents.shape[0]
     local, orientations = np.empty((joints, 3, 3), np.float32), np.empty((joints, 3, 3), np.float32)
     positions, scratch = np.empty((joints, 3), np.float32), np.empty(SCRATCH, np.float32)
-    fresh, wish = np.empty(COLUMNS, np.float32), np.ones(3)
+    fresh = np.empty(COLUMNS, np.float32)
     for n in range(memory.shape[0]):
         m = memory[n]
         wraps, turned = 0, 0.0
         for _ in range(int((CYCLES + 2) * 4.0 / dt)):
             before, heading = m.phase, m.ground[2]
-            advance_phase(m, wish, dt)
+            advance_phase(m, 1.0, dt)
             blend_series(m, settings, table, fresh, legs, dt)
             pose_kernel(body, fresh, local, positions, orientations, scratch)
             follow_feet(m, body, legs, positions, orientations, velocities, dt)

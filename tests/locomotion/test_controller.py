@@ -242,7 +242,7 @@ def test_motion_is_the_same_from_every_place_and_in_every_direction(library, see
 
 def test_the_size_of_the_step_does_not_matter(locomotion):
     """From display rate to a thousand a second: the same blend, the same phase, the same place."""
-    *ends, finest = [play(locomotion, hold(1.5, *WISHES).repeat(n, axis=0), dt=1 / (FPS * n)).states[-1].memory for n in (1, 4, 17)]
+    *ends, finest = [play(locomotion, hold(2.0, *WISHES).repeat(n, axis=0), dt=1 / (FPS * n)).states[-1].memory for n in (1, 4, 17)]
     for end in ends:
         assert np.abs(end["weights"] - finest["weights"]).max() < 0.01
         assert np.abs((end["phase"] - finest["phase"] + 0.5) % 1 - 0.5).max() < 0.05
