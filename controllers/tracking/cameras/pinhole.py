@@ -5,6 +5,7 @@ Distortion is Brown's: radial k1, k2, k3 and tangential p1, p2.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -69,14 +70,10 @@ class Lens:
 
     def directions(self, pixels: np.ndarray) -> np.ndarray:
         """Directions (..., 3) in the world, unit length, along which pixels (..., 2) look; distortion undone by Newton's way."""
-        n, pixels = self.numbers, np.asarray(pixels, float)
-        wanted = (pixels - n[2:4]) / n[:2]
-        at = wanted.copy()
-        for _ in range(12):
-            bent, jacobian = _bent(at, n[16:21], n[21])
-            at = at - np.linalg.solve(jacobian, (bent - wanted)[..., None])[..., 0]
-        rays = np.concatenate([at, np.ones_like(at[..., :1])], -1) @ self.rotation
-        return rays / np.linalg.norm(rays, axis=-1, keepdims=True)
+        pixels = np.asarray(pixels, float)
+        out = np.empty((pixels[..., 0].size, 3))
+        direction_kernel(np.ascontiguousarray(pixels.reshape(-1, 2)), self.numbers, out)
+        return out.reshape(*pixels.shape[:-1], 3)
 
     def rays(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The Plücker lines (n, m) through pixels (..., 2): unit directions and moments (..., 3), m = eye × n."""
@@ -123,42 +120,48 @@ def ring(count: int, radius: float, height: float, target: Sequence[float], size
                  for k, a in enumerate(turns))
 
 
-def _bent(at: np.ndarray, d: np.ndarray, limit: float) -> tuple[np.ndarray, np.ndarray]:
-    """Where a lens bends places (..., 2) on the plane at depth 1 to, and the derivative (..., 2, 2)."""
-    k1, k2, p1, p2, k3 = d
-    x, y = at[..., 0], at[..., 1]
-    r2 = x * x + y * y
-    inner = r2 < limit
-    s = np.minimum(r2, limit)
-    radial = 1 + s * (k1 + s * (k2 + s * k3))
-    slope = np.where(inner, 2 * (k1 + s * (2 * k2 + 3 * k3 * s)), 0.0)
-    share = s / np.maximum(r2, 1e-12)  # tangential terms grow with the square: beyond the limit, as the place does
-    share = np.where(inner, 1.0, share**0.5)
-    u = x * radial + share * (2 * p1 * x * y + p2 * (r2 + 2 * x * x))
-    v = y * radial + share * (p1 * (r2 + 2 * y * y) + 2 * p2 * x * y)
-    j = np.empty((*x.shape, 2, 2))
-    j[..., 0, 0] = radial + slope * x * x + share * (2 * p1 * y + 6 * p2 * x)
-    j[..., 0, 1] = j[..., 1, 0] = slope * x * y + share * (2 * p1 * x + 2 * p2 * y)
-    j[..., 1, 1] = radial + slope * y * y + share * (6 * p1 * y + 2 * p2 * x)
-    return np.stack([u, v], -1), j
-
-
 @kernel
+def _bend(x, y, n):
+    """Where a lens bends a place on the plane at depth 1 to, and the derivative: u, v, du/dx, du/dy = dv/dx, dv/dy."""
+    k1, k2, p1, p2, k3, limit = n[16], n[17], n[18], n[19], n[20], n[21]
+    r2 = x * x + y * y
+    s, share = r2, 1.0
+    slope = 2.0 * (k1 + s * (2.0 * k2 + 3.0 * k3 * s))
+    if r2 > limit:  # from there on radially as it is, and tangential terms, which grow with the square, as the place does
+        s, share, slope = limit, math.sqrt(limit / r2), 0.0
+    radial = 1.0 + s * (k1 + s * (k2 + s * k3))
+    return (x * radial + share * (2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x)), y * radial + share * (p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y),
+            radial + slope * x * x + share * (2.0 * p1 * y + 6.0 * p2 * x), slope * x * y + share * (2.0 * p1 * x + 2.0 * p2 * y),
+            radial + slope * y * y + share * (6.0 * p1 * y + 2.0 * p2 * x))
+
+
+@kernel(nogil=True)
 def project_kernel(points, n, out):
     """Write pixels and depths (N, 3) of points (N, 3) [m] through a camera's `numbers`."""
-    k1, k2, p1, p2, k3, limit = n[16], n[17], n[18], n[19], n[20], n[21]
     for i in range(len(points)):
         a, b, c = points[i, 0], points[i, 1], points[i, 2]
         x = n[4] * a + n[5] * b + n[6] * c + n[13]
         y = n[7] * a + n[8] * b + n[9] * c + n[14]
         z = n[10] * a + n[11] * b + n[12] * c + n[15]
         deep = z if abs(z) > 1e-9 else 1e-9
-        x, y = x / deep, y / deep
-        r2 = x * x + y * y
-        s, share = r2, 1.0
-        if r2 > limit:
-            s, share = limit, (limit / r2) ** 0.5
-        radial = 1.0 + s * (k1 + s * (k2 + s * k3))
-        out[i, 0] = n[0] * (x * radial + share * (2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x))) + n[2]
-        out[i, 1] = n[1] * (y * radial + share * (p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y)) + n[3]
-        out[i, 2] = z
+        u, v, _, _, _ = _bend(x / deep, y / deep, n)
+        out[i, 0], out[i, 1], out[i, 2] = n[0] * u + n[2], n[1] * v + n[3], z
+
+
+@kernel(nogil=True)
+def direction_kernel(pixels, n, out):
+    """Write the unit directions (N, 3) in the world along which pixels (N, 2) look, by Newton's way."""
+    for i in range(len(pixels)):
+        a, b = (pixels[i, 0] - n[2]) / n[0], (pixels[i, 1] - n[3]) / n[1]
+        x, y = a, b
+        for _ in range(20):
+            u, v, xx, xy, yy = _bend(x, y, n)
+            e, f, det = u - a, v - b, xx * yy - xy * xy
+            if abs(det) < 1e-9:
+                break
+            x, y = x - (yy * e - xy * f) / det, y - (xx * f - xy * e) / det
+            if e * e + f * f < 1e-26:
+                break
+        size = math.sqrt(x * x + y * y + 1.0)
+        for k in range(3):
+            out[i, k] = (n[4 + k] * x + n[7 + k] * y + n[10 + k]) / size

@@ -37,6 +37,14 @@ def inverse(motion: ArrayLike) -> np.ndarray:
     return out
 
 
+def rigid(motion: ArrayLike) -> np.ndarray:
+    """The nearest rigid motions (..., 4, 4) to matrices that rounding has led astray: predictions of predictions double it."""
+    out = np.array(motion, float)
+    u, _, vt = np.linalg.svd(out[..., :3, :3])
+    out[..., :3, :3] = u @ vt
+    return out
+
+
 def hat(twist: ArrayLike) -> np.ndarray:
     """Twists (..., 6) as matrices (..., 4, 4), eq. (3)."""
     twist = np.asarray(twist, float)
