@@ -9,23 +9,49 @@ import numpy as np
 from ...compiled import kernel
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(nogil=True)
 def closest_kernel(queries, targets, facing, stride, pairs, squares, swap, count):
     """Write for every `stride`th query (N, 4), pixel and normal, the closest target (M, 4): (query, target) from `count` on; the new count.
 
-    facing: what opposite normals count in pixels, half of it: the far side of a limb is no match. swap: write (target, query).
+    targets: from the least y to the largest, so that a search from a query's own y outwards ends where nothing nearer can
+    come. facing: what opposite normals count in pixels, half of it: the far side of a limb is no match. swap: write
+    (target, query).
     """
+    many = len(targets)
     for i in range(0, len(queries), stride):
-        best, least = -1, np.inf
+        if many == 0 or count == len(pairs):
+            break
         x, y, u, v = queries[i, 0], queries[i, 1], queries[i, 2], queries[i, 3]
-        for j in range(len(targets)):
-            dx, dy = targets[j, 0] - x, targets[j, 1] - y
-            du, dv = targets[j, 2] - u, targets[j, 3] - v
-            far = dx * dx + dy * dy + facing * facing * (du * du + dv * dv)
-            if far < least:
-                least, best = far, j
-        if best < 0 or count == len(pairs):
-            continue
+        low, high = 0, many
+        while low < high:
+            middle = (low + high) // 2
+            if targets[middle, 1] < y:
+                low = middle + 1
+            else:
+                high = middle
+        up, down = low, low - 1
+        best, least = 0, np.inf
+        while up < many or down >= 0:
+            if up < many:
+                dx, dy = targets[up, 0] - x, targets[up, 1] - y
+                if dy * dy >= least:
+                    up = many
+                else:
+                    du, dv = targets[up, 2] - u, targets[up, 3] - v
+                    far = dx * dx + dy * dy + facing * facing * (du * du + dv * dv)
+                    if far < least:
+                        least, best = far, up
+                    up += 1
+            if down >= 0:
+                dx, dy = targets[down, 0] - x, targets[down, 1] - y
+                if dy * dy >= least:
+                    down = -1
+                else:
+                    du, dv = targets[down, 2] - u, targets[down, 3] - v
+                    far = dx * dx + dy * dy + facing * facing * (du * du + dv * dv)
+                    if far < least:
+                        least, best = far, down
+                    down -= 1
         pairs[count, 0], pairs[count, 1] = (best, i) if swap else (i, best)
         squares[count] = least
         count += 1

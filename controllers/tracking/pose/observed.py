@@ -24,6 +24,13 @@ class Observed:
     across: np.ndarray
     pixel: np.ndarray
 
+    def within(self, box: tuple[float, float, float, float]) -> Observed:
+        """What of it lies within left, top, right, bottom pixels: nobody is elsewhere."""
+        at = self.contour.pixels
+        near = (at[:, 0] >= box[0]) & (at[:, 1] >= box[1]) & (at[:, 0] <= box[2]) & (at[:, 1] <= box[3])
+        return Observed(self.lens, self.mask, Contour(at[near], self.contour.normals[near]), self.directions[near],
+                        self.across[near], self.pixel[near])
+
 
 def observed(lens: Lens, mask: np.ndarray) -> Observed:
     """A mask (H, W) bool as rays. ValueError for one of another size than the camera's pictures."""

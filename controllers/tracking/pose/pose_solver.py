@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from scipy.linalg import solve as solved
 from ..cameras import Lens, direction_kernel, project_kernel
 from ..silhouettes import Contour, Surface, View, contour_of, rendered, skinned
 from ..twists import Configuration, posed, retract_kernel
+from .evidence import overlap
 from .matching import closest_kernel, model_points_kernel, shift_kernel, sums_kernel
 from .observed import Observed
 from .penaliser import Penalty, penalty_rows
@@ -40,11 +41,13 @@ SETTINGS = SolverSettings()
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """where: the pose. residual: mean distance of contours [pixels]. overlaps: (C,) of the starting pose with each mask."""
+    """where: the pose. residual: mean distance of contours [pixels]. overlaps: (C,) of the starting pose with each mask.
+    believed: (C,) which cameras had a say."""
 
     where: Configuration
     residual: float
     overlaps: np.ndarray
+    believed: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +60,18 @@ class _Drawn:
 
 
 def solve(surface: Surface, views: Sequence[Observed], start: Configuration, penalty: Penalty | None = None,
-          believed: np.ndarray | None = None, settings: SolverSettings = SETTINGS) -> Fit:
-    """The pose near `start` that fits what cameras see, and the penalty. believed: (C,) bool, which of them; all by default."""
+          believe: Callable[[np.ndarray], np.ndarray] | None = None, settings: SolverSettings = SETTINGS) -> Fit:
+    """The pose near `start` that fits what cameras see, and the penalty.
+
+    believe: told how `start` overlaps each mask (C,), it says which cameras (C,) bool have a say; all by default.
+    """
     chain, size = surface.chain, 6 + len(surface.chain)
     centre = start.root[:3, 3].copy()
     root, angles = start.root.copy(), start.angles.copy()
     root[:3, 3] -= centre
-    overlaps, residual = np.zeros(len(views)), 0.0
+    overlaps, residual, believed = np.zeros(len(views)), 0.0, np.ones(len(views), bool)
     buffers: list[View | None] = [None] * len(views)
+    views = list(views)
     for outer in range(settings.outer):
         drawn, columns = [], None
         world = root.copy()
@@ -72,14 +79,18 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
         positions, orientations, _ = posed(chain, Configuration(world, angles))
         vertices = skinned(surface, positions, orientations)
         for k, view in enumerate(views):
-            if believed is not None and not believed[k]:
+            if not believed[k]:
                 drawn.append(None)
                 continue
-            made = _render(view.lens, vertices, surface, buffers[k])
-            buffers[k] = made
+            buffers[k] = made = _render(view.lens, vertices, surface, buffers[k])
             if outer == 0:
-                overlaps[k] = _overlap(view.mask, made)
+                box = _around(made.box, settings.reach)
+                overlaps[k] = _overlap(view.mask, made, box)
+                views[k] = view.within(box)
             drawn.append(_points(view.lens, made, surface, centre))
+        if outer == 0 and believe is not None:
+            believed = believe(overlaps)
+            drawn = [one if sure else None for one, sure in zip(drawn, believed)]
         for inner in range(settings.inner):
             _, _, columns = posed(chain, Configuration(root, angles))
             matrix, vector, residual = _sums(surface, views, drawn, columns, centre, settings)
@@ -100,7 +111,7 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
                         _shift(one, view.lens, surface, columns, step, centre)
             retract_kernel(chain.first, chain.count, step, root, angles, chain.lower, chain.upper)
     root[:3, 3] += centre
-    return Fit(Configuration(root, angles), residual, overlaps)
+    return Fit(Configuration(root, angles), residual, overlaps, believed)
 
 
 def _render(lens: Lens, vertices: np.ndarray, surface: Surface, kept: View | None) -> View:
@@ -112,12 +123,18 @@ def _render(lens: Lens, vertices: np.ndarray, surface: Surface, kept: View | Non
     return rendered(lens, vertices, surface.triangles, kept)
 
 
-def _overlap(mask: np.ndarray, made: View) -> float:
-    left, top, right, bottom = made.box
+def _around(box: tuple[int, int, int, int], reach: float) -> tuple[int, int, int, int]:
+    """A box with room for matches on all sides."""
+    left, top, right, bottom = box
+    more = int(reach * max(right - left, bottom - top)) + 2
+    return max(left - more, 0), max(top - more, 0), right + more, bottom + more
+
+
+def _overlap(mask: np.ndarray, made: View, box: tuple[int, int, int, int]) -> float:
+    """Of the pixels in a box that are the model's or the mask's, how many are both's."""
+    left, top, right, bottom = box
     inside, ours = mask[top:bottom, left:right], made.triangles[top:bottom, left:right] >= 0
-    both = np.count_nonzero(inside & ours)
-    union = np.count_nonzero(mask) + np.count_nonzero(ours) - both
-    return both / union if union else 0.0
+    return overlap(inside, ours)
 
 
 def _points(lens: Lens, made: View, surface: Surface, centre: np.ndarray) -> _Drawn:
@@ -157,4 +174,7 @@ def _shift(one: _Drawn, lens: Lens, surface: Surface, columns: np.ndarray, step:
     shift_kernel(one.points, one.corners, surface.shares, columns, step)
     seen = np.empty_like(one.points)
     project_kernel(one.points + centre, lens.numbers, seen)
-    one.contour.pixels[:] = seen[:, :2]
+    order = np.argsort(seen[:, 1], kind="stable")
+    one.contour.pixels[:] = seen[order, :2]
+    for array in (one.contour.normals, one.points, one.corners):
+        array[:] = array[order]

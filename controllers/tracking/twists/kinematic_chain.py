@@ -23,8 +23,8 @@ PAPER: dict[str, tuple[np.ndarray, ...]] = {  # 6 + 20
 FULL: dict[str, tuple[np.ndarray, ...]] = PAPER | {  # 6 + 36
     "Spine1": (X, Y, Z), "Neck": (X, Y, Z), "Foot": (X, Y, Z), "ForeArm": (Y, X), "Hand": (Y, Z), "Toe": (X,)}
 """42 degrees: with trunk, neck, wrists and toes."""
-WIDE = np.radians(25.0)
-"""So much further than the tables say may a joint go [rad]: a deep squat is beyond them."""
+WIDE, WIDEST = np.radians(30.0), np.radians(60.0)
+"""So much further than the tables say may a joint go [rad], and a ball: recorded squats and cartwheels are far beyond them."""
 CARRIES = {"Spine1": "Spine2", "Neck": "Head"}
 """Whose orientation a joint takes over, where those above it are stiff."""
 HINGES = {"Leg": (-10.0, 170.0), "ForeArm": (-170.0, 10.0)}
@@ -110,10 +110,9 @@ def chain_of(skeleton: Skeleton | None = None, freedom: Literal["paper", "full"]
         mirrored = -1.0 if name.startswith("Right") else 1.0
         for axis in turns:
             k = int(axis.argmax())
-            low, high = limits.lower[j, k] - WIDE, limits.upper[j, k] + WIDE
-            if len(turns) == 3:  # a ball's vector is no angle about each axis: limits only keep it from turning twice
-                low, high = -np.pi, np.pi
-            elif part in HINGES and k == int(turns[0].argmax()):
+            more = WIDEST if len(turns) == 3 else WIDE
+            low, high = max(limits.lower[j, k] - more, -np.pi), min(limits.upper[j, k] + more, np.pi)
+            if part in HINGES and k == int(turns[0].argmax()):
                 ends = np.radians(HINGES[part])
                 low, high = sorted(ends * (mirrored if part == "ForeArm" else 1.0))
             joints.append(j)
