@@ -105,6 +105,8 @@ def read_footage(folder: str | Path) -> Footage:
     """The footage in a folder. FootageError, in one line, for anything else."""
     folder = Path(folder)
     told = _read(folder)
+    if told.get("complete") is not True:
+        raise FootageError(f"{folder}: was not filmed to its end; the same command goes on with it")
     try:
         lenses = read_cameras(folder / CAMERAS)
     except CalibrationError as fault:
@@ -123,8 +125,6 @@ def read_footage(folder: str | Path) -> Footage:
     people = told.get("people")
     if not isinstance(people, list) or not all(isinstance(name, str) for name in people):
         raise FootageError(f"{folder / ABOUT}: people: needs a list of names; film it anew")
-    if told.get("complete") is not True:
-        raise FootageError(f"{folder}: was not filmed to its end; the same command goes on with it")
     return Footage(folder, lenses, told["fps"], told["frames"], tuple(people), lists("dropped"), lists("corrupted"))
 
 

@@ -71,7 +71,7 @@ def shoot(plan: Plan, folder: str | Path, controller: Any, stage: Any) -> Iterat
             _save(file_of(path, lens.name, "depth", frame.number), _millimetres(depth))
             _save(file_of(path, lens.name, "mask", frame.number), mask)
             if plan.sensor.fate(c, frame.number) != "dropped":
-                stage.renderer.resize(warp.size)
+                stage.resize(warp.size)
                 picture = warp.bent(stage.frame(Scene(warp.camera, people, frame.after.props)))
                 _save(file_of(path, lens.name, "frame", frame.number), plan.sensor.disturbed(picture, c, frame.number, frame.time))
             drawn += 1
