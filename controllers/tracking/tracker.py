@@ -20,7 +20,7 @@ FIRM = 3.0
 """How firmly the penalty holds, times what bounds on acceleration say, where contours are ROUGH."""
 ROUGH = 0.6
 """So far off are contours [pixels] on average under the paper's noise: cleaner ones count for more, rougher ones for less."""
-CLEANEST, ROUGHEST = 0.1, 1.5
+CLEANEST, ROUGHEST = 0.03, 1.5
 """Nobody is believed to be better than that [pixels], or worse."""
 
 
