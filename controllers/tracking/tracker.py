@@ -6,13 +6,13 @@ A `Track` is all that is remembered; it goes in, and another one comes out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, Observed, SolverSettings, judged, observed, penalty_of, predicted, solve
+from .pose import SETTINGS, Evidence, Fit, Observed, SolverSettings, calmed, judged, observed, penalty_of, predicted, solve
 from .silhouettes import Surface
 from .twists import Configuration
 
@@ -27,11 +27,13 @@ CLEANEST, ROUGHEST = 0.03, 1.5
 @dataclass(frozen=True)
 class TrackerSettings:
     """start: where a frame's search begins, at the prediction or at the last pose. penalty: draw it to the prediction, too.
+    pace: how far joints go on as before where the penalty draws them, 1 as the paper's eq. (16), 0 not at all.
     gate: leave out cameras whose picture is not what could be expected. firmness: of the penalty, times what bounds on
     acceleration say."""
 
     start: Literal["prediction", "last"] = "prediction"
     penalty: bool = True
+    pace: float = 0.0
     gate: bool = True
     firmness: float = FIRM
     solver: SolverSettings = SETTINGS
@@ -74,7 +76,9 @@ class Tracker:
         start = target if chosen.start == "prediction" else track.now
         rough = ROUGH if track.fit is None else min(max(track.fit.residual, CLEANEST), ROUGHEST)
         firmness = chosen.firmness * (rough / ROUGH) ** 2
-        penalty = penalty_of(chain, target, self.rate, firmness) if chosen.penalty else None
+        penalty = None
+        if chosen.penalty:
+            penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
         kept = [track.evidence]
 
         def believe(overlaps: np.ndarray) -> np.ndarray:
@@ -83,6 +87,8 @@ class Tracker:
             kept[0], believed = judged(track.evidence, overlaps)
             return believed & there
         fit = solve(self.surface, views, start, penalty, believe, chosen.solver)
+        if not fit.believed.any():  # nothing speaks against going on
+            fit = replace(fit, where=target)
         return Track(fit.where, track.now, kept[0], fit)
 
 

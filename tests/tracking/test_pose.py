@@ -9,7 +9,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from bodies import cameras, masks, stick_body, stride
 
-from gambol.controllers.tracking.pose import (Evidence, Penalty, constraint, judged, normal_rows, observed, overlap, penalty_of,
+from gambol.controllers.tracking.pose import (Evidence, Penalty, calmed, constraint, judged, normal_rows, observed, overlap, penalty_of,
                                               penalty_rows, plucker_rows, predicted, solve)
 from gambol.controllers.tracking.pose.matching import closest_kernel, shift_kernel, sums_kernel
 from gambol.controllers.tracking.silhouettes import skinned
@@ -147,6 +147,17 @@ def test_the_prediction_goes_on_as_before_from_either_side(surface):
     ball = chain.skeleton.index("LeftArm")
     a, b, c = (local_turns(chain, one).rotations[ball] for one in (before, now, got))
     np.testing.assert_allclose(c, b @ a.T @ b, atol=1e-9)
+
+
+def test_a_calmed_prediction_lies_on_the_way_to_it(surface):
+    chain, before, now = surface.chain, stride(surface.chain, 0.10), stride(surface.chain, 0.12)
+    target = predicted(chain, now, before)
+    np.testing.assert_allclose(calmed(chain, now, target, 0.0).angles, now.angles, atol=1e-12)
+    np.testing.assert_allclose(local_turns(chain, calmed(chain, now, target, 1.0)).rotations, local_turns(chain, target).rotations, atol=1e-9)
+    half, ball = calmed(chain, now, target, 0.5), chain.skeleton.index("LeftArm")
+    a, b, c = (local_turns(chain, one).rotations[ball] for one in (now, half, target))
+    np.testing.assert_allclose(b @ a.T @ b, c, atol=1e-9)
+    assert half.root is target.root
 
 
 def test_predictions_of_predictions_stay_rigid(surface):

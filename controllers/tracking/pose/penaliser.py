@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..twists import Chain, Configuration, exp, inverse, local_turns, log, rigid, turn_log_kernel
+from ..twists import Chain, Configuration, exp, inverse, local_turns, log, retract_kernel, rigid, turn_log_kernel
 from ...body import log as vector
 
 JOINT_ACCELERATION = 250.0
@@ -40,6 +40,18 @@ def predicted(chain: Chain, now: Configuration, before: Configuration) -> Config
         at = chain.first[j]
         angles[at:at + 3] = vector(then[j] @ earlier[j].T @ then[j])
     return Configuration(rigid(now.root @ inverse(before.root) @ now.root), np.clip(angles, chain.lower, chain.upper))
+
+
+def calmed(chain: Chain, now: Configuration, target: Configuration, pace: float) -> Configuration:
+    """A prediction whose joints go only so far on: 1 as predicted, 0 as they are now. The root goes all the way.
+
+    Where no picture shows a limb, or its turn about itself, a pace that is kept turns it on and on.
+    """
+    step = np.zeros(6 + len(chain))
+    turn_log_kernel(chain.first, chain.count, now.angles, target.angles, step[6:])
+    angles = now.angles.copy()
+    retract_kernel(chain.first, chain.count, pace * step, np.eye(4), angles, chain.lower, chain.upper)
+    return Configuration(target.root, angles)
 
 
 def penalty_of(chain: Chain, target: Configuration, rate: float, firmness: float = 1.0) -> Penalty:

@@ -25,7 +25,7 @@ class SolverSettings:
     damping: of a step, over what a pixel's worth of evidence weighs. both: match from the model to the picture, and back.
     """
 
-    outer: int = 3
+    outer: int = 4
     inner: int = 2
     reach: float = 0.08
     bend: float = 3.0
