@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.tracking.cameras import Lens, ring
-from gambol.controllers.tracking.silhouettes import Surface, rendered, skinned
+from gambol.controllers.tracking.silhouettes import Contour, Surface, contour_of, rendered, skinned
 from gambol.controllers.tracking.twists import Chain, Configuration, fitted, local_turns, posed
 from gambol.game.studio import surface_of
 
@@ -72,6 +72,29 @@ def noisy(mask: np.ndarray, rng: np.random.Generator, share: float = 0.15, recta
         out[y:y + h, x:x + w] = rng.random() < 0.5
     out ^= rng.random(out.shape) < share
     return uniform_filter(out.astype(np.float32), 5) > 0.5
+
+
+def overlay(film: Film, masks: Sequence[Sequence[np.ndarray]], poses: Sequence[Configuration], frames: Sequence[int]) -> np.ndarray:
+    """A picture (H, W, 3) of what was seen, grey, the true contour, green, and the model's, red: a row a frame, a column a camera."""
+    rows, half = [], 110
+    for t in frames:
+        row = []
+        for lens, mask in zip(film.lenses, masks[t - 2]):
+            true, ours = (_contour(film, lens, pose) for pose in (film.truth[t], poses[t]))
+            picture = np.where(mask[..., None], 150, 40).astype(np.uint8).repeat(3, -1)
+            for contour, colour in ((true, (0, 255, 0)), (ours, (255, 60, 60))):
+                x, y = contour.pixels.astype(int).T
+                picture[y, x] = colour
+            middle = true.pixels.mean(0).astype(int)
+            wide = np.pad(picture, ((half, half), (half, half), (0, 0)))
+            row.append(wide[middle[1]:middle[1] + 2 * half, middle[0]:middle[0] + 2 * half].repeat(2, 0).repeat(2, 1))
+        rows.append(np.concatenate(row, 1))
+    return np.concatenate(rows)
+
+
+def _contour(film: Film, lens: Lens, pose: Configuration) -> Contour:
+    positions, orientations, _ = posed(film.chain, pose)
+    return contour_of(rendered(lens, skinned(film.surface, positions, orientations), film.surface.triangles).mask)
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from _plots import pictures
-from _tracking import RATE, Errors, Film, errors, films, noisy
+from _tracking import RATE, Errors, Film, errors, films, noisy, overlay
 
 from gambol.controllers.tracking import Track, Tracker, TrackerSettings
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
@@ -52,7 +52,7 @@ def told(name: str, made: Sequence[Errors]) -> None:
     print(f"    {name:32} {joined.told()}{each}", flush=True)
 
 
-def clean(film: Film, _seeds: int) -> None:
+def clean(film: Film, _seeds: int, _plots: Path | None) -> None:
     """Perfect silhouettes."""
     masks = [film.masks(t) for t in range(2, len(film.truth))]
     for name, settings in WAYS.items():
@@ -64,14 +64,20 @@ def with_noise(film: Film, seed: int) -> list[list[np.ndarray]]:
     return [[noisy(mask, rng) for mask in film.masks(t)] for t in range(2, len(film.truth))]
 
 
-def noise(film: Film, seeds: int) -> None:
+def noise(film: Film, seeds: int, plots: Path | None) -> None:
     """The paper's 15 % and rectangles."""
     masks = [with_noise(film, seed) for seed in range(seeds)]
     for name, settings in WAYS.items():
-        told(name, [errors(film.chain, track(film, one, settings)[0], film.truth) for one in masks])
+        made = [track(film, one, settings)[0] for one in masks]
+        told(name, [errors(film.chain, one, film.truth) for one in made])
+        if plots is not None:
+            from PIL import Image
+
+            shown = overlay(film, masks[0], made[0], [len(film.truth) * k // 5 for k in (1, 2, 3, 4)])
+            Image.fromarray(shown).save(plots / f"{film.name} {name}.png".replace(" ", "_").replace(",", "").replace("'", ""))
 
 
-def corrupted(film: Film, seeds: int) -> None:
+def corrupted(film: Film, seeds: int, _plots: Path | None) -> None:
     """Two frames in 22 in which every camera stored something else: the silhouette of another moment, mirrored and elsewhere."""
     for kind in ("clean", "noisy"):
         made = [_with_lies(film, seed, kind) for seed in range(seeds)]
@@ -89,7 +95,7 @@ def _with_lies(film: Film, seed: int, kind: str) -> list[list[np.ndarray]]:
     return masks
 
 
-def rivals(film: Film, seeds: int) -> None:
+def rivals(film: Film, seeds: int, _plots: Path | None) -> None:
     """Filters after each frame of a bare track, tuned to lag as far as the penalty does, or as little as they can; and both."""
     masks = [with_noise(film, seed) for seed in range(seeds)]
     bare = [track(film, one, BARE)[0] for one in masks]
@@ -132,7 +138,7 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--only", default="clean,noise,corrupted,rivals,time")
     parser.add_argument("--clips", default="", help="parts of clips' names, with commas")
-    parser.add_argument("--plots", type=Path)
+    parser.add_argument("--plots", type=Path, help="a folder for pictures of contours and model under noise")
     args = parser.parse_args()
     pictures(parser, args.plots)
     parts = {"clean": clean, "noise": noise, "corrupted": corrupted, "rivals": rivals}
@@ -144,7 +150,7 @@ def main() -> None:
         print(f"{name}: {' '.join((parts[name].__doc__ or '').split())}")
         for film in every:
             print(f"  {film.name}, {len(film.truth)} frames, {args.width} × {args.width * 3 // 4}")
-            parts[name](film, args.seeds)
+            parts[name](film, args.seeds, args.plots)
     if "time" in wanted:
         print("time: four cameras, one thread, silhouettes given")
         times(args.folder, 80)

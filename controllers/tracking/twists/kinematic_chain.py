@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from ...body import Pose, Skeleton, exp, forward_kinematics, human, joint_limits, local_rotations, log
+from ...body import Pose, Skeleton, exp, forward_kinematics, human, joint_limits, log
 from . import rigid_motions
 from .twist_kernels import chain_kernel
 
