@@ -150,4 +150,4 @@ def _lag(at: np.ndarray, there: np.ndarray) -> float:
     off = np.array([((at[4 + s:len(at) - 4 + s] - at[4 + s:len(at) - 4 + s].mean(0) - inner + inner.mean(0)) ** 2).mean() for s in shifts])
     k = int(np.clip(off.argmin(), 1, len(off) - 2))
     a, b, c = off[k - 1:k + 2]
-    return float(shifts[k] + 0.5 * (a - c) / max(a - 2 * b + c, 1e-12))
+    return float(shifts[k] + np.clip(0.5 * (a - c) / max(a - 2 * b + c, 1e-12), -1.0, 1.0))

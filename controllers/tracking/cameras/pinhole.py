@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...compiled import kernel
 
@@ -96,10 +97,10 @@ class Lens:
         return float(BEYOND**2 * (x * x + y * y))
 
 
-def looking_at(name: str, size: tuple[int, int], eye: Sequence[float], target: Sequence[float], fov: float,
-               distortion: Sequence[float] = (0, 0, 0, 0, 0)) -> Lens:
+def looking_at(name: str, size: tuple[int, int], eye: ArrayLike, target: ArrayLike, fov: float,
+               distortion: ArrayLike = (0, 0, 0, 0, 0)) -> Lens:
     """A camera at `eye` that looks at `target` [m], upright. fov: vertical field of view [rad]. ValueError as of `Lens`."""
-    ahead = np.asarray(target, float) - eye
+    ahead = np.asarray(target, float) - np.asarray(eye, float)
     if not np.linalg.norm(ahead) > 1e-6:
         raise ValueError("target: is where the camera is")
     if not 0.01 <= fov <= 2.8:
