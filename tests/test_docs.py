@@ -19,7 +19,7 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.M | re.S)
 QUOTED = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 FILE = re.compile(r"[\w./-]+\.(?:py|md|toml|ipynb|npz|webp|png|cff)|(?:controllers|game|assets|scripts|examples|tests|docs)(?:/[\w.-]+)*/?")
 NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
-USERS = {"my.toml", "mine.toml", "mine.npz", "far.png", "mine.png", "NAME.png"}
+USERS = {"my.toml", "mine.toml", "mine.npz", "far.png", "mine.png", "NAME.png", "truth.npz"}
 """Files that a reader makes."""
 
 
