@@ -19,7 +19,7 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.M | re.S)
 QUOTED = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 FILE = re.compile(r"[\w./-]+\.(?:py|md|toml|ipynb|npz|webp|png|cff)|(?:controllers|game|assets|scripts|examples|tests|docs)(?:/[\w.-]+)*/?")
 NAME = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
-USERS = {"my.toml", "mine.toml", "mine.npz", "far.png", "mine.png", "NAME.png"}
+USERS = {"my.toml", "mine.toml", "mine.npz", "far.png", "mine.png", "NAME.png", "truth.npz"}
 """Files that a reader makes."""
 
 
@@ -143,13 +143,16 @@ def test_there_is_code_that_runs():
 @pytest.mark.parametrize("page", [page for page in PAGES if "```toml" in page.read_text("utf-8")], ids=by_name)
 def test_toml_of_a_page_is_what_gambol_reads(page, tmp_path):
     from gambol.controllers.reconstruction.live import read_map
+    from gambol.controllers.tracking.cameras import read_cameras
     from gambol.game.scenario import load
 
     for kind, text in FENCE.findall(page.read_text("utf-8")):
         if kind == "toml":
             file = tmp_path / "x.toml"
             file.write_text(text, "utf-8")
-            (load if "actors" in tomllib.loads(text) else read_map)(file)
+            tables = tomllib.loads(text)
+            cameras = any("size" in table for table in tables.values() if isinstance(table, dict))
+            (load if "actors" in tables else read_cameras if cameras else read_map)(file)
 
 
 def commands():

@@ -102,6 +102,12 @@ PLAN = {
         "supervisor": "body contract",
         "jump.muscles": "compiled jump.body",
         "jump": "body contract navigation",
+        "tracking": "",
+        "tracking.twists": "compiled body",
+        "tracking.cameras": "compiled files body",
+        "tracking.silhouettes": "compiled tracking.twists tracking.cameras",
+        "tracking.pose": "compiled body tracking.twists tracking.cameras tracking.silhouettes",
+        "tracking.rivals": "tracking.twists",
         "locomotion": "compiled files body contract mocap navigation",
         "scaled": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles",
@@ -130,8 +136,9 @@ PLAN = {
         "hud": "scene hosts world explain session",
         "scenario": "scene files input camera world explain session hud",
         "output": "scene files render character input world explain session scenario",
+        "studio": "scene files render world scenario output",
         "app": "scene files render input camera hosts world explain session hud output",
-        "cli": "scene files character input hosts world session scenario output app",
+        "cli": "scene files character input hosts world session scenario output studio app",
     },
 }
 """The house plan: which room may use which others of its wing; the game may use every room of the controllers.

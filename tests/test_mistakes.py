@@ -17,6 +17,7 @@ from gambol.controllers.reconstruction.database.database import Database, Databa
 from gambol.controllers.reconstruction.live.osc_stream import StreamError, read_map
 from gambol.controllers.reconstruction.pose_vector import WIDTH
 from gambol.controllers.scaled import Scaled
+from gambol.controllers.tracking.cameras import CalibrationError, read_cameras
 from gambol.game.character import load as wear
 from gambol.game.character.gltf import CharacterError
 from gambol.game.cli import app
@@ -90,7 +91,7 @@ def test_an_option_is_a_finite_number(arguments, option, tmp_path, monkeypatch):
 READERS = {"a.bvh": (load, MotionFileError), "a.amc": (lambda path: load(path, asf=path), MotionFileError), "a.npz": (Library.load, LibraryError),
            "a.gambolmotion": (Database.open, DatabaseError), "a.glb": (wear, CharacterError), "a.vrm": (wear, CharacterError),
            "b.toml": (remap.load, remap.BindingsError), "s.toml": (play, ScenarioError), "m.toml": (read_map, StreamError),
-           "r.toml": (read_recipe, LibraryError)}
+           "r.toml": (read_recipe, LibraryError), "c.toml": (read_cameras, CalibrationError), "c.qca.txt": (read_cameras, CalibrationError)}
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="only where there are pipes with names")

@@ -71,6 +71,11 @@ class Offscreen:
         self.renderer.draw(scenes)
         return self.renderer.read(out)
 
+    def resize(self, size: tuple[int, int]) -> None:
+        """Draw pictures of another size, width and height in pixels, from now on."""
+        self._make_current()
+        self.renderer.resize(size)
+
     def release(self) -> None:
         """Give the graphics card back."""
         self._make_current()

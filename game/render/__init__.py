@@ -5,7 +5,7 @@ pixels, `blit` shows them elsewhere. Importing this package touches no GL; hosts
 """
 
 from . import gl, occlusion, skin, view
-from .mesh import Body, Mesh, mannequin, pack
+from .mesh import LEVELS, Body, Mesh, mannequin, pack
 from .presets import FAST, FULL, PRESETS, Preset, preset
 from .renderer import Renderer
 from .skin import NAMES
@@ -13,6 +13,6 @@ from .view import NEAR, look_at, scale_of
 from .wear import leg_length, worn
 
 __all__ = [
-    "FAST", "FULL", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "gl", "leg_length", "look_at",
+    "FAST", "FULL", "LEVELS", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "gl", "leg_length", "look_at",
     "mannequin", "occlusion", "pack", "preset", "scale_of", "skin", "view", "worn",
 ]

@@ -37,6 +37,11 @@ PARENTS = np.concatenate([STANDARD.parents, STANDARD.parents[_BONES], _FORE])
 """On which joint each of `NAMES` hangs (30,), -1 for the hips."""
 
 
+def borrowed() -> tuple[np.ndarray, np.ndarray]:
+    """Of each helper the joint whose twist it takes over (8,), -1 for one that leaves its own out, and about which axis (8, 3)."""
+    return np.concatenate([np.full(len(_SWINGS), -1), _HAND]), np.concatenate([_AXES, np.tile([1.0, 0.0, 0.0], (len(_HANDS), 1))])
+
+
 def twist(rotation: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """The part (..., 4) of unit quaternions (..., 4), (x, y, z, w), that turns about `axis` (..., 3)."""
     along = np.sum(rotation[..., :3] * axis, -1, keepdims=True)

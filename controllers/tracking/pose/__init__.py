@@ -1,0 +1,12 @@
+"""The pose that fits what cameras see: correspondences, Plücker constraints, the penalty on jitter, and the solver of all."""
+
+from .evidence import Evidence, judged, overlap
+from .observed import Observed, observed
+from .penaliser import Penalty, calmed, penalty_of, penalty_rows, predicted
+from .plucker import constraint, normal_rows, plucker_rows
+from .pose_solver import SETTINGS, Fit, SolverSettings, solve
+
+__all__ = [
+    "SETTINGS", "Evidence", "Fit", "Observed", "Penalty", "SolverSettings", "calmed", "constraint", "judged", "normal_rows", "observed",
+    "overlap", "penalty_of", "penalty_rows", "plucker_rows", "predicted", "solve",
+]

@@ -1,0 +1,78 @@
+"""The penalty on jitter, section 4: where the last two poses would lead, and the rows that draw the solution there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..twists import Chain, Configuration, exp, inverse, local_turns, log, retract_kernel, rigid, turn_log_kernel
+from ...body import log as vector
+
+JOINT_ACCELERATION = 250.0
+"""As fast as joints' angles change their pace [rad/s²]; σ = a/f² of the penalty, 0.07 rad at 60 frames a second."""
+ACCELERATION = 25.0
+"""The hips' [m/s²], 7 mm at 60 frames a second: a person's 10, and what skin and pelvis differ."""
+TURNING = 110.0
+"""The hips' [rad/s²], 0.03 rad at 60 frames a second."""
+
+
+@dataclass(frozen=True, eq=False)
+class Penalty:
+    """Where to draw a solution, and how firmly. target: the prediction. weights: (6 + D,) 1/σ² of translation [1/m²],
+    rotation and angles [1/rad²]."""
+
+    target: Configuration
+    weights: np.ndarray
+
+
+def predicted(chain: Chain, now: Configuration, before: Configuration) -> Configuration:
+    """Where two poses lead, eq. (16) and (17): each of them as far on as from the one before to it.
+
+    The root's is M_t M_{t−1}⁻¹ M_t; a ball goes on likewise, R_t R_{t−1}ᵀ R_t, as its rotation vectors don't add up.
+    """
+    step = np.empty(len(chain))
+    turn_log_kernel(chain.first, chain.count, before.angles, now.angles, step)
+    angles = now.angles + step
+    balls = np.flatnonzero(chain.count == 3)
+    then, earlier = (local_turns(chain, one).rotations for one in (now, before))
+    for j in balls:
+        at = chain.first[j]
+        angles[at:at + 3] = vector(then[j] @ earlier[j].T @ then[j])
+    return Configuration(rigid(now.root @ inverse(before.root) @ now.root), np.clip(angles, chain.lower, chain.upper))
+
+
+def calmed(chain: Chain, now: Configuration, target: Configuration, pace: float) -> Configuration:
+    """A prediction whose joints go only so far on: 1 as predicted, 0 as they are now. The root goes all the way.
+
+    Where no picture shows a limb, or its turn about itself, a pace that is kept turns it on and on.
+    """
+    step = np.zeros(6 + len(chain))
+    turn_log_kernel(chain.first, chain.count, now.angles, target.angles, step[6:])
+    angles = now.angles.copy()
+    retract_kernel(chain.first, chain.count, pace * step, np.eye(4), angles, chain.lower, chain.upper)
+    return Configuration(target.root, angles)
+
+
+def penalty_of(chain: Chain, target: Configuration, rate: float, firmness: float = 1.0) -> Penalty:
+    """The penalty at `rate` frames a second, from bounds on acceleration: σ = a/f². firmness: times so much.
+
+    Beyond a rate of 60 it gets no firmer: jitter comes from pictures, not from the rate.
+    """
+    interval = 1.0 / min(rate, 60.0) ** 2
+    sigma = np.concatenate([np.full(3, ACCELERATION * interval), np.full(3, TURNING * interval), np.full(len(chain), JOINT_ACCELERATION * interval)])
+    return Penalty(target, firmness / sigma**2)
+
+
+def penalty_rows(chain: Chain, penalty: Penalty, where: Configuration, centre: np.ndarray) -> np.ndarray:
+    """What eq. (26) wants of a step (6 + D,): (log(M̲ M⁻¹), Θ̲ − Θ), the root's about `centre` (3,) [m].
+
+    About the world's origin a turn of the root would count as a shift, and the more the farther off it is.
+    """
+    shift = np.zeros(6)
+    shift[:3] = -centre
+    there = exp(shift)
+    out = np.empty(6 + len(chain))
+    out[:6] = log(there @ penalty.target.root @ inverse(where.root) @ inverse(there))
+    turn_log_kernel(chain.first, chain.count, where.angles, penalty.target.angles, out[6:])
+    return out

@@ -1,0 +1,180 @@
+"""The pose that fits contours: render the model, match contours both ways, solve for a step of twists, and again (section 2.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve as solved
+
+from ..cameras import Lens, direction_kernel, project_kernel
+from ..silhouettes import Contour, Surface, View, contour_of, rendered, skinned
+from ..twists import Configuration, posed, retract_kernel
+from .evidence import overlap
+from .matching import closest_kernel, model_points_kernel, shift_kernel, sums_kernel
+from .observed import Observed
+from .penaliser import Penalty, penalty_rows
+
+
+@dataclass(frozen=True)
+class SolverSettings:
+    """outer: how often the model is drawn. inner: steps for each. reach: how far off a contour is still a match, over the
+    body's height in the picture. bend: where its pull stops growing [pixels]. facing: what opposite normals count [pixels].
+    points: of each contour that seek a match. effective: what all of them count for, as neighbours say the same.
+    damping: of a step, over what a pixel's worth of evidence weighs. both: match from the model to the picture, and back.
+    """
+
+    outer: int = 4
+    inner: int = 2
+    reach: float = 0.08
+    bend: float = 3.0
+    facing: float = 8.0
+    points: int = 300
+    effective: float = 400.0
+    damping: float = 1e-3
+    both: bool = True
+
+
+SETTINGS = SolverSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """where: the pose. residual: mean distance of contours [pixels]. overlaps: (C,) of the starting pose with each mask.
+    believed: (C,) which cameras had a say."""
+
+    where: Configuration
+    residual: float
+    overlaps: np.ndarray
+    believed: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """A model's contour in one view: its points about the centre (N, 3) [m], the vertices about them, pixels and normals."""
+
+    points: np.ndarray
+    corners: np.ndarray
+    contour: Contour
+
+
+def solve(surface: Surface, views: Sequence[Observed], start: Configuration, penalty: Penalty | None = None,
+          believe: Callable[[np.ndarray], np.ndarray] | None = None, settings: SolverSettings = SETTINGS) -> Fit:
+    """The pose near `start` that fits what cameras see, and the penalty.
+
+    believe: told how `start` overlaps each mask (C,), it says which cameras (C,) bool have a say; all by default.
+    """
+    chain, size = surface.chain, 6 + len(surface.chain)
+    centre = start.root[:3, 3].copy()
+    root, angles = start.root.copy(), start.angles.copy()
+    root[:3, 3] -= centre
+    overlaps, residual, believed = np.zeros(len(views)), 0.0, np.ones(len(views), bool)
+    buffers: list[View | None] = [None] * len(views)
+    views = list(views)
+    for outer in range(settings.outer):
+        drawn, columns = [], None
+        world = root.copy()
+        world[:3, 3] += centre
+        positions, orientations, _ = posed(chain, Configuration(world, angles))
+        vertices = skinned(surface, positions, orientations)
+        for k, view in enumerate(views):
+            if not believed[k]:
+                drawn.append(None)
+                continue
+            buffers[k] = made = _render(view.lens, vertices, surface, buffers[k])
+            if outer == 0:
+                box = _around(made.box, settings.reach)
+                overlaps[k] = _overlap(view.mask, made, box)
+                views[k] = view.within(box)
+            drawn.append(_points(view.lens, made, surface, centre))
+        if outer == 0 and believe is not None:
+            believed = believe(overlaps)
+            drawn = [one if sure else None for one, sure in zip(drawn, believed)]
+        for inner in range(settings.inner):
+            _, _, columns = posed(chain, Configuration(root, angles))
+            matrix, vector, residual = _sums(surface, views, drawn, columns, centre, settings)
+            here = Configuration(root, angles)
+            regular = settings.damping * max(float(np.trace(matrix)) / size, 1e-9)
+            full = matrix + np.triu(matrix, 1).T
+            full[np.arange(size), np.arange(size)] += regular
+            if penalty is not None:
+                moved = Configuration(penalty.target.root.copy(), penalty.target.angles)
+                moved.root[:3, 3] -= centre
+                full[np.arange(size), np.arange(size)] += penalty.weights
+                vector = vector + penalty.weights * penalty_rows(chain, Penalty(moved, penalty.weights), here, np.zeros(3))
+            step = solved(full, vector, assume_a="pos", check_finite=False)
+            step *= min(1.0, 0.5 / max(float(np.abs(step[3:]).max()), 1e-12))
+            if inner + 1 < settings.inner:
+                for view, one in zip(views, drawn):
+                    if one is not None:
+                        _shift(one, view.lens, surface, columns, step, centre)
+            retract_kernel(chain.first, chain.count, step, root, angles, chain.lower, chain.upper)
+    root[:3, 3] += centre
+    return Fit(Configuration(root, angles), residual, overlaps, believed)
+
+
+def _render(lens: Lens, vertices: np.ndarray, surface: Surface, kept: View | None) -> View:
+    if kept is not None:
+        left, top, right, bottom = kept.box
+        kept.depth[top:bottom, left:right] = np.inf
+        kept.triangles[top:bottom, left:right] = -1
+        kept = View(kept.depth, kept.triangles, (0, 0, 0, 0))
+    return rendered(lens, vertices, surface.triangles, kept)
+
+
+def _around(box: tuple[int, int, int, int], reach: float) -> tuple[int, int, int, int]:
+    """A box with room for matches on all sides."""
+    left, top, right, bottom = box
+    more = int(reach * max(right - left, bottom - top)) + 2
+    return max(left - more, 0), max(top - more, 0), right + more, bottom + more
+
+
+def _overlap(mask: np.ndarray, made: View, box: tuple[int, int, int, int]) -> float:
+    """Of the pixels in a box that are the model's or the mask's, how many are both's."""
+    left, top, right, bottom = box
+    inside, ours = mask[top:bottom, left:right], made.triangles[top:bottom, left:right] >= 0
+    return overlap(inside, ours)
+
+
+def _points(lens: Lens, made: View, surface: Surface, centre: np.ndarray) -> _Drawn:
+    left, top, right, bottom = made.box
+    contour = contour_of(made.mask, (left - 1, top - 1, right + 1, bottom + 1))
+    count = len(contour)
+    directions, points, corners = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3), np.int64)
+    direction_kernel(contour.pixels, lens.numbers, directions)
+    model_points_kernel(contour.pixels, made.depth, made.triangles, surface.triangles, directions, lens.eye - centre,
+                        np.ascontiguousarray(lens.rotation[2]), points, corners)
+    return _Drawn(points, corners, contour)
+
+
+def _sums(surface: Surface, views: Sequence[Observed], drawn: Sequence[_Drawn | None], columns: np.ndarray, centre: np.ndarray,
+          settings: SolverSettings) -> tuple[np.ndarray, np.ndarray, float]:
+    """The normal equations' matrix (its upper half), their vector, and the mean residual [pixels]."""
+    size = 6 + len(columns)
+    matrix, vector, row, total, used = np.zeros((size, size)), np.zeros(size), np.zeros(size), 0.0, 0
+    for view, one in zip(views, drawn):
+        if one is None or not len(one.contour) or not len(view.contour):
+            continue
+        ours, theirs = (np.concatenate([c.pixels, c.normals], 1) for c in (one.contour, view.contour))
+        pairs, squares = np.empty((2 * settings.points + 8, 2), np.int64), np.empty(2 * settings.points + 8)
+        count = closest_kernel(ours, theirs, settings.facing, -(-len(ours) // settings.points), pairs, squares, False, 0)
+        if settings.both:
+            count = closest_kernel(theirs, ours, settings.facing, -(-len(theirs) // settings.points), pairs, squares, True, count)
+        gate = settings.reach * float(np.ptp(ours[:, :2], axis=0).max()) + 2.0
+        more, many = sums_kernel(one.points, one.corners, surface.shares, columns, pairs, squares, count, view.lens.eye - centre,
+                                 view.directions, view.across, view.pixel, gate, settings.bend, row, matrix, vector)
+        total, used = total + more, used + many
+    scale = min(settings.effective / max(used, 1), 1.0)
+    return matrix * scale, vector * scale, total / max(used, 1)
+
+
+def _shift(one: _Drawn, lens: Lens, surface: Surface, columns: np.ndarray, step: np.ndarray, centre: np.ndarray) -> None:
+    """Move a drawn contour along with a step, in place, so that it need not be drawn anew."""
+    shift_kernel(one.points, one.corners, surface.shares, columns, step)
+    seen = np.empty_like(one.points)
+    project_kernel(one.points + centre, lens.numbers, seen)
+    order = np.argsort(seen[:, 1], kind="stable")
+    one.contour.pixels[:] = seen[order, :2]
+    for array in (one.contour.normals, one.points, one.corners):
+        array[:] = array[order]

@@ -1,0 +1,7 @@
+"""What a body looks like from cameras: its skin in a pose, the pixels that it covers, and their contour."""
+
+from .contours import Contour, contour_kernel, contour_of
+from .rasteriser import View, raster_kernel, rendered
+from .surface import Surface, skin_kernel, skinned
+
+__all__ = ["Contour", "Surface", "View", "contour_kernel", "contour_of", "raster_kernel", "rendered", "skin_kernel", "skinned"]

@@ -1,0 +1,141 @@
+"""A folder of footage: a folder of pictures for each camera, `cameras.toml`, the truth, and `footage.json`, which says what it is."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.files import contents, printable, reason
+from gambol.controllers.tracking.cameras import CalibrationError, Lens, read_cameras, write_opencv
+
+from ..files import named, output_folder, whole
+
+ABOUT, CAMERAS, TRUTH = "footage.json", "cameras.toml", "truth.npz"
+KINDS = ("frame", "mask", "depth")
+"""What there is of each frame: the picture, who is where (0 nobody, 1 the first, …), and how far [mm], 0 for nothing."""
+VERSION = 1
+
+
+class FootageError(ValueError):
+    """Footage that can't be made or used: which file or field, and what would be right."""
+
+
+@dataclass(frozen=True, eq=False)
+class Footage:
+    """A folder of footage. people: whom it shows. dropped, corrupted: camera → numbers of its frames."""
+
+    path: Path
+    lenses: tuple[Lens, ...]
+    fps: int
+    frames: int
+    people: tuple[str, ...]
+    dropped: dict[str, tuple[int, ...]]
+    corrupted: dict[str, tuple[int, ...]]
+
+    def file(self, camera: str, kind: str, number: int) -> Path:
+        """Where a camera's frame is, one of `KINDS`."""
+        return file_of(self.path, camera, kind, number)
+
+    def picture(self, camera: str, kind: str, number: int) -> np.ndarray | None:
+        """A frame, (H, W, 3) uint8, a mask, (H, W) uint8, or depths, (H, W) float32 [m], infinite for nothing; None for a dropped frame."""
+        from PIL import Image, UnidentifiedImageError
+
+        path = self.file(camera, kind, number)
+        if number in self.dropped.get(camera, ()) and kind == "frame":
+            return None
+        try:
+            with Image.open(path) as image:
+                made = np.asarray(image)
+        except (OSError, UnidentifiedImageError, ValueError, SyntaxError) as fault:
+            raise FootageError(f"{path}: {reason(fault)}") from None
+        size = next(lens.size for lens in self.lenses if lens.name == camera)
+        if made.shape[:2] != size[::-1]:
+            raise FootageError(f"{path}: {made.shape[1]} × {made.shape[0]} pixels, but {camera} has {size[0]} × {size[1]}")
+        if kind == "depth":
+            return np.where(made == 0, np.float32(np.inf), made.astype(np.float32) / 1000.0)
+        return made
+
+    def truth(self) -> dict[str, np.ndarray]:
+        """What `Truth` wrote, by name."""
+        try:
+            with np.load(self.path / TRUTH) as file:
+                return dict(file)
+        except (OSError, ValueError, EOFError, KeyError) as fault:
+            raise FootageError(f"{self.path / TRUTH}: {reason(fault)}") from None
+
+
+def file_of(folder: Path, camera: str, kind: str, number: int) -> Path:
+    """Where a camera's frame is, one of `KINDS`."""
+    return folder / camera / f"{kind}_{number:05d}.png"
+
+
+def fingerprint(*told: Any) -> str:
+    """What tells one film from another."""
+    return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
+
+
+def begun(folder: str | Path, lenses: Sequence[Lens], about: dict[str, Any]) -> Path:
+    """A folder for footage, made, or gone on with where the same film was begun there. about: its JSON-able facts, `film` among
+    them, which tells it from others.
+
+    FootageError where another film, or anything else, is there; OutputError where nothing can be written.
+    """
+    folder = output_folder(folder)
+    known = _read(folder) if (folder / ABOUT).exists() else None
+    if known is None and any(folder.iterdir()):
+        raise FootageError(f"{folder}: is not empty, and no footage was begun in it; name another folder")
+    if known is not None and known.get("film") != about["film"]:
+        raise FootageError(f"{folder}: holds another film, or other cameras or disturbances; name another folder")
+    for lens in lenses:
+        output_folder(folder / lens.name)
+    with named(folder):
+        write_opencv(lenses, folder / CAMERAS)
+    with whole(folder / ABOUT) as part:
+        part.write_text(json.dumps({"version": VERSION, **about}, indent=1), "utf-8")
+    return folder
+
+
+def read_footage(folder: str | Path) -> Footage:
+    """The footage in a folder. FootageError, in one line, for anything else."""
+    folder = Path(folder)
+    told = _read(folder)
+    if told.get("complete") is not True:
+        raise FootageError(f"{folder}: was not filmed to its end; the same command goes on with it")
+    try:
+        lenses = read_cameras(folder / CAMERAS)
+    except CalibrationError as fault:
+        raise FootageError(str(fault)) from None
+    names = {lens.name for lens in lenses}
+
+    def lists(field: str) -> dict[str, tuple[int, ...]]:
+        value = told.get(field, {})
+        if not isinstance(value, dict) or not set(value) <= names or not all(
+                isinstance(one, list) and all(type(n) is int and n >= 0 for n in one) for one in value.values()):
+            raise FootageError(f"{folder / ABOUT}: {field}: needs lists of frames by camera; film it anew")
+        return {name: tuple(one) for name, one in value.items()}
+    for field, most in (("fps", 1000), ("frames", 10**7)):
+        if type(told.get(field)) is not int or not 1 <= told[field] <= most:
+            raise FootageError(f"{folder / ABOUT}: {field}: needs a whole number from 1 to {most}; film it anew")
+    people = told.get("people")
+    if not isinstance(people, list) or not all(isinstance(name, str) for name in people):
+        raise FootageError(f"{folder / ABOUT}: people: needs a list of names; film it anew")
+    return Footage(folder, lenses, told["fps"], told["frames"], tuple(people), lists("dropped"), lists("corrupted"))
+
+
+def _read(folder: Path) -> dict[str, Any]:
+    file = folder / ABOUT
+    try:
+        told = json.loads(contents(file, 64 << 20))
+    except OSError as fault:
+        raise FootageError(f"{file}: {reason(fault)}") from None
+    except (ValueError, RecursionError) as fault:
+        raise FootageError(f"{file}: no footage: {printable(str(fault))}") from None
+    if not isinstance(told, dict) or told.get("version") != VERSION:
+        raise FootageError(f"{file}: no footage of this version; film it anew")
+    return told
