@@ -27,6 +27,8 @@ PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
 """A standing foot this far off [m] makes one step sooner, the more the farther, by at most this share."""
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
+HEAVY = 2.0
+"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
 STRAIGHT = 0.2
@@ -216,7 +218,7 @@ def blend_series(m, settings, table, fresh, legs, dt):
     series_kernel(table, m.weights, m.phase, fresh)
     for d in range(LABELS_AT):
         m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
-                                                      m.fade, dt)
+                                                      m.fade if d < HIPS_AT else HEAVY * m.fade, dt)
         fresh[d] += m.blend[d]
     for d in range(COLUMNS):
         m.row_rate[d] = (fresh[d] - m.row[d]) / dt
