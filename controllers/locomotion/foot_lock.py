@@ -23,7 +23,7 @@ from .foot_points import on_floor, shown_kernel
 from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
-from .uneven_ground import follow_ground, lie_kernel
+from .uneven_ground import RECOVERS, follow_ground, lie_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -72,6 +72,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
     on_floor(m, now)
     if tops.shape[0] > 0:
         follow_ground(m, tops, floor, SWING[m.family], dt)
+    m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
         _take_hold(m, k, legs.height, dt)
     for foot in range(2):

@@ -89,6 +89,7 @@ def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
     for i in range(3):
         p[i] *= SCALE[i]
+    p[0], p[2] = p[0] * m.pace, p[2] * m.pace
     most = settings.acceleration * settings.agility
     round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
     p[1] = min(max(p[1], -round_curve), round_curve)

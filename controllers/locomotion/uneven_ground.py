@@ -24,6 +24,14 @@ SEEN = 0.5
 """… and ground that is farther than this from the body's level is none [m]."""
 SHIFTS = np.array([0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15, -0.2, -0.25, -0.3, -0.35, -0.4, -0.45, -0.5])
 """How much farther or nearer a foot comes down where it would not stand well, in the order in which it is tried [m]."""
+CERTAIN = 0.35
+"""After this share of its swing a foot keeps to the place where it will come down …"""
+FARTHEST, ASTRAY = 0.6, 0.06
+"""… unless that gets farther away than the first [m]; a foot that came down farther from it than the second stands on what
+lies there."""
+SLOWEST, RECOVERS = 0.4, 0.35
+"""Who must take shorter steps slows down, to no less than the first share of the wish, and takes up speed again by so much a
+second."""
 SLOW = 0.1
 """Slower than this [m/s] nobody chooses where a foot comes down."""
 FLAT = np.zeros((0, 8))
@@ -87,20 +95,24 @@ def follow_ground(m, tops, floor, swing, dt):
             m.left[foot] = m.base[foot]
             continue
         progress = min(((m.phase - 0.5 * foot) % 1.0) / swing, 1.0)
+        aim = m.aim[foot]
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
                 shown_kernel(m, ball, place)
                 c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-                _under(m, tops, floor, m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1],
-                       c, s, under)
-                m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
+                x, z = m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1]
+                if m.aimed[foot] == 0 or math.hypot(x - aim[0], z - aim[1]) > ASTRAY:
+                    _under(m, tops, floor, x, z, c, s, under)
+                    m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
+                else:
+                    m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = aim[2] - floor, aim[3], aim[4]
             m.left[foot] = m.base[foot]
             if firm:
                 m.struck[foot, 0], m.struck[foot, 1] = m.points[ball, 0], m.points[ball, 2]
-                m.held[foot] = 1
+                m.held[foot], m.aimed[foot] = 1, 0
             continue
         m.held[foot] = 0
-        _come_down(m, tops, floor, foot, (1.0 - progress) * swing * m.row[DURATION_AT], under)
+        _come_down(m, tops, floor, foot, progress, (1.0 - progress) * swing * m.row[DURATION_AT] / math.sqrt(m.stretch), under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
         m.base[foot] = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
@@ -115,30 +127,47 @@ def follow_ground(m, tops, floor, swing, dt):
 
 
 @kernel
-def _come_down(m, tops, floor, foot, later, out):
+def _come_down(m, tops, floor, foot, progress, later, out):
     """Where a foot comes down in `later` seconds, and the ground (3,) there: as far beside where it would as it must to
-    stand whole and no step too high."""
+    stand whole and no step too high. Once its swing is CERTAIN, it keeps to the place."""
     turn = m.velocity[1] * later
     c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
     x = m.ground[0] + (c * m.velocity[2] + s * m.velocity[0]) * later
     z = m.ground[1] + (-s * m.velocity[2] + c * m.velocity[0]) * later
     c, s = math.cos(m.ground[2] + turn), math.sin(m.ground[2] + turn)
     x, z = x + c * m.struck[foot, 0] + s * m.struck[foot, 1], z - s * m.struck[foot, 0] + c * m.struck[foot, 1]
+    aim = m.aim[foot]
+    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
+        m.land[foot, 0], m.land[foot, 1] = aim[0] - x, aim[1] - z
+        out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
+        return
+    found, shift, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
+    aim[0], aim[1] = x + m.land[foot, 0], z + m.land[foot, 1]
+    aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
+    m.aimed[foot] = 1 if found and progress > CERTAIN else 0
+    if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
+        step = max(0.5 * speed * m.row[DURATION_AT] / math.sqrt(m.stretch), 0.05)
+        m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)
+
+
+@kernel
+def _choose(m, tops, floor, foot, x, z, c, s, out):
+    """The ground (3,) that a foot comes down on near x, z, looking to where cosine c and sine s say: whether there is a good
+    place, how far ahead that is [m], and how fast the body goes there [m/s]."""
     along_x, along_z = c * m.velocity[2] + s * m.velocity[0], -s * m.velocity[2] + c * m.velocity[0]
     speed = math.hypot(along_x, along_z)
     m.land[foot, 0] = m.land[foot, 1] = 0.0
     other = m.base[1 - foot]
-    if speed <= SLOW:
-        _under(m, tops, floor, x, z, c, s, out)
-        return
-    for shift in SHIFTS:
-        shift_x, shift_z = shift * along_x / speed, shift * along_z / speed
-        if _under(m, tops, floor, x + shift_x, z + shift_z, c, s, out) and abs(out[0] - other) <= STEP:
-            m.land[foot, 0], m.land[foot, 1] = shift_x, shift_z
-            return
-    _under(m, tops, floor, x, z, c, s, out)
-    if abs(out[0] - other) > STEP:
-        out[0], out[1], out[2] = other, 0.0, 0.0
+    if speed > SLOW:
+        for shift in SHIFTS:
+            shift_x, shift_z = shift * along_x / speed, shift * along_z / speed
+            if _under(m, tops, floor, x + shift_x, z + shift_z, c, s, out) and abs(out[0] - other) <= STEP:
+                m.land[foot, 0], m.land[foot, 1] = shift_x, shift_z
+                return True, shift, speed
+    found = _under(m, tops, floor, x, z, c, s, out)
+    if speed > SLOW and abs(out[0] - other) > STEP:
+        found, out[0], out[1], out[2] = False, other, 0.0, 0.0
+    return found, 0.0, speed
 
 
 @kernel
