@@ -23,7 +23,7 @@ from .foot_points import on_floor, shown_kernel
 from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
-from .uneven_ground import RECOVERS, follow_ground, lie_kernel
+from .uneven_ground import RECOVERS, follow_ground, lie_kernel, rise_ahead
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -99,7 +99,8 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
         for j in range(hip, hip + 3):
             positions[j, 1] -= m.pelvis
         leg_kernel(positions, orientations, hip, ankle[foot], work)
-        toe_kernel(body, hip + 2, legs.height + lie_kernel(m, 2 * foot + 1) + lift[foot], positions, orientations, local, work)
+        toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)
+        toe_kernel(body, hip + 2, toes + lift[foot], positions, orientations, local, work)
         localise_kernel(orientations, 0, hip, local)
         localise_kernel(orientations, hip, hip + 1, local)
         localise_kernel(orientations, hip + 1, hip + 2, local)
@@ -199,6 +200,8 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
         for i in range(3):
             for k in range(3):
                 orientations[a, i, k] = turned[i, k]
+    if m.tilt[foot, 0] != 0.0 or m.tilt[foot, 1] != 0.0:
+        _roll(m, foot, x, y, z, orientations[a], axis, turned)
     hang = (m.grip[ball] + 0.01) / (m.grip[heel] + m.grip[ball] + 0.02)
     m.anchor[foot] += (hang - m.anchor[foot]) * (1.0 - 2.0 ** (-dt / ANCHOR_HALFLIFE))
     hang = m.anchor[foot]
@@ -214,6 +217,19 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
         under_heel += orientations[a, 1, k] * body.heel[k]
         under_ball += orientations[a, 1, k] * body.offsets[a + 1, k]
     ankle[1] += max(0.0, height - min(under_heel - lie_kernel(m, heel), under_ball - lie_kernel(m, ball)))
+
+
+@kernel
+def _roll(m, foot, x, y, z, orientation, axis, turned):
+    """Turn a foot that points along x, y, z in the ground frame about that line, as far as its ground rises to its left."""
+    flat, size = math.sqrt(x * x + z * z) + 1e-9, math.sqrt(x * x + y * y + z * z) + 1e-9
+    axis[0], axis[1], axis[2] = x / size, y / size, z / size
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    rise = (m.tilt[foot, 0] * (c * z - s * x) - m.tilt[foot, 1] * (c * x + s * z)) / flat
+    tilt_kernel(orientation, axis, math.atan(rise), turned)
+    for i in range(3):
+        for k in range(3):
+            orientation[i, k] = turned[i, k]
 
 
 @kernel

@@ -17,14 +17,12 @@ from .foot_points import foot_points, on_floor
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
-from .root_motion import follow_command, to_world_kernel
+from .root_motion import cadence_kernel, follow_command, to_world_kernel
 from .uneven_ground import stand_on
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
 half by its strides, so that walks and runs meet between them."""
-PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
-"""A standing foot this far off [m] makes one step sooner, the more the farther, by at most this share."""
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
 HEAVY = 2.0
@@ -205,12 +203,7 @@ def advance_phase(m, wish, dt):
 
 @kernel
 def _next_phase(m, dt):
-    late = 0.0  # a foot that stands far from where it should makes one step sooner
-    for foot in range(2):
-        if m.standing[2 * foot] or m.standing[2 * foot + 1]:
-            late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
-    hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
-    return (m.phase + dt * hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)) % 1.0
+    return (m.phase + dt * cadence_kernel(m)) % 1.0
 
 
 @kernel

@@ -16,7 +16,7 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation import is_box, slope
 from .foot_points import shown_kernel
-from .kernel import DURATION_AT
+from .root_motion import cadence_kernel
 
 STEP = 0.24
 """A foot comes down no more than this higher or deeper than the other stands [m] …"""
@@ -87,8 +87,9 @@ SAME = 0.02
 def follow_ground(m, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
     body's level, which follows both. swing: the share of the cycle for which a foot swings."""
-    under, place = np.empty(3), np.empty(2)
+    under, place, bears = np.empty(3), np.empty(2), np.empty(2)
     for foot in range(2):
+        bears[foot] = m.base[foot]
         ball = 2 * foot + 1
         firm = max(m.grip[ball - 1], m.grip[ball]) >= 1.0
         if firm and m.held[foot] == 1:
@@ -105,20 +106,24 @@ def follow_ground(m, tops, floor, swing, dt):
                     _under(m, tops, floor, x, z, c, s, under)
                     m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
                 else:
-                    m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = aim[2] - floor, aim[3], aim[4]
-            m.left[foot] = m.base[foot]
+                    m.base[foot] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
+                    m.tilt[foot, 0], m.tilt[foot, 1] = aim[3], aim[4]
+            m.left[foot] = bears[foot] = m.base[foot]
             if firm:
                 m.struck[foot, 0], m.struck[foot, 1] = m.points[ball, 0], m.points[ball, 2]
                 m.held[foot], m.aimed[foot] = 1, 0
             continue
         m.held[foot] = 0
-        _come_down(m, tops, floor, foot, progress, (1.0 - progress) * swing * m.row[DURATION_AT] / math.sqrt(m.stretch), under)
+        _come_down(m, tops, floor, foot, progress, (1.0 - progress) * swing / cadence_kernel(m), under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
         m.base[foot] = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        bears[foot] = m.base[foot]
+        if under[0] < m.left[foot]:  # the body sinks all the way down
+            bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
         for i in range(2):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
-    low, high = min(m.base[0], m.base[1]), max(m.base[0], m.base[1])
+    low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
     before = m.level
     m.level, m.level_rate = spring_kernel(m.level, m.level_rate, min(0.5 * (low + high), low + LOW + 0.25 * (high - low)),
                                           LEVEL_HALFLIFE, dt)
@@ -144,9 +149,10 @@ def _come_down(m, tops, floor, foot, progress, later, out):
     found, shift, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
     aim[0], aim[1] = x + m.land[foot, 0], z + m.land[foot, 1]
     aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
-    m.aimed[foot] = 1 if found and progress > CERTAIN else 0
+    even = shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
+    m.aimed[foot] = 1 if found and progress > CERTAIN and not even else 0
     if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
-        step = max(0.5 * speed * m.row[DURATION_AT] / math.sqrt(m.stretch), 0.05)
+        step = max(0.5 * speed / cadence_kernel(m), 0.05)
         m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)
 
 
@@ -196,6 +202,16 @@ def lie_kernel(m, k):
         c, s = math.cos(m.ground[2] + m.offset[foot, 2]), math.sin(m.ground[2] + m.offset[foot, 2])
         lie += m.tilt[foot, 0] * (c * x + s * z) + m.tilt[foot, 1] * (c * z - s * x)
     return lie
+
+
+@kernel
+def rise_ahead(m, foot):
+    """How the ground under a foot rises to where its toes point."""
+    if m.tilt[foot, 0] == 0.0 and m.tilt[foot, 1] == 0.0:
+        return 0.0
+    x, z = m.points[2 * foot + 1, 0] - m.points[2 * foot, 0], m.points[2 * foot + 1, 2] - m.points[2 * foot, 2]
+    c, s = math.cos(m.ground[2] + m.offset[foot, 2]), math.sin(m.ground[2] + m.offset[foot, 2])
+    return (m.tilt[foot, 0] * (c * x + s * z) + m.tilt[foot, 1] * (c * z - s * x)) / (math.hypot(x, z) + 1e-9)
 
 
 @kernel
