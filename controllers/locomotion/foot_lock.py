@@ -39,6 +39,8 @@ SOONEST = 0.06
 """An offset is given at least this long to go [s] …"""
 LATEST = 0.45
 """… and at most this."""
+AIM_HALFLIFE = 0.02
+"""A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 LAND_HALFLIFE = 0.03
 """A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
@@ -142,6 +144,9 @@ def _offset(m, foot, before, now, dt):
             offset[i] = goal + x * (1.0 - u * u * (3.0 - 2.0 * u)) + v * u * (1.0 - u) ** 2
             rate[i] = (6.0 * x * u * (u - 1.0) + v * (1.0 - u) * (1.0 - 3.0 * u)) * u / dt
         return
+    if m.aimed[foot] == 1 and grip < 1.0:  # to the very place that it chose
+        for i in range(2):
+            offset[i] += (m.land[foot, i] - offset[i]) * (1.0 - grip) * (1.0 - 2.0 ** (-dt / AIM_HALFLIFE))
     heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
     was_x, was_z = before[h, 0] - before[b, 0], before[h, 1] - before[b, 1]
     x, z = now[h, 0] - now[b, 0], now[h, 1] - now[b, 1]

@@ -71,6 +71,8 @@ def ground_kernel(tops, x, z, floor, level, out):
 
 RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
+DROPS, CLIMBS = 2.0, 4.0
+"""A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
 LEVEL_HALFLIFE = 0.12
@@ -95,7 +97,8 @@ def follow_ground(m, tops, floor, swing, dt):
         if firm and m.held[foot] == 1:
             m.left[foot] = m.base[foot]
             continue
-        progress = min(((m.phase - 0.5 * foot) % 1.0) / swing, 1.0)
+        passed = ((m.phase - 0.5 * foot) % 1.0) / swing
+        progress = min(passed, 1.0)
         aim = m.aim[foot]
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
@@ -110,14 +113,19 @@ def follow_ground(m, tops, floor, swing, dt):
                     m.tilt[foot, 0], m.tilt[foot, 1] = aim[3], aim[4]
             m.left[foot] = bears[foot] = m.base[foot]
             if firm:
-                m.struck[foot, 0], m.struck[foot, 1] = m.points[ball, 0], m.points[ball, 2]
+                early = min(max(1.0 - passed, -0.3), 0.3) * swing / cadence_kernel(m)  # told for the swing's end
+                m.struck[foot, 0] = m.points[ball, 0] - early * m.velocity[2]
+                m.struck[foot, 1] = m.points[ball, 2] - early * m.velocity[0]
                 m.held[foot], m.aimed[foot] = 1, 0
             continue
         m.held[foot] = 0
         _come_down(m, tops, floor, foot, progress, (1.0 - progress) * swing / cadence_kernel(m), under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
-        m.base[foot] = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        path = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        if abs(under[0] - m.left[foot]) > SAME:
+            path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
+        m.base[foot] = min(max(path, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
         bears[foot] = m.base[foot]
         if under[0] < m.left[foot]:  # the body sinks all the way down
             bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
@@ -129,6 +137,22 @@ def follow_ground(m, tops, floor, swing, dt):
                                           LEVEL_HALFLIFE, dt)
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
+
+
+@kernel
+def _beneath(m, tops, floor, foot, highest, place):
+    """How high the ground lies that a swinging foot is over, from its heel to its toes' end: none above `highest`."""
+    ground, high = np.empty(3), -1e9
+    shown_kernel(m, 2 * foot, place)
+    heel_x, heel_z = place[0], place[1]
+    shown_kernel(m, 2 * foot + 1, place)
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    for k in range(3):  # heel, ball, toes' end
+        along = (0.0, 1.0, 1.0 + TOE / FOOT)[k]
+        x, z = heel_x + along * (place[0] - heel_x), heel_z + along * (place[1] - heel_z)
+        if ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground) and ground[0] < highest:
+            high = max(high, ground[0])
+    return high
 
 
 @kernel
