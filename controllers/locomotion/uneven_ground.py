@@ -18,6 +18,9 @@ from ..navigation import is_box, slope
 from .foot_points import shown_kernel
 from .root_motion import cadence_kernel
 
+WALK = 0
+"""The family that comes down where it chose; who runs has no time to."""
+
 STEP = 0.24
 """A foot comes down no more than this higher or deeper than the other stands [m] …"""
 SEEN = 0.5
@@ -29,6 +32,8 @@ CERTAIN = 0.35
 FARTHEST, ASTRAY = 0.6, 0.06
 """… unless that gets farther away than the first [m]; a foot that came down farther from it than the second stands on what
 lies there."""
+NEARS = 0.6
+"""Until this share of its swing where a foot will come down is told from its last step alone."""
 SLOWEST, RECOVERS = 0.4, 0.35
 """Who must take shorter steps slows down, to no less than the first share of the wish, and takes up speed again by so much a
 second."""
@@ -165,6 +170,11 @@ def _come_down(m, tops, floor, foot, progress, later, out):
     z = m.ground[1] + (-s * m.velocity[2] + c * m.velocity[0]) * later
     c, s = math.cos(m.ground[2] + turn), math.sin(m.ground[2] + turn)
     x, z = x + c * m.struck[foot, 0] + s * m.struck[foot, 1], z - s * m.struck[foot, 0] + c * m.struck[foot, 1]
+    near = max((progress - NEARS) / (1.0 - NEARS), 0.0) ** 2  # the nearer it is, the more where it is tells
+    here_x, here_z = m.points[2 * foot + 1, 0], m.points[2 * foot + 1, 2]
+    c_now, s_now = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x += near * (m.ground[0] + c_now * here_x + s_now * here_z - x)
+    z += near * (m.ground[1] - s_now * here_x + c_now * here_z - z)
     aim = m.aim[foot]
     if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
         m.land[foot, 0], m.land[foot, 1] = aim[0] - x, aim[1] - z
@@ -174,7 +184,7 @@ def _come_down(m, tops, floor, foot, progress, later, out):
     aim[0], aim[1] = x + m.land[foot, 0], z + m.land[foot, 1]
     aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
     even = shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
-    m.aimed[foot] = 1 if found and progress > CERTAIN and not even else 0
+    m.aimed[foot] = 1 if found and progress > CERTAIN and not even and m.family == WALK else 0
     if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
         step = max(0.5 * speed / cadence_kernel(m), 0.05)
         m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)

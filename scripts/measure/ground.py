@@ -5,7 +5,7 @@
 Told from the final pose alone, beside what says which soles stand. Eight people walk each way, each from another phase.
 Below: heel, ball or toe's end under the ground that lies there by more than 0.5 cm, in the share of frames, and by how much at
 most. Gap: how far standing heels and balls are over or under it, median and 95th percentile; what hangs over an edge by more
-than 5 cm does not count. Off: the angle between a sole that stands whole and its ground. Drift: how far a standing point
+than 5 cm does not count. Off: the angle between a sole that stands whole and its ground. Drift: how far a standing ball
 moves. Accelerations are the mass centre's, over 1/30 s. --strips draws where each way's mass centre is jerked most.
 """
 
@@ -114,7 +114,7 @@ def figures(motion, grip, around) -> str:
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         off.append(np.degrees(np.arccos(np.clip((up * normal).sum(-1), -1, 1)))[flat[..., foot]])
     off = np.concatenate(off)
-    drift = np.concatenate([foot_drift(motion.points[:, n], stands[:, n]).drift for n in range(PEOPLE)])
+    drift = np.concatenate([foot_drift(motion.points[:, n, 1::2], stands[:, n, 1::2]).drift for n in range(PEOPLE)])
     a = motion.com_acceleration
     return (f"below {100 * (below > 0.005).mean():4.1f} %, {100 * max(below.max(), 0):4.1f} cm · gap {100 * np.median(gaps):4.1f}, "
             f"{100 * np.percentile(gaps, 95):4.1f} cm · off {np.median(off):4.1f}, {np.percentile(off, 95):4.1f}° · drift {100 * drift.mean():4.2f} "
