@@ -23,7 +23,7 @@ from .foot_points import on_floor, shown_kernel
 from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
-from .uneven_ground import RECOVERS, follow_ground, lie_kernel, rise_ahead
+from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -92,7 +92,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
             need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
         else:
             need = 1.0
-    most = PELVIS_DROP + 0.5 * abs(m.base[1] - m.base[0])
+    most = PELVIS_DROP + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
     need = min(need, most)
     drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
     m.pelvis = min(max(drop, 0.0), most)

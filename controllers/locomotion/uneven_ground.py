@@ -24,7 +24,7 @@ WALK = 0
 STEP = 0.24
 """A foot comes down no more than this higher or deeper than the other stands [m] …"""
 SEEN = 0.5
-"""… and ground that is farther than this from the body's level is none [m]."""
+"""… and what is higher than this over the body's level is no ground [m]."""
 SHIFTS = np.array([0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15, -0.2, -0.25, -0.3, -0.35, -0.4, -0.45, -0.5])
 """How much farther or nearer a foot comes down where it would not stand well, in the order in which it is tried [m]."""
 CERTAIN = 0.35
@@ -59,7 +59,7 @@ def ground_kernel(tops, x, z, floor, level, out):
     """
     found = False
     out[0], out[1], out[2] = level, 0.0, 0.0
-    if abs(-floor - level) <= SEEN:  # the world's own floor
+    if -floor - level <= SEEN:  # the world's own floor
         found, out[0] = True, -floor
     for k in range(tops.shape[0]):
         dx, dz = x - tops[k, 0], z - tops[k, 1]
@@ -68,7 +68,7 @@ def ground_kernel(tops, x, z, floor, level, out):
         if abs(across) > tops[k, 4] or abs(along) > tops[k, 5]:
             continue
         high = tops[k, 6] + tops[k, 7] * along - floor
-        if abs(high - level) <= SEEN and (not found or high > out[0]):
+        if high - level <= SEEN and (not found or high > out[0]):
             found = True
             out[0], out[1], out[2] = high, tops[k, 7] * s, tops[k, 7] * c
     return found
@@ -80,6 +80,7 @@ DROPS, CLIMBS = 2.0, 4.0
 """A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
+GRAVITY = 9.81
 LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 LOW = 0.06
@@ -112,6 +113,8 @@ def follow_ground(m, tops, floor, swing, dt):
                 x, z = m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1]
                 if m.aimed[foot] == 0 or math.hypot(x - aim[0], z - aim[1]) > ASTRAY:
                     _under(m, tops, floor, x, z, c, s, under)
+                    if under[0] < m.base[1 - foot] - STEP and _upheld(m, tops, floor, 1 - foot, place):
+                        under[0], under[1], under[2] = m.base[1 - foot], 0.0, 0.0
                     m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
                 else:
                     m.base[foot] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
@@ -137,11 +140,24 @@ def follow_ground(m, tops, floor, swing, dt):
         for i in range(2):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
     low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
-    before = m.level
+    before, rate = m.level, m.level_rate
     m.level, m.level_rate = spring_kernel(m.level, m.level_rate, min(0.5 * (low + high), low + LOW + 0.25 * (high - low)),
                                           LEVEL_HALFLIFE, dt)
+    if m.level_rate < rate - GRAVITY * dt:  # nobody sinks faster than they fall
+        m.level_rate = rate - GRAVITY * dt
+        m.level = before + 0.5 * (rate + m.level_rate) * dt
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
+
+
+@kernel
+def _upheld(m, tops, floor, foot, place):
+    """Whether a foot has the ground under it that it stands on: who set one foot over an edge has the other one still there."""
+    ground = np.empty(3)
+    shown_kernel(m, 2 * foot + 1, place)
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    ground_kernel(tops, m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1], floor, m.level, ground)
+    return ground[0] > m.base[foot] - STEP
 
 
 @kernel
