@@ -60,7 +60,7 @@ def ramp(degrees, length=4.0, landing=1.6):
 def across(degrees):
     """A slope that falls to one's right and is begun on: far too long to be left."""
     slope = math.tan(math.radians(degrees))
-    return (box((0, -0.5, 6.0), (40.0, 1.0, 6.0), slope, 0.5 * math.pi),)
+    return (box((0, 4.5, 6.0), (40.0, 1.0, 20.0), slope, 0.5 * math.pi),)
 
 
 WAYS = {**{f"kerb of {h} cm, {v} m/s": ((box((0, 0.005 * h, 4.0), (4, 0.01 * h, 2.0)),), v) for h, v in ((10, 1.3), (15, 1.2), (15, 0.8))},
