@@ -13,7 +13,7 @@ from ..contract import CharacterState, Controller, Intent, Status, level, second
 from ..navigation import floor_at, gap
 from .body import FLAT, GRAVITY, Physique, Start, along, landing_feet, soles, vectors
 from .feasibility import HANDS, Refused, fault
-from .motion import Path, Plan, fall, path, struck
+from .motion import Path, Plan, fall, over_nothing, path, struck
 from .planner import plan
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
@@ -88,12 +88,18 @@ class Jump(Controller):
             walks = bool(np.abs(intent.velocity).max() > 0.05) or intent.leap is not None
             landed = state.memory.time > state.memory.plan.touch_down + RISEN
             return OVER if walks and landed else HOLDS
+        if intent.around and self._lost_floor(state, intent):
+            return HOLDS
         if intent.leap is None:
             return 0.0
         return READY if self._moment(state) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state at the beginning of a planned jump. Refused, with the reason, if it can't be made."""
+        """The state at the beginning of a planned jump, or of a fall if it stepped over an edge. Refused, with the reason, if
+        the jump can't be made."""
+        if intent.around and self._lost_floor(state, intent):
+            fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
+            return replace(state, memory=Jumping(fallen, 0.0, "there was nothing to step on"))
         return replace(state, memory=Jumping(self.plan(state, intent)))
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
@@ -266,6 +272,16 @@ class Jump(Controller):
         if jumping.fault:
             return Status("failed", jumping.fault)
         return Status("done", "it has landed and can't stop here" if jumping.time >= jumping.plan.through else "")
+
+    def _lost_floor(self, state: CharacterState, intent: Intent) -> bool:
+        """Whether it stands on nothing: looked at only where the floor ahead lies lower."""
+        x, z, heading = state.ground
+        ahead, left = np.asarray(state.velocity, float)[[0, 2]] * 0.2
+        c, s = np.cos(heading), np.sin(heading)
+        x, z = x + s * ahead + c * left, z + c * ahead - s * left
+        if np.ndim(state.ground) != 1 or floor_at(x, z, intent.around) > float(state.floor) - 0.2 * self.physique.size:
+            return False
+        return over_nothing(self.skeleton, state.pose, state.contacts, intent.around, self.physique.size)
 
     def _moment(self, state: CharacterState) -> bool:
         """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""

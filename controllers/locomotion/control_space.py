@@ -19,6 +19,8 @@ SCALE = np.array([0.54, 0.99, 0.25])
 """Spread of (v_f, ω, v_l) in human walking [m/s, rad/s, m/s]: one unit of distance in the space."""
 EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
 """The six edges of a simplex, as pairs of its vertices."""
+STRAIGHT = 0.35
+"""Who turns less than this [rad/s] goes straight ahead."""
 STEEPEST = 10.0
 """Simplices thinner than 1 / STEEPEST (scaled velocity) are slivers: weights would race across them."""
 LANE = 0.95
@@ -102,11 +104,14 @@ class ControlSpace:
         return np.all(np.asarray(query) / SCALE @ self.hull[:, :3].T + self.hull[:, 3] <= 1e-9, -1)
 
     def straight(self) -> tuple[float, float]:
-        """The slowest and the fastest way straight ahead (v_f) [m/s] in the hull."""
+        """The slowest and the fastest way straight ahead (v_f) [m/s] in the hull, no slower than the slowest that was
+        recorded there: halfway between two turns lies no gait."""
         slope, room = self.hull[:, 0], -self.hull[:, 3] * INSIDE
         with np.errstate(divide="ignore"):
             reach = room / slope
-        return SCALE[0] * float(reach[slope < 0].max()), SCALE[0] * float(reach[slope > 0].min())
+        low, high = SCALE[0] * float(reach[slope < 0].max()), SCALE[0] * float(reach[slope > 0].min())
+        recorded = self.points[np.abs(self.points[:, 1]) < STRAIGHT, 0].min(initial=high)
+        return min(max(low, float(recorded)), high) if recorded < high else low, high
 
     def locate(self, query: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The simplex (...) and barycentric weights (..., 4) of queries (..., 3), clamped first: eq. (4)."""

@@ -29,6 +29,9 @@ STANDING_SPEED = {"walk": 0.35, "run": 1.0}
 CONTACT_GATE = 0.05
 """… and lower than this above where it rests [m]."""
 
+SEAM = 4
+"""How far apart the frames are by which speeds are told where a cycle begins and where it ends."""
+
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
@@ -193,16 +196,22 @@ def _cycle(track: Track, labels: np.ndarray, frames: np.ndarray, family: str) ->
     root = track.clip.root[a:b + 1]
     middle = relative(ground, np.stack([root[:, 0], root[:, 2], ground[:, 2]], -1))
     hips = np.stack([middle[:, 0], root[:, 1], middle[:, 1]], -1)
-    chart, hips = (_close(x, fraction) for x in (chart, hips))
+    chart, hips = _close(chart, fraction), _close(hips, fraction, True)
     soft = np.stack([np.interp(fraction * (b - a), np.arange(b - a + 1), x) for x in labels[a:b + 1].T], -1)
     return Cycle(track.clip.name, a / RATE, period, family, velocity, events, closure,
                  reference @ rot.exp(chart), hips, soft, period * slope)
 
 
-def _close(signal: np.ndarray, fraction: np.ndarray) -> np.ndarray:
-    """A signal (T, ...) over one cycle, its drift spread evenly, at `fraction` (S,) of the period."""
+def _close(signal: np.ndarray, fraction: np.ndarray, smoothly: bool = False) -> np.ndarray:
+    """A signal (T, ...) over one cycle, at `fraction` (S,) of the period: what it drifts by is spread evenly, and, smoothly,
+    what it is faster by in the end, too, so that its speed does not jump where the cycle begins again."""
     time = np.linspace(0.0, 1.0, len(signal)).reshape((-1,) + (1,) * (signal.ndim - 1))
     closed = signal - (signal[-1] - signal[0]) * (time - 0.5)
+    if smoothly:
+        k = min(SEAM, (len(closed) - 1) // 2)
+        ends = closed[[0, k, 2 * k, -1 - 2 * k, -1 - k, -1]]
+        faster = (3 * ends[5] - 4 * ends[4] + ends[3] + 3 * ends[0] - 4 * ends[1] + ends[2]) * ((len(closed) - 1) / (2 * k))
+        closed = closed - 0.5 * faster * (time**2 - time + 1 / 6)
     at = fraction * (len(signal) - 1)
     low = np.minimum(at.astype(int), len(signal) - 2)
     part = (at - low).reshape((-1,) + (1,) * (signal.ndim - 1))

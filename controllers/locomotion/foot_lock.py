@@ -19,12 +19,12 @@ from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
 from .cycles import EVENTS
 from .foot_clearance import HALFLIFE, aside_kernel
+from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
 from .kernel import DURATION_AT, LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
-from .first_stride import shift_left
-from .uneven_ground import follow_ground, lie_kernel
+from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -40,6 +40,8 @@ SOONEST = 0.06
 """An offset is given at least this long to go [s] …"""
 LATEST = 0.45
 """… and at most this."""
+AIM_HALFLIFE = 0.02
+"""A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 LAND_HALFLIFE = 0.03
 """A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
@@ -73,6 +75,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
     on_floor(m, now)
     if tops.shape[0] > 0:
         follow_ground(m, tops, floor, SWING[m.family], dt)
+    m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
         _take_hold(m, k, legs.height, dt)
     for foot in range(2):
@@ -90,7 +93,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
             need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
         else:
             need = 1.0
-    most = PELVIS_DROP + 0.5 * abs(m.base[1] - m.base[0])
+    most = PELVIS_DROP + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
     need = min(need, most)
     drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
     m.pelvis = min(max(drop, 0.0), most)
@@ -99,7 +102,8 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
         for j in range(hip, hip + 3):
             positions[j, 1] -= m.pelvis
         leg_kernel(positions, orientations, hip, ankle[foot], work)
-        toe_kernel(body, hip + 2, legs.height + lie_kernel(m, 2 * foot + 1) + lift[foot], positions, orientations, local, work)
+        toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)
+        toe_kernel(body, hip + 2, toes + lift[foot], positions, orientations, local, work)
         localise_kernel(orientations, 0, hip, local)
         localise_kernel(orientations, hip, hip + 1, local)
         localise_kernel(orientations, hip + 1, hip + 2, local)
@@ -141,6 +145,9 @@ def _offset(m, foot, before, now, dt):
             offset[i] = goal + x * (1.0 - u * u * (3.0 - 2.0 * u)) + v * u * (1.0 - u) ** 2
             rate[i] = (6.0 * x * u * (u - 1.0) + v * (1.0 - u) * (1.0 - 3.0 * u)) * u / dt
         return
+    if m.aimed[foot] == 1 and grip < 1.0:  # to the very place that it chose
+        for i in range(2):
+            offset[i] += (m.land[foot, i] - offset[i]) * (1.0 - grip) * (1.0 - 2.0 ** (-dt / AIM_HALFLIFE))
     heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
     was_x, was_z = before[h, 0] - before[b, 0], before[h, 1] - before[b, 1]
     x, z = now[h, 0] - now[b, 0], now[h, 1] - now[b, 1]
@@ -199,6 +206,8 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
         for i in range(3):
             for k in range(3):
                 orientations[a, i, k] = turned[i, k]
+    if m.tilt[foot, 0] != 0.0 or m.tilt[foot, 1] != 0.0:
+        _roll(m, foot, x, y, z, orientations[a], axis, turned)
     hang = (m.grip[ball] + 0.01) / (m.grip[heel] + m.grip[ball] + 0.02)
     m.anchor[foot] += (hang - m.anchor[foot]) * (1.0 - 2.0 ** (-dt / ANCHOR_HALFLIFE))
     hang = m.anchor[foot]
@@ -214,6 +223,19 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
         under_heel += orientations[a, 1, k] * body.heel[k]
         under_ball += orientations[a, 1, k] * body.offsets[a + 1, k]
     ankle[1] += max(0.0, height - min(under_heel - lie_kernel(m, heel), under_ball - lie_kernel(m, ball)))
+
+
+@kernel
+def _roll(m, foot, x, y, z, orientation, axis, turned):
+    """Turn a foot that points along x, y, z in the ground frame about that line, as far as its ground rises to its left."""
+    flat, size = math.sqrt(x * x + z * z) + 1e-9, math.sqrt(x * x + y * y + z * z) + 1e-9
+    axis[0], axis[1], axis[2] = x / size, y / size, z / size
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    rise = (m.tilt[foot, 0] * (c * z - s * x) - m.tilt[foot, 1] * (c * x + s * z)) / flat
+    tilt_kernel(orientation, axis, math.atan(rise), turned)
+    for i in range(3):
+        for k in range(3):
+            orientation[i, k] = turned[i, k]
 
 
 @kernel

@@ -156,12 +156,13 @@ def idle_kernel(m, idle, liveliness, dt):
     if follows < 0 or not (idle.must[now] or luck < LEAVES * 4294967296.0):
         return
     there = follows + (m.moment - now)
-    for d in range(LABELS_AT):
-        was, was_rate = _spline(idle, d, m.moment)
-        comes, comes_rate = _spline(idle, d, there)
-        m.blend[d] += m.presence * (was - comes)
-        m.blend_rate[d] += m.presence * (was_rate - comes_rate)
-    m.fade = FADE
+    if m.presence > 1e-4:  # who walks fades nothing
+        for d in range(LABELS_AT):
+            was, was_rate = _spline(idle, d, m.moment)
+            comes, comes_rate = _spline(idle, d, there)
+            m.blend[d] += m.presence * (was - comes)
+            m.blend_rate[d] += m.presence * (was_rate - comes_rate)
+        m.fade = FADE
     m.moment = there
 
 

@@ -10,7 +10,7 @@ from .kernel import joint_kernel
 
 REACH = 0.999
 """Legs straighten to this share of their length, and those that must give way a little earlier."""
-SOFTNESS = 0.006
+SOFTNESS = 0.0045
 """Legs slow down over about this length before they are straight [m]."""
 HEEL_RISE = 0.9
 """The most that a heel may rise about the ball to give a leg length [rad]."""

@@ -17,10 +17,14 @@ from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
 from .idle import idle_of
 from .library import DURATION, LABELS, Library, LibraryError, Primitive, channels, reference_rotations
+from .mass_centre import pushable
 from .selection import Choice, neighbours, select
 from .first_stride_build import starts
 from .velocity_correction import settle
 
+LONE, STRAIGHT = 4, 0.15
+"""Fewer cycles than the first that go straight ahead (turning [rad/s] and going aside [m/s] less than the second) are averaged
+with their mirror images: one stride's limp is nobody's gait."""
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is done and how much there is."""
 
@@ -192,11 +196,13 @@ def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], still
         seed = cycles[choice.cycle]
         near, weight = neighbours(cycles, actor, choice.cycle, seed.family)
         group = [mirrored(cycles[i], swap) if choice.mirrored else cycles[i] for i in near]
+        if len(group) < LONE and max(abs(seed.velocity[1]), abs(seed.velocity[2])) < STRAIGHT:
+            group, weight = group + [mirrored(one, swap) for one in group], np.tile(0.5 * weight, 2)
         samples = np.asarray(sum(w * channels(c, reference) for w, c in zip(weight, group)))
         primitives.append(Primitive(choice.label, seed.clip, seed.start, seed.period, seed.family, seed.closure,
                                     tuple(map(float, seed.events)), choice.mirrored, len(near)))
-        velocities.append(sum(w * c.velocity for w, c in zip(weight, group)))
-        rows.append(fourier.fit(samples))
+        velocities.append(np.asarray(sum(w * c.velocity for w, c in zip(weight, group))))
+        rows.append(fourier.fit(pushable(samples, reference, velocities[-1])))
     walking = [i for i, p in enumerate(primitives) if p.family == "walk"]
     rest, clip, start = rest_pose(stills, reference)
     row = np.zeros_like(rows[0])

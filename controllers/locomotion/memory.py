@@ -100,6 +100,8 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
         ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where the blend came down in the ground frame; how far aside it will
+        ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain
+        ("pace", "f4"),  # the share of the wished speed that the ground allows
         ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
@@ -125,7 +127,7 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     turn = (there - here) * [0.0, 0.0, 1.0]
     for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("land", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
-    memory["ground"] = ground
+    memory["ground"], memory["aimed"] = ground, 0
 
 
 def _flat(places):

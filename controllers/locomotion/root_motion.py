@@ -8,10 +8,23 @@ import numpy as np
 
 from ..compiled import kernel
 from .foot_points import foot_points
-from .kernel import HIPS_AT, LABELS_AT
+from .kernel import DURATION_AT, HIPS_AT, LABELS_AT
 
 DRIFT_HALFLIFE = 0.03
 """Of the standing foot's say where a blend's velocity is measured [s]."""
+PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
+"""A standing foot this far off [m] makes one step sooner, the more the farther, by at most this share."""
+
+
+@kernel
+def cadence_kernel(m):
+    """Cycles a second: those of the blend at the command's stretch, more where a foot stands far from where it should."""
+    late = 0.0
+    for foot in range(2):
+        if m.standing[2 * foot] or m.standing[2 * foot + 1]:
+            late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
+    hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
+    return hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)
 
 
 @kernel

@@ -9,6 +9,7 @@ import numpy as np
 from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
+from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
@@ -17,17 +18,16 @@ from .foot_points import foot_points, on_floor
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
                      pose_kernel, query_kernel, series_kernel)
 from .memory import RUN, WALK
-from .root_motion import follow_command, to_world_kernel
-from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
+from .root_motion import cadence_kernel, follow_command, to_world_kernel
 from .uneven_ground import stand_on
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
 half by its strides, so that walks and runs meet between them."""
-PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
-"""A standing foot this far off [m] makes one step sooner, the more the farther, by at most this share."""
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
+HEAVY = 2.0
+"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
 STRAIGHT = 0.2
@@ -91,6 +91,7 @@ def _shape_command(m, wish, dt, settings, walk, run, p, inner):
     _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
     for i in range(3):
         p[i] *= SCALE[i]
+    p[0], p[2] = p[0] * m.pace, p[2] * m.pace
     most = settings.acceleration * settings.agility
     round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
     p[1] = min(max(p[1], -round_curve), round_curve)
@@ -205,15 +206,8 @@ def advance_phase(m, agility, dt):
 
 @kernel
 def _share_of_cycle(m, agility, dt):
-    """How far the phase runs in dt: dφ/dt = 1 / duration(φ), sooner while a foot is far off, and no faster than weight
-    is shifted before a start's first toe-off."""
-    late = 0.0  # a foot that stands far from where it should makes one step sooner
-    for foot in range(2):
-        if m.standing[2 * foot] or m.standing[2 * foot + 1]:
-            late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
-    hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
-    pace = hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)
-    left = shift_left(m)
+    """How far the phase runs in dt, no faster than weight is shifted before a start's first toe-off."""
+    pace, left = cadence_kernel(m), shift_left(m)
     if left <= 0.0:
         return pace * dt
     shifting = min(pace, agility * BEFORE / SHIFT)
@@ -226,7 +220,7 @@ def blend_series(m, settings, table, fresh, legs, dt):
     series_kernel(table, m.weights, m.phase, fresh)
     for d in range(LABELS_AT):
         m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
-                                                      m.fade, dt)
+                                                      m.fade if d < HIPS_AT else HEAVY * m.fade, dt)
         fresh[d] += m.blend[d]
     for d in range(COLUMNS):
         m.row_rate[d] = (fresh[d] - m.row[d]) / dt

@@ -16,14 +16,27 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation import is_box, slope
 from .foot_points import shown_kernel
-from .kernel import DURATION_AT
+from .root_motion import cadence_kernel
+
+WALK = 0
+"""The family that comes down where it chose; who runs has no time to."""
 
 STEP = 0.24
 """A foot comes down no more than this higher or deeper than the other stands [m] …"""
 SEEN = 0.5
-"""… and ground that is farther than this from the body's level is none [m]."""
+"""… and what is higher than this over the body's level is no ground [m]."""
 SHIFTS = np.array([0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15, -0.2, -0.25, -0.3, -0.35, -0.4, -0.45, -0.5])
 """How much farther or nearer a foot comes down where it would not stand well, in the order in which it is tried [m]."""
+CERTAIN = 0.35
+"""After this share of its swing a foot keeps to the place where it will come down …"""
+FARTHEST, ASTRAY = 0.6, 0.06
+"""… unless that gets farther away than the first [m]; a foot that came down farther from it than the second stands on what
+lies there."""
+NEARS = 0.6
+"""Until this share of its swing where a foot will come down is told from its last step alone."""
+SLOWEST, RECOVERS = 0.4, 0.35
+"""Who must take shorter steps slows down, to no less than the first share of the wish, and takes up speed again by so much a
+second."""
 SLOW = 0.1
 """Slower than this [m/s] nobody chooses where a foot comes down."""
 FLAT = np.zeros((0, 8))
@@ -46,7 +59,7 @@ def ground_kernel(tops, x, z, floor, level, out):
     """
     found = False
     out[0], out[1], out[2] = level, 0.0, 0.0
-    if abs(-floor - level) <= SEEN:  # the world's own floor
+    if -floor - level <= SEEN:  # the world's own floor
         found, out[0] = True, -floor
     for k in range(tops.shape[0]):
         dx, dz = x - tops[k, 0], z - tops[k, 1]
@@ -55,7 +68,7 @@ def ground_kernel(tops, x, z, floor, level, out):
         if abs(across) > tops[k, 4] or abs(along) > tops[k, 5]:
             continue
         high = tops[k, 6] + tops[k, 7] * along - floor
-        if abs(high - level) <= SEEN and (not found or high > out[0]):
+        if high - level <= SEEN and (not found or high > out[0]):
             found = True
             out[0], out[1], out[2] = high, tops[k, 7] * s, tops[k, 7] * c
     return found
@@ -63,8 +76,11 @@ def ground_kernel(tops, x, z, floor, level, out):
 
 RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
+DROPS, CLIMBS = 2.0, 4.0
+"""A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
+GRAVITY = 9.81
 LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 LOW = 0.06
@@ -79,66 +95,135 @@ SAME = 0.02
 def follow_ground(m, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
     body's level, which follows both. swing: the share of the cycle for which a foot swings."""
-    under, place = np.empty(3), np.empty(2)
+    under, place, bears = np.empty(3), np.empty(2), np.empty(2)
     for foot in range(2):
+        bears[foot] = m.base[foot]
         ball = 2 * foot + 1
         firm = max(m.grip[ball - 1], m.grip[ball]) >= 1.0
         if firm and m.held[foot] == 1:
             m.left[foot] = m.base[foot]
             continue
-        progress = min(((m.phase - 0.5 * foot) % 1.0) / swing, 1.0)
+        passed = ((m.phase - 0.5 * foot) % 1.0) / swing
+        progress = min(passed, 1.0)
+        aim = m.aim[foot]
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
                 shown_kernel(m, ball, place)
                 c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-                _under(m, tops, floor, m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1],
-                       c, s, under)
-                m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
-            m.left[foot] = m.base[foot]
+                x, z = m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1]
+                if m.aimed[foot] == 0 or math.hypot(x - aim[0], z - aim[1]) > ASTRAY:
+                    _under(m, tops, floor, x, z, c, s, under)
+                    if under[0] < m.base[1 - foot] - STEP and _upheld(m, tops, floor, 1 - foot, place):
+                        under[0], under[1], under[2] = m.base[1 - foot], 0.0, 0.0
+                    m.base[foot], m.tilt[foot, 0], m.tilt[foot, 1] = under[0], under[1], under[2]
+                else:
+                    m.base[foot] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
+                    m.tilt[foot, 0], m.tilt[foot, 1] = aim[3], aim[4]
+            m.left[foot] = bears[foot] = m.base[foot]
             if firm:
-                m.struck[foot, 0], m.struck[foot, 1] = m.points[ball, 0], m.points[ball, 2]
-                m.held[foot] = 1
+                early = min(max(1.0 - passed, -0.3), 0.3) * swing / cadence_kernel(m)  # told for the swing's end
+                m.struck[foot, 0] = m.points[ball, 0] - early * m.velocity[2]
+                m.struck[foot, 1] = m.points[ball, 2] - early * m.velocity[0]
+                m.held[foot], m.aimed[foot] = 1, 0
             continue
         m.held[foot] = 0
-        _come_down(m, tops, floor, foot, (1.0 - progress) * swing * m.row[DURATION_AT], under)
+        _come_down(m, tops, floor, foot, progress, (1.0 - progress) * swing / cadence_kernel(m), under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
-        m.base[foot] = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        path = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        if abs(under[0] - m.left[foot]) > SAME:
+            path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
+        m.base[foot] = min(max(path, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
+        bears[foot] = m.base[foot]
+        if under[0] < m.left[foot]:  # the body sinks all the way down
+            bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
         for i in range(2):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
-    low, high = min(m.base[0], m.base[1]), max(m.base[0], m.base[1])
-    before = m.level
+    low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
+    before, rate = m.level, m.level_rate
     m.level, m.level_rate = spring_kernel(m.level, m.level_rate, min(0.5 * (low + high), low + LOW + 0.25 * (high - low)),
                                           LEVEL_HALFLIFE, dt)
+    if m.level_rate < rate - GRAVITY * dt:  # nobody sinks faster than they fall
+        m.level_rate = rate - GRAVITY * dt
+        m.level = before + 0.5 * (rate + m.level_rate) * dt
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
 
 
 @kernel
-def _come_down(m, tops, floor, foot, later, out):
+def _upheld(m, tops, floor, foot, place):
+    """Whether a foot has the ground under it that it stands on: who set one foot over an edge has the other one still there."""
+    ground = np.empty(3)
+    shown_kernel(m, 2 * foot + 1, place)
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    ground_kernel(tops, m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1], floor, m.level, ground)
+    return ground[0] > m.base[foot] - STEP
+
+
+@kernel
+def _beneath(m, tops, floor, foot, highest, place):
+    """How high the ground lies that a swinging foot is over, from its heel to its toes' end: none above `highest`."""
+    ground, high = np.empty(3), -1e9
+    shown_kernel(m, 2 * foot, place)
+    heel_x, heel_z = place[0], place[1]
+    shown_kernel(m, 2 * foot + 1, place)
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    for k in range(3):  # heel, ball, toes' end
+        along = (0.0, 1.0, 1.0 + TOE / FOOT)[k]
+        x, z = heel_x + along * (place[0] - heel_x), heel_z + along * (place[1] - heel_z)
+        if ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground) and ground[0] < highest:
+            high = max(high, ground[0])
+    return high
+
+
+@kernel
+def _come_down(m, tops, floor, foot, progress, later, out):
     """Where a foot comes down in `later` seconds, and the ground (3,) there: as far beside where it would as it must to
-    stand whole and no step too high."""
+    stand whole and no step too high. Once its swing is CERTAIN, it keeps to the place."""
     turn = m.velocity[1] * later
     c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
     x = m.ground[0] + (c * m.velocity[2] + s * m.velocity[0]) * later
     z = m.ground[1] + (-s * m.velocity[2] + c * m.velocity[0]) * later
     c, s = math.cos(m.ground[2] + turn), math.sin(m.ground[2] + turn)
     x, z = x + c * m.struck[foot, 0] + s * m.struck[foot, 1], z - s * m.struck[foot, 0] + c * m.struck[foot, 1]
+    near = max((progress - NEARS) / (1.0 - NEARS), 0.0) ** 2  # the nearer it is, the more where it is tells
+    here_x, here_z = m.points[2 * foot + 1, 0], m.points[2 * foot + 1, 2]
+    c_now, s_now = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x += near * (m.ground[0] + c_now * here_x + s_now * here_z - x)
+    z += near * (m.ground[1] - s_now * here_x + c_now * here_z - z)
+    aim = m.aim[foot]
+    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
+        m.land[foot, 0], m.land[foot, 1] = aim[0] - x, aim[1] - z
+        out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
+        return
+    found, shift, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
+    aim[0], aim[1] = x + m.land[foot, 0], z + m.land[foot, 1]
+    aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
+    even = shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
+    m.aimed[foot] = 1 if found and progress > CERTAIN and not even and m.family == WALK else 0
+    if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
+        step = max(0.5 * speed / cadence_kernel(m), 0.05)
+        m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)
+
+
+@kernel
+def _choose(m, tops, floor, foot, x, z, c, s, out):
+    """The ground (3,) that a foot comes down on near x, z, looking to where cosine c and sine s say: whether there is a good
+    place, how far ahead that is [m], and how fast the body goes there [m/s]."""
     along_x, along_z = c * m.velocity[2] + s * m.velocity[0], -s * m.velocity[2] + c * m.velocity[0]
     speed = math.hypot(along_x, along_z)
     m.land[foot, 0] = m.land[foot, 1] = 0.0
     other = m.base[1 - foot]
-    if speed <= SLOW:
-        _under(m, tops, floor, x, z, c, s, out)
-        return
-    for shift in SHIFTS:
-        shift_x, shift_z = shift * along_x / speed, shift * along_z / speed
-        if _under(m, tops, floor, x + shift_x, z + shift_z, c, s, out) and abs(out[0] - other) <= STEP:
-            m.land[foot, 0], m.land[foot, 1] = shift_x, shift_z
-            return
-    _under(m, tops, floor, x, z, c, s, out)
-    if abs(out[0] - other) > STEP:
-        out[0], out[1], out[2] = other, 0.0, 0.0
+    if speed > SLOW:
+        for shift in SHIFTS:
+            shift_x, shift_z = shift * along_x / speed, shift * along_z / speed
+            if _under(m, tops, floor, x + shift_x, z + shift_z, c, s, out) and abs(out[0] - other) <= STEP:
+                m.land[foot, 0], m.land[foot, 1] = shift_x, shift_z
+                return True, shift, speed
+    found = _under(m, tops, floor, x, z, c, s, out)
+    if speed > SLOW and abs(out[0] - other) > STEP:
+        found, out[0], out[1], out[2] = False, other, 0.0, 0.0
+    return found, 0.0, speed
 
 
 @kernel
@@ -167,6 +252,16 @@ def lie_kernel(m, k):
         c, s = math.cos(m.ground[2] + m.offset[foot, 2]), math.sin(m.ground[2] + m.offset[foot, 2])
         lie += m.tilt[foot, 0] * (c * x + s * z) + m.tilt[foot, 1] * (c * z - s * x)
     return lie
+
+
+@kernel
+def rise_ahead(m, foot):
+    """How the ground under a foot rises to where its toes point."""
+    if m.tilt[foot, 0] == 0.0 and m.tilt[foot, 1] == 0.0:
+        return 0.0
+    x, z = m.points[2 * foot + 1, 0] - m.points[2 * foot, 0], m.points[2 * foot + 1, 2] - m.points[2 * foot, 2]
+    c, s = math.cos(m.ground[2] + m.offset[foot, 2]), math.sin(m.ground[2] + m.offset[foot, 2])
+    return (m.tilt[foot, 0] * (c * x + s * z) + m.tilt[foot, 1] * (c * z - s * x)) / (math.hypot(x, z) + 1e-9)
 
 
 @kernel

@@ -91,9 +91,12 @@ def settle(library: Library, progress=None) -> Library:
 def _without_slivers(library: Library) -> Library:
     """The library without the primitives that make its control spaces' simplices thin.
 
-    Rest stays, and so does straight walking, which people do most.
+    Rest stays, and so does straight walking, which people do most, and whatever goes farthest to any side.
     """
     kept = np.array([p.family == "rest" or p.label.startswith("forward") for p in library.primitives])
+    for members in (library.family("walk"), library.family("run")):
+        if len(members):
+            kept[members[library.velocities[members].argmax(0)]] = kept[members[library.velocities[members].argmin(0)]] = True
     left = np.sort(np.concatenate([
         members[thin(library.velocities[members], kept[members])]
         for members in (library.family("walk"), library.family("run")) if len(members)]))

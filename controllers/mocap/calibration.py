@@ -26,6 +26,9 @@ _UPRIGHT = np.cos(np.radians(20.0))
 _STRAIGHT = 0.04  # m: a leg that comes within this of straight is taken to straighten in its stride
 _MOST_ROLL = np.radians(3.0)
 _MOST_SINK = 0.01  # m
+_STRAIGHTENS, _SHORTEST_REACH = 99.5, 0.99
+"""A leg that comes within the second of its length is straight in the last frames of the first percent: people's legs
+straighten as they walk, fitted skeletons' often do not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,7 @@ class Calibration:
     (scaled): some skeletons have their ankles 8 cm higher than people do, or one higher than the other.
     clavicles: the share of the clavicles' rotation we take, so that longer ones do not shrug.
     sink: how much lower than theirs our hips are [m], where our legs are uneven otherwise.
+    reach: (2,) the share of its length at which their left and right leg is straight.
     """
 
     roles: Roles
@@ -47,6 +51,7 @@ class Calibration:
     ankles: np.ndarray
     clavicles: float
     sink: float
+    reach: tuple[float, float]
 
 
 def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed: bool | None = None) -> Calibration:
@@ -89,7 +94,10 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     if "LeftShoulder" in part.limbs:
         bone = "LeftShoulder", "LeftArm"
         clavicles = float(min(scale * _distance(zero, part.limbs, *bone) / _distance(rest, ours, *bone), 1.0))
-    draft = Calibration(part, corrections, scale, posed, ankles, clavicles, 0.0)
+    straight = [float(np.percentile(np.concatenate([leg_stretch(positions, part, side) for positions, _ in motions]), _STRAIGHTENS))
+                for side in SIDES]
+    left, right = (reach if reach > _SHORTEST_REACH else 1.0 for reach in straight)
+    draft = Calibration(part, corrections, scale, posed, ankles, clavicles, 0.0, (left, right))
     roll, sink = _even_legs(skeleton, draft, motions)
     corrections = corrections.copy()
     corrections[part.limbs["Hips"]] @= exp([0.0, 0.0, roll])
@@ -110,6 +118,13 @@ def place_feet(skeleton: Skeleton, known: Calibration, positions: np.ndarray, or
     # the whole body sinks with the soles, so the legs keep their stretch
     turned[..., 1] -= known.ankles[:, 1].mean()
     return middle, known.scale * positions[:, feet] + turned
+
+
+def leg_stretch(positions: np.ndarray, part: Roles, side: str) -> np.ndarray:
+    """How far apart (T,) hip and ankle of the "Left" or "Right" leg are, as a share of its length. positions: (T, J, 3)."""
+    hip, knee, foot = (positions[:, part.limbs[side + n]] for n in ("UpLeg", "Leg", "Foot"))
+    length = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(foot - knee, axis=-1)
+    return np.linalg.norm(foot - hip, axis=-1) / np.maximum(length, 1e-9)
 
 
 def _even_legs(skeleton, known, motions):

@@ -2,21 +2,33 @@
 
 Orientations are carried over joint by joint through constant corrections (`calibration`), the
 way of the hips and of both ankles is scaled by the ratio of leg lengths, and two-bone inverse
-kinematics puts our ankles there: a foot that stood still in the data still stands still.
+kinematics puts our ankles there: a foot that stood still in the data still stands still. What
+differs between two bodies is taken up by the hips' height, so that a leg that was straight is
+straight again: a few millimetres are ten degrees of the knee.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from ..body import (Clip, Skeleton, between, contact_height, exp, forward_kinematics, human, local_rotations, log,
                     two_bone_turns)
-from .calibration import SIDES, Calibration, calibrate, place_feet
+from .calibration import SIDES, Calibration, calibrate, leg_stretch, place_feet
 from .flat_stance import flat_frames, foot_points
 
 _TRUNK = ("Spine", "Spine1", "Spine2")
 _NECK = ("Neck", "Head")
+_STRAIGHTEST, _SOFT = 0.999, 0.0012
+"""No leg is stretched beyond about this share of its length, since no knee moves smoothly there."""
+_NEAR = 0.012
+"""A leg has a say in the hips' height while it is less than about this share short of straight …"""
+_SLACK = 0.02
+"""… and where neither is, the hips stay where they are, the firmer the larger this is."""
+_CALM = 0.04
+"""The hips' height is changed no more quickly than a bell of this standard deviation [s]."""
+_MOST_SHIFT = 0.03  # m
 
 
 def retarget(clip: Clip, skeleton: Skeleton | None = None, *, calibration: Calibration | None = None) -> Clip:
@@ -37,6 +49,7 @@ def retarget(clip: Clip, skeleton: Skeleton | None = None, *, calibration: Calib
     between_hips = (skeleton.offsets[skeleton.index("LeftUpLeg")] + skeleton.offsets[skeleton.index("RightUpLeg")]) / 2
     middle, ankles = place_feet(skeleton, known, positions, orientations)
     root = middle - ours[:, hips] @ between_hips
+    root[:, 1] += _stretch_shift(clip, skeleton, known, positions, root, ours, ankles)
     for k, side in enumerate(SIDES):
         _place_ankle(skeleton, side, root, ours, ankles[:, k])
     root[:, 1] += _floor_shift(clip, skeleton, known, positions, orientations, root, ours)
@@ -76,6 +89,25 @@ def _share(names, chain):
 def _part_way(a, b, share):
     """Rotations (..., 3, 3) on the way from a to b: 0 is a, 1 is b."""
     return a @ exp(share * log(np.swapaxes(a, -1, -2) @ b))
+
+
+def _stretch_shift(clip, skeleton, known, positions, root, ours, ankles):
+    """How far to lift the hips (T,) [m] so that legs near full stretch are stretched as theirs were."""
+    at, _ = forward_kinematics(skeleton, root, local_rotations(skeleton, ours))
+    pull, say = np.zeros(len(clip)), np.full(len(clip), _SLACK)
+    for k, side in enumerate(SIDES):
+        hip, knee, foot = (skeleton.index(side + n) for n in ("UpLeg", "Leg", "Foot"))
+        length = np.linalg.norm(skeleton.offsets[knee]) + np.linalg.norm(skeleton.offsets[foot])
+        stretch = leg_stretch(positions, known.roles, side) / known.reach[k]
+        wanted = (stretch - _SOFT * np.logaddexp(0.0, (stretch - _STRAIGHTEST) / _SOFT)) * length
+        leg = at[:, hip] - ankles[:, k]
+        distance = np.linalg.norm(leg, axis=-1)
+        upright = leg[:, 1] / np.maximum(distance, 1e-9)
+        weight = np.exp((stretch - 1.0) / _NEAR) * np.maximum(upright, 0.0)
+        pull += weight * upright * (wanted - distance)
+        say += weight * upright**2
+    shift = gaussian_filter1d(pull / say, _CALM / clip.frame_time, mode="nearest")
+    return np.clip(shift, -_MOST_SHIFT, _MOST_SHIFT)
 
 
 def _place_ankle(skeleton, side, root, ours, ankle):

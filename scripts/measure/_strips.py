@@ -8,8 +8,9 @@ import numpy as np
 
 from _plots import pyplot
 
-def draw(worst, folder: Path, name: str) -> None:
-    """The ten worst moments as strips of stick figures, from the side and from above."""
+def draw(worst, folder: Path, name: str, unit: str = "×") -> None:
+    """The ten worst moments as strips of stick figures, from the side. unit: of the figures, by which a joint's name stands if
+    they are a joint's."""
     plt = pyplot()
     figure, axes = plt.subplots(len(worst), 1, figsize=(15, 2.1 * len(worst)))
     for axis, (value, label, motion, n, t) in zip(np.atleast_1d(axes), worst):
@@ -29,8 +30,8 @@ def draw(worst, folder: Path, name: str) -> None:
             axis.text(0.9 * k, -0.1, f"{(frame - t) / motion.rate:+.2f}", fontsize=6)
         axis.set_aspect("equal")
         axis.axhline(0, color="0.7", lw=0.5)
-        joint = motion.skeleton.names[int(motion.joints[t, n].argmax())]
-        axis.set_title(f"{label}: {joint} {value:.1f}×", fontsize=8)
+        joint = f" {motion.skeleton.names[int(motion.joints[t, n].argmax())]}" if unit == "×" else ""
+        axis.set_title(f"{label}:{joint} {value:.1f}{unit}", fontsize=8)
         axis.axis("off")
     figure.savefig(folder / f"{name}.png")
     plt.close(figure)

@@ -6,7 +6,8 @@ DIR is the folder of motion capture that the recipe names. Leave-one-out: for ev
 one actor, all cycles of its source clip are taken away, the control space is triangulated anew,
 and the blend at the primitive's velocity is compared with the recorded cycle: RMS joint angle and
 mean joint position in the ground frame. Beside it the nearest primitive, and the actor's own
-repeatability: two recorded cycles of different clips at nearly the same velocity.
+repeatability: two recorded cycles of different clips at nearly the same velocity. And how straight knees are while
+their foot stands, as recorded and on Gambol's skeleton.
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ import numpy as np
 from rich.progress import Progress
 
 from gambol import assets
-from gambol.controllers.body import forward_kinematics, human, rotations as rot
+from gambol.controllers.body import contact_points, forward_kinematics, human, rotations as rot
 from gambol.controllers.locomotion import (HIPS, LABELS, SCALE, ControlSpace, channels, collect, fourier, neighbours,
                                            read_recipe, reference_rotations, select, thin)
+from gambol.controllers.mocap import calibrate, load, retarget
 
 
 def pose(samples: np.ndarray, reference: np.ndarray):
@@ -38,11 +40,48 @@ def difference(a: np.ndarray, b: np.ndarray, reference: np.ndarray) -> tuple[flo
             float(100 * np.linalg.norm(pa - pb, axis=-1).mean()))
 
 
+def knees(folder: Path) -> None:
+    """The knee's angle (2nd, 10th and 50th percentile) while its foot stands, in recordings and on the standard human."""
+    print("Knees while their foot stands, 2 / 10 / 50 % under: recorded → ours")
+    for name, pattern in (("the actor, walking", "woody2/wd2_WalkForward*"), ("side-steps, turns", "cmu_30fps/69/*"),
+                          ("brisk walks", "cmu_bvh/0[78]/*"), ("runs", "cmu/09/*.amc")):
+        groups: dict = {}
+        for path in sorted(folder.glob(pattern)):
+            clip = load(path)
+            if len(clip) * clip.frame_time > 0.9:
+                groups.setdefault((clip.skeleton.names, tuple(np.round(clip.skeleton.offsets[1:], 3).ravel())), []).append(clip)
+        found: list[list[np.ndarray]] = [[], []]
+        for clips in groups.values():
+            known = calibrate(clips)
+            for clip in clips:
+                body = retarget(clip, calibration=known)
+                positions, orientations = body.kinematics()
+                points = contact_points(body.skeleton, positions, orientations)
+                for k, side in enumerate(("Left", "Right")):
+                    speed = np.linalg.norm(np.gradient(points[:, 2 * k:2 * k + 2], clip.frame_time, axis=0), axis=-1).min(-1)
+                    stands = (speed < 0.35) & (points[:, 2 * k:2 * k + 2, 1].min(-1) < 0.04)
+                    ours = [body.skeleton.index(side + n) for n in ("UpLeg", "Leg", "Foot")]
+                    theirs = [known.roles.limbs[side + n] for n in ("UpLeg", "Leg", "Foot")]
+                    found[0].append(bend(clip.kinematics()[0][stands][:, theirs]))
+                    found[1].append(bend(positions[stands][:, ours]))
+        if groups:
+            told = [" / ".join(f"{a:.1f}" for a in np.percentile(np.concatenate(f), [2, 10, 50])) for f in found]
+            print(f"  {name:18s} {told[0]}° → {told[1]}°")
+
+
+def bend(leg: np.ndarray) -> np.ndarray:
+    """The angle (T,) [degrees] between thigh and shank of hips, knees and ankles (T, 3, 3)."""
+    bones = np.diff(leg, axis=1)
+    bones /= np.linalg.norm(bones, axis=-1, keepdims=True)
+    return np.degrees(np.arccos(np.clip((bones[:, 0] * bones[:, 1]).sum(-1), -1, 1)))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--recipe", type=Path, default=assets.path("library", "default.toml"))
     arguments = parser.parse_args()
+    knees(arguments.folder)
     sources, _ = read_recipe(arguments.recipe)
     with Progress(transient=True) as bar:
         tasks = {}

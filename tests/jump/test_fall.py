@@ -134,3 +134,20 @@ def test_only_what_it_moves_into_is_struck(jump, standing, x, z):
         assert hit is None
     elif z > 0.41:
         np.testing.assert_allclose(hit.normal, [0.0, 0.0, -1.0], atol=1e-6)
+
+
+@pytest.mark.parametrize(("high", "speed"), [(0.5, 1.2), (1.0, 0.8), (0.5, 2.8)])
+def test_who_walks_over_an_edge_falls_and_walks_on(jump, locomotion, high, speed):
+    """Its mass centre falls as everything does, it lands on the floor below, and it says why."""
+    person = Supervisor({"locomotion": locomotion, "jump": jump})
+    state, around = person.start((0.0, 0.0, 1.5), high), (Box((0.0, 0.5 * high, 0.0), (6.0, high, 6.0)),)
+    fell, why = [], set()
+    for _ in range(440):
+        state, pose = person.step(state, Intent(np.array([speed, 0.0, 0.0]), around=around), 1 / FPS)
+        if state.memory.active == "jump" and state.memory.memory.time < state.memory.memory.plan.touch_down:
+            fell.append(centre_of_mass(jump.physique.anatomy, *forward_kinematics(
+                jump.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float))))
+            why.add(person.parts["jump"].status(person.active(state)[1]).reason)
+    assert len(fell) > 4 and np.abs(np.diff(fell, 2, axis=0)[1:, 1] * FPS**2 + 9.81).max() < 2.0
+    assert why == {"there was nothing to step on"}
+    assert state.memory.active == "locomotion" and float(state.floor) == pytest.approx(0.0, abs=1e-6)

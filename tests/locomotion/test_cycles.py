@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from gambol.controllers.body import human
 from gambol.controllers.body.ground_frame import advance, compose
 from gambol.controllers.body.human import CONTACT_HEIGHT
-from gambol.controllers.locomotion.cycles import CONTACT_SPEED, EVENTS, RATE, Track, stance, steady_frame, warp
+from gambol.controllers.locomotion.cycles import CONTACT_SPEED, EVENTS, RATE, Track, _close, stance, steady_frame, warp
+from gambol.controllers.locomotion.mass_centre import _shift
 
 law = settings(max_examples=40, deadline=None)
 places = st.tuples(*[st.floats(-20, 20)] * 2, st.floats(-7, 7)).map(np.array)
@@ -113,3 +114,28 @@ def test_one_point_makes_a_foot_stand():
     one.points[:, 0, 1] = 0.3
     one.speeds[:, 3] = 2.0
     assert not stance(one, "walk").any()
+
+
+def test_closing_smoothly_leaves_no_jump_of_speed():
+    """One who gets faster in a stride: closed, neither place nor speed jumps where it begins again."""
+    time = np.linspace(0.0, 1.0, 121)[:, None]
+    signal = 0.3 * time + 0.4 * time**2 + 0.02 * np.sin(2 * np.pi * time)
+    closed = _close(signal, np.arange(120) / 120, True)[:, 0]
+    around = np.concatenate([closed, closed])
+    assert np.abs(np.diff(around, 2)).max() < 3e-4 < np.abs(np.diff(np.tile(_close(signal, np.arange(120) / 120)[:, 0], 2), 2)).max()
+
+
+def test_a_mass_centre_in_the_air_goes_straight():
+    """Of a runner whose path is bent all the time, the way is straight where nothing stands, and it turns as much."""
+    phase, period, speed, turn = np.arange(96) / 96, 0.7, 3.0, 1.0
+    omega = 4 * np.pi / period  # two steps a cycle
+    height = -0.08 * np.cos(2 * np.pi * 2 * phase - 1.0)
+    centre = np.stack([0 * phase, height, 0 * phase], -1)
+    moved = _shift(centre, np.full(96, period), np.array([speed, turn, 0.0]))
+    t = phase * period
+    way = np.exp(-1j * turn * t) * moved + 1j * speed * (1 - np.exp(-1j * turn * t)) / (1j * turn)
+    pull = np.abs(np.diff(way, 2)) / (t[1] - t[0]) ** 2
+    load = 9.81 + 0.08 * omega**2 * np.cos(2 * np.pi * 2 * phase - 1.0)
+    air = load[1:-1] < 1.0
+    assert air.any() and pull[air].max() < 1.6 and np.abs(moved).max() < 0.05
+    assert (pull / np.maximum(load[1:-1], 2.0)).max() < 0.6

@@ -63,7 +63,7 @@ def test_it_goes_up_along_and_down(locomotion, name):
     """Feet that stand are on the ground, or a heel or toes over an edge; the body is as high over its feet as ever."""
     around, speed = WAYS[name]
     high = max(b.centre[1] + 0.5 * b.size[1] for b in around if b.slope == 0.0)
-    states, clear = walked(locomotion, around, speed, {2.8: 6.5, 0.6: 14.0, 0.7: 12.0}.get(speed, 10.0))
+    states, clear = walked(locomotion, around, speed, {2.8: 6.5, 0.6: 18.0, 0.7: 16.0}.get(speed, 12.0))
     held = np.array([s.memory["grip"] for s in states]) >= 1.0
     floors = np.array([float(s.floor) for s in states])
     assert floors.max() == pytest.approx(high, abs=0.02) and floors[-1] == pytest.approx(0.0, abs=1e-9)
@@ -79,6 +79,45 @@ def test_feet_on_a_slope_lie_along_it(locomotion):
     on = np.array([2.6 < s.ground[1] < 5.4 for s in states])
     both = (np.array([s.memory["grip"] for s in states]) >= 1.0)[:, 2:].all(-1) & on
     assert both.sum() > 10 and np.median(np.abs(clear[both][:, 2:])) < 0.004 and clear[both][:, 2:].min() > -0.01
+
+
+@pytest.mark.parametrize("degrees", (10, -15))
+def test_feet_across_a_slope_lie_on_it(locomotion, degrees):
+    """Soles that stand whole are level with the slope sideways, too."""
+    slope = math.tan(math.radians(degrees))
+    around = (box((0, 4.5, 3.0), (20, 1.0, 20), heading=0.5 * math.pi, slope=slope),)
+    state, states = locomotion.start((0, 0, 0), 5.0), []
+    for _ in range(4 * FPS):
+        state, _ = locomotion.step(state, Intent(np.array([1.0, 0.0, 0.0]), around=around), 1 / FPS)
+        states.append(state)
+    local = np.array([s.pose.rotations for s in states], float)
+    turned = forward_kinematics(locomotion.skeleton, np.array([s.pose.root for s in states], float), local)[1]
+    normal = np.array([-slope, 1.0, 0.0]) / math.hypot(slope, 1.0)
+    for foot, side in enumerate(("Left", "Right")):
+        whole = (np.array([s.memory["grip"] for s in states])[:, 2 * foot:2 * foot + 2] >= 1.0).all(-1)
+        off = np.degrees(np.arccos(np.clip(turned[whole, locomotion.skeleton.index(side + "Foot"), :, 1] @ normal, -1, 1)))
+        assert whole.sum() > 30 and np.median(off) < 4.0
+
+
+def test_a_body_waits_for_feet_that_take_short_steps(locomotion):
+    """On narrow treads it goes slower than asked, and no foot is dragged from one tread onto the next."""
+    states, clear = walked(locomotion, flight(5, 0.17, 0.30), 0.8, 9.0)
+    pace = np.array([s.memory["pace"] for s in states])
+    assert pace.min() < 0.8 and pace[-1] > pace.min()
+    roots = np.array([s.pose.root[1] for s in states], float)
+    assert np.abs(np.diff(roots[::2], 2)).max() * 900 < 18.0
+    assert np.mean(clear < -0.01) < 0.01, "feet pass over edges"
+
+
+@pytest.mark.parametrize("high", (0.3, 0.5))
+def test_nobody_sinks_much_faster_than_they_fall(locomotion, high):
+    state, states = locomotion.start((0, 0, 0), high), []
+    for _ in range(300):
+        state, _ = locomotion.step(state, Intent(np.array([1.1, 0.0, 0.0]), around=(box((0, 0.5 * high, 0), (4, high, 6)),)), 1 / FPS)
+        states.append(state)
+    assert float(state.floor) == pytest.approx(0.0, abs=1e-9)
+    level = np.array([s.memory["level"] + float(s.floor) for s in states])
+    assert np.diff(level, 2).min() * FPS**2 > -10.5
 
 
 def test_far_things_change_nothing(locomotion):

@@ -84,6 +84,23 @@ def test_size_is_scaled_away(own, factor):
     np.testing.assert_allclose(retarget(small).kinematics()[0], retarget(own).kinematics()[0], atol=5e-3)
 
 
+def test_a_leg_that_was_straight_is_straight(own):
+    """Where a fitted skeleton has one bone too long, so that its knee never straightens, ours does as it stands."""
+    def knees(positions, skeleton):
+        a, b, c = (positions[:, skeleton.index("Left" + n)] for n in ("UpLeg", "Leg", "Foot"))
+        u, v = b - a, c - b
+        return np.degrees(np.arccos(np.clip((u * v).sum(-1) / np.linalg.norm(u, axis=-1) / np.linalg.norm(v, axis=-1), -1, 1)))
+    tall = walk()
+    hip, foot = (tall.kinematics()[0][:, own.skeleton.index("Left" + n)] for n in ("UpLeg", "Foot"))
+    room = 0.8562 - np.linalg.norm(hip - foot, axis=-1).max()
+    tall = replace(tall, root=tall.root + [0.0, room - 0.004, 0.0])  # its legs come to within 4 mm of straight
+    theirs = knees(tall.kinematics()[0], tall.skeleton)
+    ours = retarget(tall)
+    assert knees(ours.kinematics()[0], ours.skeleton).min() < max(theirs.min(), 8.0) + 0.5
+    moved = ours.kinematics()[0] - tall.kinematics()[0]
+    assert np.abs(moved[:, own.skeleton.index("Hips")]).max() < 0.03
+
+
 def test_a_zero_pose_along_the_bones_is_read_off_the_motion(own):
     known = calibrate([reframed(own)])
     assert not known.posed

@@ -4,7 +4,7 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 
 from .airborne import FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, faded, ground_kernel
 from .descent import descent
-from .fall import fall, struck
+from .fall import fall, over_nothing, struck
 from .flight import flight_kernel
 from .path_estimate import Path, path
 from .plan import Plan
@@ -12,5 +12,5 @@ from .thrust import Push, push
 
 __all__ = [
     "FADE", "GROUND_RATE", "HEEL", "LOWEST", "SAME", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
-    "flight_kernel", "ground_kernel", "path", "push", "struck",
+    "flight_kernel", "ground_kernel", "over_nothing", "path", "push", "struck",
 ]

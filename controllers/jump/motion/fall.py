@@ -1,5 +1,5 @@
-"""The fall: something is in the way in the air. The hit takes the velocity into it, and the body gets its
-feet under itself, comes down on whatever floor there is, and stands.
+"""The fall: something is in the way in the air, or a foot was set down over an edge. A hit takes the velocity into it, and
+the body gets its feet under itself, comes down on whatever floor there is, and stands.
 
 Beyond the thesis; after Faloutsos 2001, whose controllers end in a state that another can take over from.
 """
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...body import Pose, Skeleton, end_positions, forward_kinematics
+from ...body import Pose, Skeleton, contact_points, end_positions, forward_kinematics
 from ...navigation import floor_at, gap
 from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
                     turns, vectors)
@@ -23,6 +23,8 @@ from .plan import Plan
 
 BOUNCE, FRICTION = 0.05, 0.4
 """How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
+VOID = 0.27
+"""A foot that is so high over what lies under it [m] stands on nothing: farther than feet step down."""
 CLOSING = 0.4
 """Slower than this [m/s] a body does not strike what it touches."""
 LEAST, LOW = 0.14, 0.5
@@ -82,9 +84,18 @@ def _out(place: np.ndarray, thing) -> np.ndarray:
     return slope / max(float(np.linalg.norm(slope)), 1e-12)
 
 
-def fall(physique: Physique, start: Start, hit: Hit, around: Sequence[Any], gravity: np.ndarray) -> Plan:
-    """The motion from the moment of a hit to standing. start: the body at that moment."""
-    velocity = hit.after(start.velocity)
+def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: Sequence[Any], size: float = 1.0) -> bool:
+    """Whether a foot that stands, heel or ball (4,), has no floor within a step under either. size: of the body, over a
+    standard one's."""
+    points = contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
+    stands = np.asarray(contacts, bool).reshape(2, 2).any(1)
+    return any(all(y - floor_at(x, z, around, y + 0.1 * size) > VOID * size for x, y, z in foot)
+               for foot in points.reshape(2, 2, 3)[stands])
+
+
+def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray) -> Plan:
+    """The motion from the moment of a hit, or of losing the floor, to standing. start: the body at that moment."""
+    velocity = start.velocity if hit is None else hit.after(start.velocity)
     time, land, place = _down(physique, start.centre, velocity, around, gravity)
     way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre)
     return _Fall(physique, start, way, landing_feet(place, start.heading, physique.tables)).plan()
