@@ -108,6 +108,10 @@ class ControlSpace:
             reach = room / slope
         return SCALE[0] * float(reach[slope < 0].max()), SCALE[0] * float(reach[slope > 0].min())
 
+    def half_spaces(self) -> np.ndarray:
+        """The hull as half-spaces (H, 4) of velocities themselves: n·(v_f, ω, v_l) + d ≤ 0 inside, n of unit length in `SCALE`."""
+        return np.hstack([self.hull[:, :3] / SCALE, self.hull[:, 3:]])
+
     def locate(self, query: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The simplex (...) and barycentric weights (..., 4) of queries (..., 3), clamped first: eq. (4)."""
         p = self.clamp(query).reshape(-1, 1, 3) / SCALE

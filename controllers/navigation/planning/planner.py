@@ -1,0 +1,163 @@
+"""Plans of walks to goals: guesses on all sides of what stands about, the best of what they lead to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..obstacles import SHOULDER
+from ..routes import distance, grid_way, separation, shapes_of, ways
+from ..steering import in_world
+from .guesses import guesses
+from .plan import Plan
+from .search import search
+from .splines import Basis, basis
+from .walking_cost import Weights
+from .weights import HUMAN
+
+INTERVALS = 24, 64
+"""A plan has so many intervals at least, and at most ..."""
+INTERVAL = 0.25
+"""... about so long [s]."""
+MOST = 250
+"""Steps of Newton's method for a guess, at most."""
+TOLERANCE = 1e-6
+"""A search ends where another step would gain less than this share of the cost."""
+ALLOWED = np.array([0.01, 0.004])
+"""Velocities [m/s, rad/s] and distances [m] may break their limits by so much within a search ..."""
+MARGIN = 0.01
+"""... which therefore keeps so much more distance than was asked [m]."""
+FREE = np.empty((0, 4))
+"""No limits to velocities."""
+FASTEST = 20.0
+"""No walker starts faster than this [m/s, rad/s]."""
+
+
+def plan(ground: ArrayLike, goal: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
+         limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0) -> Plan:
+    """The walk from ground (3,) x, z [m], heading [rad] to rest at goal (3,) that costs least: Mombaur 2010.
+
+    velocity: (3,) v_f, ω, v_l at the start [m/s, rad/s, m/s]. limits: (H, 4) half-spaces n·(v_f, ω, v_l) + d ≤ 0 that velocities
+    keep to, as `ControlSpace.half_spaces` gives them. around: boxes and pillars, of which those count that stop somebody on a
+    floor `floor` [m] high. clearance: how far from them the middle of the body stays [m]; as near as he is, where he starts nearer.
+    A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
+    """
+    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor)[0]
+
+
+def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
+          limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0) -> list[Plan]:
+    """Plans to many goals (G, 3) in one search, each as of `plan`. ground, velocity: (3,), or (G, 3) for each."""
+    goals = _numbers("goal", goals)
+    grounds = np.broadcast_to(_numbers("ground", ground), goals.shape)
+    velocities = np.broadcast_to(_numbers("velocity", velocity), goals.shape)
+    if goals.ndim != 2 or goals.shape[1] != 3:
+        raise ValueError(f"a goal is x, z [m] and heading [rad], got shape {goals.shape[1:]}")
+    if np.abs(velocities).max(initial=0.0) > FASTEST:
+        raise ValueError(f"nobody starts faster than {FASTEST:g} m/s or rad/s, got {velocities}")
+    alpha = _numbers("weights", weights)
+    if alpha.shape != (5,) or not (np.all(alpha[:4] > 0.0) and alpha[4] >= 0.0):
+        raise ValueError(f"weights: time and the three accelerations cost more than 0, looking away no less than 0; got {tuple(weights)}")
+    planes = np.ascontiguousarray(_numbers("limits", limits))
+    if planes.ndim != 2 or planes.shape[1] != 4 or np.any(planes[:, 3] > 0.0):
+        raise ValueError("limits are (H, 4) half-spaces n·(v_f, ω, v_l) + d ≤ 0 with d ≤ 0, so that standing keeps to them")
+    shapes = shapes_of(around, floor)
+    with np.errstate(divide="ignore"):
+        top = float(np.min(-planes[:, 3] / planes[:, 0], initial=FASTEST, where=planes[:, 0] > 1e-9))
+    found: list[Plan | None] = [None] * len(goals)
+    same: dict[bytes, tuple[np.ndarray, list]] = {}  # searches among the same shapes, at the same clearances
+    for number, (start, goal) in enumerate(zip(grounds, goals)):
+        if np.abs(velocities[number]).max() < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
+            found[number] = Plan(np.repeat(goal[None], 4, 0), 0.0, 0.0, goal)
+            continue
+        near = _round_start(start, goal, shapes, clearance)
+        if isinstance(near, str):
+            found[number] = Plan.none(start, goal, near)
+            continue
+        routes = ways(start[:2], goal[:2], near, clearance + MARGIN)
+        if not routes:
+            routes = [way for way in [grid_way(start[:2], goal[:2], near, clearance + MARGIN)] if len(way)]
+        if not routes:
+            found[number] = Plan.none(start, goal, f"no way leads there that is {2 * clearance:.2f} m wide")
+            continue
+        same.setdefault(near.tobytes(), (near, []))[1].append((number, routes))
+    for near, tasks in same.values():
+        _solve(found, tasks, grounds, velocities, goals, weights, planes, near, clearance, top)
+    return [one for one in found if one is not None]
+
+
+def _numbers(name: str, value: Any) -> np.ndarray:
+    value = np.asarray(value, float)
+    if not np.isfinite(value).all():
+        raise ValueError(f"{name} must be finite numbers, got {value}")
+    return value
+
+
+def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> np.ndarray | str:
+    """The shapes, those smaller that the walker starts nearer to than the clearance; or why he can't go there."""
+    out, near = np.empty(3), shapes.copy()
+    for shape in near:
+        here, there = (distance(place[0], place[1], shape, out) for place in (start, goal))
+        if there < clearance:
+            return f"the goal is {max(there, 0.0):.2f} m from something, {clearance:.2f} m are needed" if there > 0.0 else "the goal lies in something"
+        if here <= 0.0:
+            return "the walk starts within something"
+        shape[5] -= max(clearance + MARGIN - min(here, there), 0.0) + 1e-9
+    return near
+
+
+def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, clearance, top) -> None:
+    """Plans for tasks [(number, ways)] among the same shapes, put into `found`."""
+    tables = [_table(way, weights, top) for _, routes in tasks for way in routes]
+    table = basis(max(tables, default=INTERVALS[0]))
+    first, times, whose = [], [], []
+    for number, routes in tasks:
+        for way in routes:
+            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table)
+            first.append(guess)
+            times.append(seconds)
+            whose += [number] * len(guess)
+    splines, seconds = np.concatenate(first), np.concatenate(times)
+    starts, ends = grounds[whose], goals[whose].copy()
+    ends[:, 2] = splines[:, -1, 2]
+    speeds = np.column_stack([in_world(starts, velocities[whose]), velocities[whose, 1]])
+    costs, faults, steps = np.empty(len(whose)), np.empty((len(whose), 2)), np.empty(len(whose), np.int64)
+    search(splines, seconds, starts, speeds, ends, np.asarray(weights, float), table.values, table.weights, planes, shapes,
+           clearance + MARGIN, ALLOWED, MOST, TOLERANCE, costs, faults, steps)
+    sound = np.all(faults <= ALLOWED, 1) & np.isfinite(costs)
+    for number, _ in tasks:
+        mine = [s for s in np.argsort(costs) if whose[s] == number]
+        good = [s for s in mine if sound[s] and swept(splines[s], shapes, table) >= clearance]
+        if good:
+            s = good[0]
+            found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])
+        else:
+            found[number] = Plan.none(grounds[number], goals[number], _why(faults[mine], sound[mine]))
+
+
+def _why(faults: np.ndarray, sound: np.ndarray) -> str:
+    if np.any(faults[:, 1] <= ALLOWED[1]) and not np.any(sound):
+        return "no walk gets there within the limits of the velocities"
+    return "no walk was found past what stands about"
+
+
+def _table(way: np.ndarray, weights: Weights, top: float) -> int:
+    length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+    seconds = max((36.0 * weights.forward * length**2 / weights.time) ** 0.25, 1.5 * length / top)
+    return int(np.clip(np.ceil(seconds / INTERVAL / 8) * 8, *INTERVALS))
+
+
+def swept(spline: np.ndarray, shapes: np.ndarray, table: Basis, parts: int = 4) -> float:
+    """How near the middle of the body comes to shapes (K, 6) [m] on the way of a spline (M + 3, 3), as by straight stretches
+    between `parts` places in each interval; inf where there are none."""
+    if not len(shapes):
+        return np.inf
+    fine = basis(parts * (len(spline) - 3))
+    from scipy.interpolate import BSpline
+
+    from .splines import knots_of
+    places = BSpline(knots_of(len(spline) - 3), spline[:, :2], 3)(np.concatenate([[0.0], fine.shares, [1.0]]))
+    return min(separation(a[0], a[1], b[0], b[1], shape) for a, b in zip(places, places[1:]) for shape in shapes)
