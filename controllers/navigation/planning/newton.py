@@ -18,8 +18,8 @@ from .walking_cost import stage
 
 BAND = 12
 """Coefficients four apart, three numbers each, share no interval."""
-SOLVED, SLOW, STUCK = 0, 1, 2
-"""How a search ends: at a minimum within the limits, out of steps, beyond the limits."""
+LEASH = 0.3
+"""Among things that stand about a way moves by so much in a step, at most [m]."""
 
 
 @kernel
@@ -159,8 +159,9 @@ def _step(band, column, corner, gradient, damping, shifted, factor, border, step
 
 @kernel
 def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, planes, shapes, clearance,
-             by_plane, by_shape, stiff_speed, stiff_space, most, tolerance):
-    """Newton's method from a guess, in place. Returns T, the cost, the worst violations, the steps taken, and whether it converged."""
+             by_plane, by_shape, stiff_speed, stiff_space, most, tolerance, best):
+    """Newton's method from a guess, in place. Returns T, the cost, that with penalties, the worst violations, the steps taken, and
+    whether it converged. It gives up where it is not to come below `best`."""
     n = 3 * (coefficients.shape[0] - 4)
     band, shifted, factor = np.empty((n, BAND)), np.empty((n, BAND)), np.empty((n, BAND))
     column, border = np.empty(n), np.empty(n)
@@ -175,14 +176,20 @@ def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, 
         if not _step(band, column, corner, gradient, damping, shifted, factor, border, step):
             damping = max(8.0 * damping, 1e-4)
             if damping > 1e12:
-                return seconds, cost, fast, near, count, False
+                return seconds, cost, cost + penalty, fast, near, count, False
             continue
         promised = 0.0
         for i in range(n + 1):
             promised -= gradient[i] * step[i]
         if 0.5 * promised < tolerance * (cost + penalty) and damping < 1e-2:
-            return seconds, cost, fast, near, count, True
+            return seconds, cost, cost + penalty, fast, near, count, True
+        if cost + penalty - promised > best and damping < 1e-2:
+            return seconds, cost, cost + penalty, fast, near, count, False
         share = min(1.0, 0.5 * seconds / abs(step[n])) if step[n] != 0.0 else 1.0
+        if shapes.shape[0]:  # lest the way jumps to another side of something
+            for i in range(n):
+                if i % 3 < 2 and share * abs(step[i]) > LEASH:
+                    share = LEASH / abs(step[i])
         kept[:] = coefficients
         before = seconds
         seconds += share * step[n]
@@ -205,6 +212,6 @@ def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, 
             cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, goal, alpha, values, weights, planes, shapes, clearance,
                                                          by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
             if not fresh:
-                return seconds, cost, fast, near, count, True
+                return seconds, cost, cost + penalty, fast, near, count, True
             damping = max(8.0 * damping, 1e-4)
-    return seconds, cost, fast, near, most, False
+    return seconds, cost, cost + penalty, fast, near, most, False

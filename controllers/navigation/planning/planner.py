@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import BSpline
 
+from ...compiled import kernel
 from ..obstacles import SHOULDER
 from ..routes import distance, grid_way, separation, shapes_of, ways
 from ..steering import in_world
 from .guesses import guesses
 from .plan import Plan
 from .search import search
-from .splines import Basis, basis
+from .splines import basis, knots_of
 from .walking_cost import Weights
 from .weights import HUMAN
 
-INTERVALS = 24, 64
+INTERVALS = 24, 80
 """A plan has so many intervals at least, and at most ..."""
 INTERVAL = 0.25
-"""... about so long [s]."""
+"""... about so long [s] ..."""
+STRETCH = 0.15
+"""... and among things that stand about no longer than this [m]."""
+REPAIRS = 2
+"""A plan that comes too near to something between the places that are looked at is mended so often."""
 MOST = 250
 """Steps of Newton's method for a guess, at most."""
 TOLERANCE = 1e-6
@@ -73,7 +80,7 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
         if np.abs(velocities[number]).max() < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
             found[number] = Plan(np.repeat(goal[None], 4, 0), 0.0, 0.0, goal)
             continue
-        near = _round_start(start, goal, shapes, clearance)
+        near = _round_start(start, goal, shapes, clearance, MARGIN)
         if isinstance(near, str):
             found[number] = Plan.none(start, goal, near)
             continue
@@ -85,7 +92,7 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
             continue
         same.setdefault(near.tobytes(), (near, []))[1].append((number, routes))
     for near, tasks in same.values():
-        _solve(found, tasks, grounds, velocities, goals, weights, planes, near, clearance, top)
+        _solve(found, tasks, grounds, velocities, goals, weights, planes, near, shapes, clearance, top)
     return [one for one in found if one is not None]
 
 
@@ -96,8 +103,8 @@ def _numbers(name: str, value: Any) -> np.ndarray:
     return value
 
 
-def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> np.ndarray | str:
-    """The shapes, those smaller that the walker starts nearer to than the clearance; or why he can't go there."""
+def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float, margin: float) -> np.ndarray | str:
+    """The shapes, those smaller that the walker starts, or ends, nearer to than clearance and margin; or why he can't go there."""
     out, near = np.empty(3), shapes.copy()
     for shape in near:
         here, there = (distance(place[0], place[1], shape, out) for place in (start, goal))
@@ -105,14 +112,13 @@ def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, cleara
             return f"the goal is {max(there, 0.0):.2f} m from something, {clearance:.2f} m are needed" if there > 0.0 else "the goal lies in something"
         if here <= 0.0:
             return "the walk starts within something"
-        shape[5] -= max(clearance + MARGIN - min(here, there), 0.0) + 1e-9
+        shape[5] -= max(clearance + margin - min(here, there), 0.0) + 1e-6
     return near
 
 
-def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, clearance, top) -> None:
-    """Plans for tasks [(number, ways)] among the same shapes, put into `found`."""
-    tables = [_table(way, weights, top) for _, routes in tasks for way in routes]
-    table = basis(max(tables, default=INTERVALS[0]))
+def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, around, clearance, top) -> None:
+    """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found`."""
+    table = basis(max(_intervals(way, weights, top, bool(len(shapes))) for _, routes in tasks for way in routes))
     first, times, whose = [], [], []
     for number, routes in tasks:
         for way in routes:
@@ -124,16 +130,28 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, cl
     starts, ends = grounds[whose], goals[whose].copy()
     ends[:, 2] = splines[:, -1, 2]
     speeds = np.column_stack([in_world(starts, velocities[whose]), velocities[whose, 1]])
-    costs, faults, steps = np.empty(len(whose)), np.empty((len(whose), 2)), np.empty(len(whose), np.int64)
-    search(splines, seconds, starts, speeds, ends, np.asarray(weights, float), table.values, table.weights, planes, shapes,
-           clearance + MARGIN, ALLOWED, MOST, TOLERANCE, costs, faults, steps)
-    sound = np.all(faults <= ALLOWED, 1) & np.isfinite(costs)
+
+    def searched(which, margin):
+        some, times, count = splines[which], seconds[which], len(splines[which])
+        costs, faults, steps = np.empty(count), np.empty((count, 2)), np.empty(count, np.int64)
+        search(some, times, starts[which], speeds[which], ends[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
+               clearance + margin, ALLOWED, MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
+        splines[which], seconds[which] = some, times
+        return costs, faults, np.all(faults <= ALLOWED, 1) & np.isfinite(costs)
+
+    costs, faults, sound = searched(slice(None), MARGIN)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
-        good = [s for s in mine if sound[s] and swept(splines[s], shapes, table) >= clearance]
-        if good:
-            s = good[0]
-            found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])
+        true = _round_start(grounds[number], goals[number], around, clearance, 0.0)
+        for s in mine:
+            for _ in range(REPAIRS):  # it may cut a corner between two places that are looked at
+                missing = clearance - swept(splines[s], true)
+                if not sound[s] or missing <= 0.0:
+                    break
+                (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), MARGIN + 2.0 * missing)
+            if sound[s] and swept(splines[s], true) >= clearance:
+                found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])
+                break
         else:
             found[number] = Plan.none(grounds[number], goals[number], _why(faults[mine], sound[mine]))
 
@@ -144,20 +162,29 @@ def _why(faults: np.ndarray, sound: np.ndarray) -> str:
     return "no walk was found past what stands about"
 
 
-def _table(way: np.ndarray, weights: Weights, top: float) -> int:
+def _intervals(way: np.ndarray, weights: Weights, top: float, among: bool) -> int:
     length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
     seconds = max((36.0 * weights.forward * length**2 / weights.time) ** 0.25, 1.5 * length / top)
-    return int(np.clip(np.ceil(seconds / INTERVAL / 8) * 8, *INTERVALS))
+    return int(np.clip(np.ceil(max(seconds / INTERVAL, among * length / STRETCH) / 8) * 8, *INTERVALS))
 
 
-def swept(spline: np.ndarray, shapes: np.ndarray, table: Basis, parts: int = 4) -> float:
-    """How near the middle of the body comes to shapes (K, 6) [m] on the way of a spline (M + 3, 3), as by straight stretches
-    between `parts` places in each interval; inf where there are none."""
-    if not len(shapes):
-        return np.inf
-    fine = basis(parts * (len(spline) - 3))
-    from scipy.interpolate import BSpline
+def swept(spline: np.ndarray, shapes: np.ndarray, parts: int = 8) -> float:
+    """How near the middle of the body comes to shapes (K, 6) [m] on the way of a spline (M + 3, 3), by straight stretches between
+    `parts` places in each interval; inf where there are none."""
+    return _nearest(np.ascontiguousarray(spline[:, :2]), _fine(len(spline) - 3, parts), shapes)
 
-    from .splines import knots_of
-    places = BSpline(knots_of(len(spline) - 3), spline[:, :2], 3)(np.concatenate([[0.0], fine.shares, [1.0]]))
-    return min(separation(a[0], a[1], b[0], b[1], shape) for a, b in zip(places, places[1:]) for shape in shapes)
+
+@lru_cache(maxsize=64)
+def _fine(intervals: int, parts: int) -> np.ndarray:
+    """The basis (8M + 1, M + 3) at even shares."""
+    return BSpline.design_matrix(np.linspace(0.0, 1.0, parts * intervals + 1), knots_of(intervals), 3).toarray()
+
+
+@kernel
+def _nearest(spline, table, shapes):
+    near = np.inf
+    places = table @ spline
+    for n in range(len(places) - 1):
+        for k in range(shapes.shape[0]):
+            near = min(near, separation(places[n, 0], places[n, 1], places[n + 1, 0], places[n + 1, 1], shapes[k]))
+    return near

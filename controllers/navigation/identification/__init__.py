@@ -1,0 +1,7 @@
+"""Which weights people walk by: inverse optimal control on recorded walks (Mombaur 2010)."""
+
+from .fit import fit, left_out
+from .human_paths import HumanPaths, PathsError, read_paths
+from .likeness import Likeness, likeness, planned_like, straight
+
+__all__ = ["HumanPaths", "Likeness", "PathsError", "fit", "left_out", "likeness", "planned_like", "read_paths", "straight"]
