@@ -12,10 +12,12 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize
 
-from ..planning import HUMAN, Weights
+from ..planning import Weights
 from .human_paths import HumanPaths
 from .likeness import Likeness, likeness, planned_like
 
+FIRST = Weights(1.0, 0.35, 0.03, 1.0, 2.2)
+"""Where the search begins: weights at which people's speeds come out."""
 HEADING = 0.1
 """A radian counts as so many metres."""
 HOLD = 0.001
@@ -24,7 +26,7 @@ TRIALS = 150
 """So many sets of weights are tried."""
 
 
-def fit(paths: HumanPaths, limits: np.ndarray, first: Weights = HUMAN, trials: int = TRIALS,
+def fit(paths: HumanPaths, limits: np.ndarray, first: Weights = FIRST, trials: int = TRIALS,
         progress: Callable[[int], None] = lambda done: None) -> Weights:
     """The weights with which plans within limits (H, 4) are most like the walks, from a first guess whose time and forward are kept."""
     began = np.log(first[2:])
@@ -43,7 +45,7 @@ def fit(paths: HumanPaths, limits: np.ndarray, first: Weights = HUMAN, trials: i
     return Weights(first.time, first.forward, *np.exp(best.x).tolist())
 
 
-def left_out(paths: HumanPaths, limits: np.ndarray, folds: int, first: Weights = HUMAN, trials: int = TRIALS,
+def left_out(paths: HumanPaths, limits: np.ndarray, folds: int, first: Weights = FIRST, trials: int = TRIALS,
              progress: Callable[[int], None] = lambda done: None) -> tuple[Likeness, list[Weights]]:
     """How like plans are to walks that their weights were not fitted to: each part of `folds` with the weights of the others."""
     part = np.arange(len(paths)) % folds

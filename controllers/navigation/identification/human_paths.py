@@ -61,8 +61,6 @@ def read_paths(path: str | PathLike[str]) -> HumanPaths:
             zipfile.BadZipFile, zlib.error) as error:  # all a damaged zip has in store
         why = reason(error) if isinstance(error, OSError) else "no .npz file, or a damaged one"
         raise PathsError(f"{path}: not a file of human paths ({why})") from None
-    except TypeError:
-        raise PathsError(f"{path}: not a file of human paths (no .npz file)") from None
     for name, shape in SHAPES.items():
         if name not in arrays:
             raise PathsError(f"{path}: has no array {name!r}; needs {name} {shape}")

@@ -59,10 +59,10 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
           limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0) -> list[Plan]:
     """Plans to many goals (G, 3) in one search, each as of `plan`. ground, velocity: (3,), or (G, 3) for each."""
     goals = _numbers("goal", goals)
-    grounds = np.broadcast_to(_numbers("ground", ground), goals.shape)
-    velocities = np.broadcast_to(_numbers("velocity", velocity), goals.shape)
     if goals.ndim != 2 or goals.shape[1] != 3:
         raise ValueError(f"a goal is x, z [m] and heading [rad], got shape {goals.shape[1:]}")
+    grounds = np.broadcast_to(_numbers("ground", ground), goals.shape)
+    velocities = np.broadcast_to(_numbers("velocity", velocity), goals.shape)
     if np.abs(velocities).max(initial=0.0) > FASTEST:
         raise ValueError(f"nobody starts faster than {FASTEST:g} m/s or rad/s, got {velocities}")
     alpha = _numbers("weights", weights)
