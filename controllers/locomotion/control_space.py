@@ -108,9 +108,10 @@ class ControlSpace:
             reach = room / slope
         return SCALE[0] * float(reach[slope < 0].max()), SCALE[0] * float(reach[slope > 0].min())
 
-    def half_spaces(self) -> np.ndarray:
-        """The hull as half-spaces (H, 4) of velocities themselves: n·(v_f, ω, v_l) + d ≤ 0 inside, n of unit length in `SCALE`."""
-        return np.hstack([self.hull[:, :3] / SCALE, self.hull[:, 3:]])
+    def half_spaces(self, share: float = 1.0) -> np.ndarray:
+        """The hull as half-spaces (H, 4) of velocities themselves: n·(v_f, ω, v_l) + d ≤ 0 inside, n of unit length in `SCALE`.
+        share: how much of the way from rest to it is used."""
+        return np.hstack([self.hull[:, :3] / SCALE, share * self.hull[:, 3:]])
 
     def locate(self, query: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The simplex (...) and barycentric weights (..., 4) of queries (..., 3), clamped first: eq. (4)."""

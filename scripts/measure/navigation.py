@@ -1,4 +1,4 @@
-"""Measure walks to goals: cost against IPOPT's optimum, likeness to people, obstacles, times.
+"""Measure walks to goals: cost against IPOPT's optimum, likeness to people, obstacles, times, how they are followed.
 
     python scripts/measure/navigation.py [--quick] [--scenes 1000] [--seed 0] [--plots DIR]
 
@@ -21,7 +21,10 @@ import numpy as np
 
 from _plots import pictures, pyplot
 
+from gambol.controllers.body import wrap
+from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.navigation import arrived, wish
 from gambol.controllers.navigation.identification import likeness, planned_like, read_paths, straight
 from gambol.controllers.navigation.planning import FREE, HUMAN, PUBLISHED, plan
 from gambol.controllers.navigation.routes import distance, grid_way, shapes_of
@@ -32,6 +35,8 @@ RECORDED = ROOT.parent / "shared" / "human_paths" / "human_paths.npz"
 CLEARANCE = 0.30
 SWEPT = 1e-3
 """A disc this much smaller [m] than the clearance is swept: grazing is no collision."""
+SHARE = 0.9
+"""What is left of the library's velocities [share] serves to catch up."""
 SETS = {"published": PUBLISHED, "human": HUMAN}
 HARD = [(0.0, 3.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (-1.5, 1.0, -np.pi), (0.0, 0.5, np.pi), (0.0, 0.0, np.pi)]
 """Goals ahead, behind, at the side, turned round and on the spot."""
@@ -141,6 +146,30 @@ def rooms(limits, count: int, seed: int, plots: Path | None) -> None:
             draw_rooms(drawn, plots / f"rooms_{name}.png")
 
 
+def followed(walker, count: int, rng) -> None:
+    """How a walker follows plans that use most of what he can do, and how he arrives."""
+    limits = walker.walk.half_spaces(SHARE)
+    for name, weights in SETS.items():
+        rows = []
+        for _ in range(count):
+            made = plan(np.zeros(3), (*rng.uniform(-4, 4, 2), rng.uniform(-np.pi, np.pi)), weights=weights, limits=limits)
+            state, off = walker.start(), []
+            for tick in range(1, int(60 * (made.seconds + 4))):
+                state, _ = walker.step(state, Intent(wish(made, (tick - 1) / 60, state.ground, state.velocity)), 1 / 60)
+                where, _ = made.at(tick / 60)
+                if tick / 60 <= made.seconds:
+                    off.append((np.hypot(*(where - state.ground)[:2]), abs(wrap(where[2] - state.ground[2]))))
+                elif arrived(made, tick / 60, state.ground) and np.abs(state.velocity).max() < 0.01:
+                    break
+            last = made.goal - state.ground
+            rows.append((*np.mean(off, 0), *np.max(off, 0), np.hypot(*last[:2]), abs(wrap(last[2])), tick / 60 - made.seconds))
+        place, heading, worst_place, worst_heading, end, end_heading, late = np.array(rows).T
+        print(f"followed by the walker, {name}: off {100 * place.mean():.1f} cm, {np.degrees(heading.mean()):.1f}° (worst walk {100 * place.max():.1f} cm, "
+              f"{np.degrees(heading.max()):.1f}°; worst moment {100 * worst_place.max():.1f} cm, {np.degrees(worst_heading.max()):.1f}°); at the goal "
+              f"{100 * end.mean():.1f} cm, {np.degrees(end_heading.mean()):.1f}°, worst {100 * end.max():.1f} cm, {np.degrees(end_heading.max()):.1f}°; stands "
+              f"{late.mean():.1f} s after the plan's end, worst {late.max():.1f} s", flush=True)
+
+
 def draw_rooms(drawn, path: Path) -> None:
     """Plans in rooms, the disc of the clearance along them."""
     plt = pyplot()
@@ -199,13 +228,15 @@ def main() -> None:
     parser.add_argument("--plots", type=Path, help="a folder for pictures")
     given = parser.parse_args()
     pictures(parser, given.plots)
-    limits = Locomotion.load().walk.half_spaces()
+    walker = Locomotion.load()
+    limits = walker.walk.half_spaces()
     plan(np.zeros(3), (1.0, 1.0, 1.0), limits=limits, around=[Pillar((0.5, 0.0, 0.5), 0.1, 1.0)])  # compiled
     rng = np.random.default_rng(given.seed)
     free_times(limits, 40 if given.quick else 500, rng)
     people(limits)
     if given.plots:
         around_the_start(limits, given.plots)
+    followed(walker, 10 if given.quick else 50, rng)
     rooms(limits, 40 if given.quick else given.scenes, given.seed, given.plots)
     costs(limits, 3 if given.quick else 25, rng)
 

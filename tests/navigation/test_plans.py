@@ -11,7 +11,7 @@ from gambol.controllers.locomotion import Library, Locomotion
 from gambol.controllers.locomotion.controller import DEFAULT_LIBRARY
 from gambol.controllers.locomotion.velocity_correction import space_of
 from gambol.controllers.navigation.planning import FREE, HUMAN, PUBLISHED, Weights, WeightsError, in_toml, plan, plans, read_weights
-from gambol.controllers.navigation.planning.planner import ALLOWED
+from gambol.controllers.navigation.planning.goal_planner import ALLOWED
 from gambol.controllers.navigation.planning.walking_cost import FADE, stage
 
 LIMITS = space_of(Library.load(DEFAULT_LIBRARY), "walk").half_spaces()
@@ -75,7 +75,7 @@ def test_the_derivatives_of_the_cost_are_its_derivatives(values, seconds):
 
     def at(x, t):
         g, h, m = np.empty(9), np.empty((9, 9)), np.empty(9)
-        cost, by_t, by_tt = stage(x, goal, alpha, t, g, h, m)
+        cost, by_t, by_tt = stage(x, goal[:2], alpha, t, g, h, m)
         return cost, np.append(g, by_t), np.block([[h, m[:, None]], [m[None], np.array([[by_tt]])]])
 
     _, gradient, hessian = at(y, seconds)

@@ -1,7 +1,7 @@
 """Walking to a goal as people do, by optimal control: Mombaur, Truong and Laumond 2010."""
 
-from .plan import Plan
-from .planner import FREE, plan, plans
+from .walk_plan import Plan
+from .goal_planner import FREE, plan, plans
 from .walking_cost import Weights
 from .weights import HUMAN, PUBLISHED, WeightsError, in_toml, read_weights
 

@@ -12,6 +12,8 @@ TURNING = 0.35
 """Shares of the time in which a guess turns to the way, and from it to the goal's heading."""
 BOTH_WAYS = 0.5 * np.pi
 """Turns larger than this [rad] are tried the other way round, too."""
+AHEAD = 1.2
+"""Where the goal can't be walked to straight, the walker faces the way so far ahead [m]."""
 NEAR = 2.5
 """Ways shorter than this [m] are tried without turning to them: to the side, or backward."""
 
@@ -27,6 +29,14 @@ def both_ways(from_angle: float, to_angle: float) -> list[float]:
     turn = float(wrap(to_angle - from_angle))
     far = turn - np.copysign(2.0 * np.pi, turn)
     return [from_angle + t for t in ((turn,) if abs(turn) < BOTH_WAYS else (turn, far))]
+
+
+def faced(way: np.ndarray, basis: Basis) -> np.ndarray:
+    """What a walker on a way (n, 2) faces at each place of the quadrature (Q, 2) [m]: the goal on the last stretch, before it the way ahead."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
+    here = ease(basis.shares) * along[-1]
+    there = np.where(here >= along[-2], along[-1], here + AHEAD)
+    return np.stack([np.interp(there, along, way[:, i]) for i in range(2)], -1)
 
 
 def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: float, basis: Basis) -> tuple[np.ndarray, np.ndarray]:

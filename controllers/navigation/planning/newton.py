@@ -34,11 +34,11 @@ def _hold(coefficients, start, speed, goal, seconds):
 
 
 @kernel
-def assemble(coefficients, seconds, speed, goal, alpha, values, weights, planes, shapes, clearance,
+def assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
              by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient):
     """Cost with penalties, and all derivatives by the free coefficients and T; also the cost alone, and the worst violations.
 
-    band: (n, BAND) lower band by rows, column: (n,) of T, gradient: (n + 1,), overwritten. Returns also ∂²/∂T².
+    aims: (Q, 2) what the walker likes to face, place by place [m]. band: (n, BAND) lower band by rows, column: (n,) of T, gradient: (n + 1,), overwritten. Returns also ∂²/∂T².
     """
     intervals = coefficients.shape[0] - 3
     n = column.shape[0]
@@ -50,7 +50,7 @@ def assemble(coefficients, seconds, speed, goal, alpha, values, weights, planes,
         first = place * intervals // weights.shape[0]
         base, weight = values[place], weights[place]
         at_place(base, first, coefficients, y)
-        c, by_t, by_tt = stage(y, goal, alpha, seconds, g, h, mixed)
+        c, by_t, by_tt = stage(y, aims[place], alpha, seconds, g, h, mixed)
         cost += weight * c
         if planes.shape[0]:
             p, t, tt, worst = keep_velocity(y, seconds, planes, by_plane[place], stiff_speed, 1.0, g, h, mixed)
@@ -158,7 +158,7 @@ def _step(band, column, corner, gradient, damping, shifted, factor, border, step
 
 
 @kernel
-def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, planes, shapes, clearance,
+def minimise(coefficients, seconds, start, speed, goal, aims, alpha, values, weights, planes, shapes, clearance,
              by_plane, by_shape, stiff_speed, stiff_space, most, tolerance, best):
     """Newton's method from a guess, in place. Returns T, the cost, that with penalties, the worst violations, the steps taken, and
     whether it converged. It gives up where it is not to come below `best`."""
@@ -168,7 +168,7 @@ def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, 
     gradient, step = np.empty(n + 1), np.empty(n + 1)
     kept = coefficients.copy()
     _hold(coefficients, start, speed, goal, seconds)
-    cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, goal, alpha, values, weights, planes, shapes, clearance,
+    cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
                                                  by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
     damping = 1e-4
     fresh = True
@@ -196,7 +196,7 @@ def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, 
         for i in range(n):
             coefficients[2 + i // 3, i % 3] += share * step[i]
         _hold(coefficients, start, speed, goal, seconds)
-        new = assemble(coefficients, seconds, speed, goal, alpha, values, weights, planes, shapes, clearance,
+        new = assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
                        by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
         gained = (cost + penalty) - (new[0] + new[1])
         if gained > 1e-4 * share * promised * 0.5:
@@ -209,7 +209,7 @@ def minimise(coefficients, seconds, start, speed, goal, alpha, values, weights, 
                 fresh = False
             coefficients[:] = kept
             seconds = before
-            cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, goal, alpha, values, weights, planes, shapes, clearance,
+            cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
                                                          by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
             if not fresh:
                 return seconds, cost, cost + penalty, fast, near, count, True

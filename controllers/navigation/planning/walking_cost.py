@@ -7,7 +7,8 @@ q = p′, f and l the unit vectors forward and to the left
 
     u_f = (a·f + θ′ q·l) / T²,   u_ω = θ″ / T²,   u_l = (a·l − θ′ q·f) / T².
 
-Mended: at the goal ψ has no meaning, so that ψ² fades by 1 − exp(−d²/FADE²) with the distance d.
+Mended: at the goal ψ has no meaning, so that ψ² fades by 1 − exp(−d²/FADE²) with the distance d. Where something is in the way
+the goal's direction is that of the way there, a little ahead, as nobody looks through walls.
 """
 
 from __future__ import annotations
@@ -37,10 +38,10 @@ class Weights(NamedTuple):
 
 
 @kernel
-def stage(y, goal, alpha, seconds, gradient, hessian, mixed):
+def stage(y, aim, alpha, seconds, gradient, hessian, mixed):
     """One moment's cost per share of the time, ∂/∂T and ∂²/∂T².
 
-    y: (9,) x, z, θ and their first and second derivatives by s. goal: (3,). alpha: (5,). seconds: T.
+    y: (9,) x, z, θ and their first and second derivatives by s. aim: (2,) x, z [m], the goal's or what is faced on the way there. alpha: (5,). seconds: T.
     gradient: (9,), hessian: (9, 9), mixed: (9,) ∂²/∂y∂T, all overwritten.
     """
     hessian[:] = 0.0
@@ -76,7 +77,7 @@ def stage(y, goal, alpha, seconds, gradient, hessian, mixed):
     for i in range(9):
         mixed[i] = -3.0 * gradient[i] / seconds
 
-    away = _looking_away(y, goal, alpha[4], seconds, gradient, hessian, mixed)
+    away = _looking_away(y, aim, alpha[4], seconds, gradient, hessian, mixed)
     return (alpha[0] * seconds + effort * cube + away * seconds, alpha[0] - 3.0 * effort * cube / seconds + away,
             12.0 * effort * cube / seconds**2)
 
@@ -88,9 +89,9 @@ def _both(matrix, i, j, value):
 
 
 @kernel
-def _looking_away(y, goal, weight, seconds, gradient, hessian, mixed):
+def _looking_away(y, aim, weight, seconds, gradient, hessian, mixed):
     """α₄ ψ² with its fade, whose derivatives by x, z, θ are added."""
-    dx, dz = goal[0] - y[0], goal[1] - y[1]
+    dx, dz = aim[0] - y[0], aim[1] - y[1]
     square = max(dx * dx + dz * dz, NEAREST)
     psi = math.atan2(dx, dz) - y[2]
     psi -= 2.0 * math.pi * math.floor(psi / (2.0 * math.pi) + 0.5)

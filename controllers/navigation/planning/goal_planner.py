@@ -14,9 +14,9 @@ from ...compiled import kernel
 from ..obstacles import SHOULDER
 from ..routes import distance, grid_way, separation, shapes_of, ways
 from ..steering import in_world
-from .guesses import guesses
-from .plan import Plan
-from .search import search
+from .guesses import faced, guesses
+from .walk_plan import Plan
+from .plan_search import search
 from .splines import basis, knots_of
 from .walking_cost import Weights
 from .weights import HUMAN
@@ -35,6 +35,8 @@ TOLERANCE = 1e-6
 """A search ends where another step would gain less than this share of the cost."""
 ALLOWED = np.array([0.01, 0.004])
 """Velocities [m/s, rad/s] and distances [m] may break their limits by so much within a search ..."""
+STRICT = np.array([0.01, 0.0004])
+"""... and where a plan is mended by so much ..."""
 MARGIN = 0.01
 """... which therefore keeps so much more distance than was asked [m]."""
 FREE = np.empty((0, 4))
@@ -119,27 +121,28 @@ def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, cleara
 def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, around, clearance, top) -> None:
     """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found`."""
     table = basis(max(_intervals(way, weights, top, bool(len(shapes))) for _, routes in tasks for way in routes))
-    first, times, whose = [], [], []
+    first, times, aims, whose = [], [], [], []
     for number, routes in tasks:
         for way in routes:
             guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table)
             first.append(guess)
             times.append(seconds)
+            aims.append(np.broadcast_to(faced(way, table), (len(guess), len(table.shares), 2)))
             whose += [number] * len(guess)
-    splines, seconds = np.concatenate(first), np.concatenate(times)
-    starts, ends = grounds[whose], goals[whose].copy()
+    splines, seconds, facing = (np.ascontiguousarray(np.concatenate(parts)) for parts in (first, times, aims))
+    starts, ends = (np.ascontiguousarray(poses[whose]) for poses in (grounds, goals))
     ends[:, 2] = splines[:, -1, 2]
     speeds = np.column_stack([in_world(starts, velocities[whose]), velocities[whose, 1]])
 
-    def searched(which, margin):
+    def searched(which, margin, shapes, allowed):
         some, times, count = splines[which], seconds[which], len(splines[which])
         costs, faults, steps = np.empty(count), np.empty((count, 2)), np.empty(count, np.int64)
-        search(some, times, starts[which], speeds[which], ends[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
-               clearance + margin, ALLOWED, MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
+        search(some, times, starts[which], speeds[which], ends[which], facing[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
+               clearance + margin, allowed, MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
         splines[which], seconds[which] = some, times
-        return costs, faults, np.all(faults <= ALLOWED, 1) & np.isfinite(costs)
+        return costs, faults, np.all(faults <= allowed, 1) & np.isfinite(costs)
 
-    costs, faults, sound = searched(slice(None), MARGIN)
+    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
         true = _round_start(grounds[number], goals[number], around, clearance, 0.0)
@@ -148,7 +151,9 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
                 missing = clearance - swept(splines[s], true)
                 if not sound[s] or missing <= 0.0:
                     break
-                (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), MARGIN + 2.0 * missing)
+                margin = MARGIN + 2.0 * missing
+                wider = _round_start(grounds[number], goals[number], around, clearance, margin)
+                (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), margin, wider, STRICT)
             if sound[s] and swept(splines[s], true) >= clearance:
                 found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])
                 break
