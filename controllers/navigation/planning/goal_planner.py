@@ -118,9 +118,10 @@ def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, cleara
     return near
 
 
-def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, around, clearance, top) -> None:
-    """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found`."""
-    table = basis(max(_intervals(way, weights, top, bool(len(shapes))) for _, routes in tasks for way in routes))
+def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, around, clearance, top, finer: int = 1) -> None:
+    """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found`.
+    finer: so many times the intervals; where nothing was found it is sought among twice as many."""
+    table = basis(finer * max(_intervals(way, weights, top, bool(len(shapes))) for _, routes in tasks for way in routes))
     first, times, aims, whose = [], [], [], []
     for number, routes in tasks:
         for way in routes:
@@ -159,6 +160,9 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
                 break
         else:
             found[number] = Plan.none(grounds[number], goals[number], _why(faults[mine], sound[mine]))
+            if finer == 1:
+                task = [(number, routes) for one, routes in tasks if one == number]
+                _solve(found, task, grounds, velocities, goals, weights, planes, shapes, around, clearance, top, finer=2)
 
 
 def _why(faults: np.ndarray, sound: np.ndarray) -> str:
