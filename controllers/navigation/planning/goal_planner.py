@@ -82,10 +82,10 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
         if np.abs(velocities[number]).max() < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
             found[number] = Plan(np.repeat(goal[None], 4, 0), 0.0, 0.0, goal)
             continue
-        near = _round_start(start, goal, shapes, clearance, MARGIN)
-        if isinstance(near, str):
-            found[number] = Plan.none(start, goal, near)
+        if why := _refused(start, goal, shapes, clearance):
+            found[number] = Plan.none(start, goal, why)
             continue
+        near = _round_ends(start, goal, shapes, clearance + MARGIN)
         routes = ways(start[:2], goal[:2], near, clearance + MARGIN)
         if not routes:
             routes = [way for way in [grid_way(start[:2], goal[:2], near, clearance + MARGIN)] if len(way)]
@@ -105,16 +105,24 @@ def _numbers(name: str, value: Any) -> np.ndarray:
     return value
 
 
-def _round_start(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float, margin: float) -> np.ndarray | str:
-    """The shapes, those smaller that the walker starts, or ends, nearer to than clearance and margin; or why he can't go there."""
+def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> str:
+    """Why nobody can walk from start to goal, whatever the way; "" where a way may be."""
+    out = np.empty(3)
+    for shape in shapes:
+        there = distance(goal[0], goal[1], shape, out)
+        if there < clearance:
+            return f"the goal is {there:.2f} m from something, {clearance:.2f} m are needed" if there > 0.0 else "the goal lies in something"
+        if distance(start[0], start[1], shape, out) <= 0.0:
+            return "the walk starts within something"
+    return ""
+
+
+def _round_ends(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> np.ndarray:
+    """The shapes, those smaller that the walker starts, or ends, nearer to than the clearance."""
     out, near = np.empty(3), shapes.copy()
     for shape in near:
         here, there = (distance(place[0], place[1], shape, out) for place in (start, goal))
-        if there < clearance:
-            return f"the goal is {max(there, 0.0):.2f} m from something, {clearance:.2f} m are needed" if there > 0.0 else "the goal lies in something"
-        if here <= 0.0:
-            return "the walk starts within something"
-        shape[5] -= max(clearance + margin - min(here, there), 0.0) + 1e-6
+        shape[5] -= max(clearance - min(here, there), 0.0) + 1e-6
     return near
 
 
@@ -146,14 +154,14 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
     costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
-        true = _round_start(grounds[number], goals[number], around, clearance, 0.0)
+        true = _round_ends(grounds[number], goals[number], around, clearance)
         for s in mine:
             for _ in range(REPAIRS):  # it may cut a corner between two places that are looked at
                 missing = clearance - swept(splines[s], true)
                 if not sound[s] or missing <= 0.0:
                     break
                 margin = MARGIN + 2.0 * missing
-                wider = _round_start(grounds[number], goals[number], around, clearance, margin)
+                wider = _round_ends(grounds[number], goals[number], around, clearance + margin)
                 (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), margin, wider, STRICT)
             if sound[s] and swept(splines[s], true) >= clearance:
                 found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])

@@ -33,12 +33,12 @@ class Plan:
     def at(self, time) -> tuple[np.ndarray, np.ndarray]:
         """Ground frames (..., 3) and velocities (..., 3) v_f, ω, v_l [m/s, rad/s, m/s] at times (...) [s] from the start; at
         rest at the goal afterwards."""
-        ground, rate, _ = self._motion(time, 1)
+        ground, rate, _ = self._motion(time)
         return ground, self._own(ground, rate)
 
     def acceleration(self, time) -> np.ndarray:
         """The controls (..., 3) at times (...) [s]: how v_f, ω and v_l change [m/s², rad/s², m/s²]."""
-        ground, rate, change = self._motion(time, 2)
+        ground, rate, change = self._motion(time)
         v_f, turning, v_l = np.moveaxis(self._own(ground, rate), -1, 0)
         a_f, turn, a_l = np.moveaxis(self._own(ground, change), -1, 0)
         return np.stack([a_f + turning * v_l, turn, a_l - turning * v_f], -1)
@@ -48,13 +48,14 @@ class Plan:
         times = np.linspace(0.0, self.seconds, count)
         return times, *self.at(times)
 
-    def _motion(self, time, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        share = np.asarray(time, float) / max(self.seconds, 1e-9)
-        over = (share < 0.0) | (share > 1.0)
+    def _motion(self, time) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Ground frames (..., 3) and their first and second derivatives by the time."""
+        seconds = max(self.seconds, 1e-9)
+        share = np.asarray(time, float) / seconds
+        over = ((share < 0.0) | (share > 1.0))[..., None]
         way = BSpline(knots_of(len(self.coefficients) - 3), self.coefficients, 3)
         share = np.clip(share, 0.0, 1.0)
-        moving = [np.where(over[..., None], 0.0, way(share, k) / max(self.seconds, 1e-9) ** k) for k in range(1, order + 1)]
-        return way(share), *moving, *([np.zeros(0)] * (2 - order))
+        return way(share), np.where(over, 0.0, way(share, 1) / seconds), np.where(over, 0.0, way(share, 2) / seconds**2)
 
     @staticmethod
     def _own(ground: np.ndarray, rate: np.ndarray) -> np.ndarray:
