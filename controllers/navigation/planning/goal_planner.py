@@ -117,12 +117,13 @@ def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance:
     return ""
 
 
-def _round_ends(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> np.ndarray:
-    """The shapes, those smaller that the walker starts, or ends, nearer to than the clearance."""
+def _round_ends(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float, slack: float = 0.0) -> np.ndarray:
+    """The shapes, those smaller that the walker starts, or ends, nearer to than the clearance; and these by a slack [m] more."""
     out, near = np.empty(3), shapes.copy()
     for shape in near:
         here, there = (distance(place[0], place[1], shape, out) for place in (start, goal))
-        shape[5] -= max(clearance - min(here, there), 0.0) + 1e-6
+        missing = clearance - min(here, there)
+        shape[5] -= (missing + slack if missing > 0.0 else 0.0) + 1e-6
     return near
 
 
@@ -154,7 +155,7 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
     costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
-        true = _round_ends(grounds[number], goals[number], around, clearance)
+        true = _round_ends(grounds[number], goals[number], around, clearance, MARGIN)
         for s in mine:
             for _ in range(REPAIRS):  # it may cut a corner between two places that are looked at
                 missing = clearance - swept(splines[s], true)
