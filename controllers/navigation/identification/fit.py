@@ -1,4 +1,4 @@
-"""Inverse optimal control: the weights with which plans are most like people's walks (Mombaur 2010, section 4).
+"""Inverse optimal control: the weights with which plans are most like people's walks (Mombaur 2010).
 
 A search without derivatives over the logarithms of α₂, α₃ and α₄, whose every trial solves the control problem for every
 walk. α₀ is the unit. Walks are recorded over shares of their time, not over seconds, and a walk that takes longer by a factor k costs

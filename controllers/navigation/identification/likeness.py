@@ -15,7 +15,7 @@ PLACES = 101
 FAR = 3.0
 """Whoever goes farther than this [m] looks where he goes ..."""
 MIDDLE = slice(30, 71)
-"""... in the middle of his way, at these of the places (Truong 2009, Arechavaleta 2008)."""
+"""... in the middle of his way, at these of the places (as Truong 2009 reports)."""
 UNSOLVED = 1.0
 """A walk without a plan counts as so far away [m, rad]."""
 

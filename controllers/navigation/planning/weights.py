@@ -12,7 +12,7 @@ from ...files import reason, tables
 from .walking_cost import Weights
 
 PUBLISHED = Weights(1.0, 1.2, 1.7, 0.7, 5.2)
-"""Mombaur, Truong and Laumond 2010."""
+"""Those of Mombaur, Truong and Laumond 2010, as the code beside Maroger 2020 has them."""
 TABLE = "weights"
 """The table of a file that holds them."""
 
