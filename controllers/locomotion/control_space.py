@@ -113,6 +113,11 @@ class ControlSpace:
         recorded = self.points[np.abs(self.points[:, 1]) < STRAIGHT, 0].min(initial=high)
         return min(max(low, float(recorded)), high) if recorded < high else low, high
 
+    def half_spaces(self, share: float = 1.0) -> np.ndarray:
+        """The hull as half-spaces (H, 4) of velocities themselves: n·(v_f, ω, v_l) + d ≤ 0 inside, n of unit length in `SCALE`.
+        share: how much of the way from rest to it is used."""
+        return np.hstack([self.hull[:, :3] / SCALE, share * self.hull[:, 3:]])
+
     def locate(self, query: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The simplex (...) and barycentric weights (..., 4) of queries (..., 3), clamped first: eq. (4)."""
         p = self.clamp(query).reshape(-1, 1, 3) / SCALE

@@ -1,9 +1,11 @@
 """Getting somewhere: from a wish in the world to an intent, along a path, past what stands about."""
 
+from .goal import Following, arrived, wish
 from .obstacles import floor_at, gap, is_box, slide, slope
 from .path_following import Path, follow
 from .steering import Reach, Steering, drift, in_world, steer, turn_towards
 
 __all__ = [
-    "Path", "Reach", "Steering", "drift", "floor_at", "follow", "gap", "in_world", "is_box", "slide", "slope", "steer", "turn_towards",
+    "Following", "Path", "Reach", "Steering", "arrived", "drift", "floor_at", "follow", "gap", "in_world", "is_box", "slide", "slope", "steer",
+    "turn_towards", "wish",
 ]

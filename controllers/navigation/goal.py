@@ -1,0 +1,65 @@
+"""Following a plan to a goal: a plan and where the walker is become the velocity that he should wish for.
+
+Legs take up a wish as a critically damped spring does. What it takes to have them move as planned is its inverse,
+v + 2 v̇/y + v̈/y² with y = 2 ln 2 / half-life, of the plan; what the walker is off in place, heading and speed is added.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..body import relative, wrap
+
+if TYPE_CHECKING:  # whoever has a plan has loaded what it takes
+    from .planning import Plan
+
+
+class Following(NamedTuple):
+    """How a plan is followed.
+
+    halflife, turning_halflife: of the springs by which wishes to walk and to turn are taken up [s]; a walker's `Settings` has the
+    one, the other is half of it. place, heading: how much faster for each metre and radian that he is off [1/s]. speed: how much faster for
+    each metre a second that he is too slow, and so with turning. near, straight: who is as near to the goal as this [m, rad] once the
+    plan is over stays there.
+    """
+
+    halflife: float = 0.22
+    turning_halflife: float = 0.11
+    place: float = 1.6
+    heading: float = 3.0
+    speed: float = 0.3
+    near: float = 0.02
+    straight: float = math.radians(2.0)
+
+
+def wish(plan: Plan, time: float, ground: np.ndarray, velocity: np.ndarray, following: Following = Following()) -> np.ndarray:
+    """The velocity (3,) v_f, ω, v_l to wish for [m/s, rad/s, m/s], `time` [s] after the plan began.
+
+    ground: (3,) x, z [m], heading [rad], where the walker is. velocity: (3,) how he moves. Nothing once he has arrived, or where
+    there is no plan.
+    """
+    if plan.reason or arrived(plan, time, ground, following):
+        return np.zeros(3)
+    wanted, moving = plan.at(time)
+    lead = 0.5 * np.array([following.halflife, following.turning_halflife, following.halflife]) / math.log(2.0)  # 1 / y
+    change, jerk = plan.acceleration(time), _change_of_acceleration(plan, time)
+    off = relative(np.asarray(ground, float), wanted)
+    missing = np.array([following.place * off[1], following.heading * wrap(off[2]), following.place * off[0]])
+    return moving + 2.0 * lead * change + lead**2 * jerk + missing + following.speed * (moving - velocity)
+
+
+def arrived(plan: Plan, time: float, ground: np.ndarray, following: Following = Following()) -> bool:
+    """Whether a plan is over and the walker at its goal."""
+    ground = np.asarray(ground, float)
+    return (time >= plan.seconds and float(np.hypot(*(plan.goal - ground)[:2])) <= following.near
+            and abs(float(wrap(plan.goal[2] - ground[2]))) <= following.straight)
+
+
+def _change_of_acceleration(plan: Plan, time: float, over: float = 0.05) -> np.ndarray:
+    """v̈ (3,) over some time about a moment of the plan."""
+    ends = np.clip([time - over, time + over], 0.0, plan.seconds)
+    before, after = plan.acceleration(ends)
+    return (after - before) / max(ends[1] - ends[0], over)

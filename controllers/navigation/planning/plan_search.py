@@ -1,0 +1,73 @@
+"""Many guesses at once, each brought to the nearest best way within its limits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import kernel
+from ..routes import distance
+from .limits import too_fast
+from .newton import minimise
+from .splines import at_place
+
+SOFT = (10.0, 10000.0)
+"""How stiff limits on velocities and distances are at first: the cost rises by half of it where one unit [m/s, m] is missing ..."""
+STIFFER = 8.0
+"""... how much stiffer they become as long as they are broken ..."""
+STIFFEST = 1e6
+"""... and how stiff at most."""
+ROUNDS = 9
+"""So often multipliers are renewed."""
+
+
+@kernel(nogil=True)
+def search(guesses, seconds, starts, speeds, goals, aims, alpha, values, weights, planes, shapes, clearance, allowed, most, tolerance,
+           whose, costs, faults, steps):
+    """Every guess (S, M + 3, 3) with its time (S,) [s] becomes the least cost near it, in place.
+
+    starts, speeds, goals: (S, 3), speeds as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), clearance [m]: the limits. allowed: (2,)
+    how far velocities and distances may break them. whose: (S,) whose guess it is, in order: a guess is given up where it would cost more
+    than another of the same one that keeps to its limits. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
+    negative where the search did not settle.
+    """
+    places = weights.shape[0]
+    by_plane, by_shape = np.empty((places, planes.shape[0])), np.empty((places, shapes.shape[0]))
+    best = np.inf
+    for s in range(guesses.shape[0]):
+        if s and whose[s] != whose[s - 1]:
+            best = np.inf
+        by_plane[:], by_shape[:] = 0.0, 0.0
+        stiff = np.array(SOFT)
+        last = np.full(2, np.inf)
+        total, settled, owed = 0, False, 0.0
+        for lap in range(ROUNDS):
+            seconds[s], costs[s], dual, fast, near, count, settled = minimise(
+                guesses[s], seconds[s], starts[s], speeds[s], goals[s], aims[s], alpha, values, weights, planes, shapes, clearance,
+                by_plane, by_shape, stiff[0], stiff[1], most - total, tolerance if lap else 10.0 * tolerance, best + owed)
+            total += count
+            faults[s, 0], faults[s, 1] = fast, near
+            if (fast <= allowed[0] and near <= allowed[1]) or total >= most or dual - owed > best:
+                break
+            renew(guesses[s], seconds[s], values, planes, shapes, clearance, by_plane, by_shape, stiff)
+            for i in range(2):
+                if faults[s, i] > allowed[i] and faults[s, i] > 0.25 * last[i]:
+                    stiff[i] = min(STIFFER * stiff[i], STIFFEST)
+                last[i] = faults[s, i]
+            owed = 0.0  # what the multipliers have the penalty begin with
+            for place in range(places):
+                owed += weights[place] * (0.5 * np.sum(by_plane[place] ** 2) / stiff[0] + 0.5 * np.sum(by_shape[place] ** 2) / stiff[1])
+        if fast <= allowed[0] and near <= allowed[1]:
+            best = min(best, costs[s])
+        steps[s] = total if settled else -total
+
+
+@kernel
+def renew(coefficients, seconds, values, planes, shapes, clearance, by_plane, by_shape, stiff):
+    """The multipliers of all limits, after a minimum was found."""
+    y, out = np.empty(9), np.empty(3)
+    for place in range(values.shape[0]):
+        at_place(values[place], place * (coefficients.shape[0] - 3) // values.shape[0], coefficients, y)
+        for h in range(planes.shape[0]):
+            by_plane[place, h] = max(0.0, by_plane[place, h] + stiff[0] * too_fast(y, seconds, planes[h]))
+        for k in range(shapes.shape[0]):
+            by_shape[place, k] = max(0.0, by_shape[place, k] + stiff[1] * (clearance - distance(y[0], y[1], shapes[k], out)))
