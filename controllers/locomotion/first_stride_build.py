@@ -3,8 +3,8 @@
 Somebody who starts leans into it, and who turns does so shoulders and arms first. Wherever a recording begins to walk
 from standing still, its pose less the blend's is taken over the gait's phase since the first foot left; a line through
 all of them, over how fast they turn, is the start as a primitive. Its phase is the gait's own and it is gone where it
-ends, so that it ends in the gait; `scripts/measure/starts.py` prints how much it tells, and that stops have no such
-mean. Only what is above the pelvis is kept: way, pelvis and legs follow the wish and the
+ends, so that it ends in the gait; `scripts/measure/starts.py` prints how much it tells, of starts and of stops.
+Only what is above the pelvis is kept: way, pelvis and legs follow the wish and the
 footing, and a recorded pelvis on another way than the wished one would be pushed about.
 """
 

@@ -31,7 +31,7 @@ HEAVY = 2.0
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
 STRAIGHT = 0.2
-"""… and who goes no faster to the side than this [m/s]."""
+"""… and who goes no faster to the side than this [m/s], or is so slow that nobody runs."""
 
 
 @kernel(nogil=True)
@@ -140,8 +140,10 @@ def _reached(space, ahead, family):
 def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     """Choose the family, locate the command in its space, low-pass the weights."""
     common, phase = change_kernel(changes, m.family, m.phase)
-    switch = m.wanted != m.family and common and not m.settled and abs(m.command[2]) < STRAIGHT and (
-        m.command[0] > FASTEST_WALK if m.wanted == RUN else m.command[0] < SLOWEST_RUN)
+    straight = abs(m.command[2]) < STRAIGHT
+    switch = m.wanted != m.family and common and not m.settled and (
+        straight and m.command[0] > FASTEST_WALK if m.wanted == RUN else
+        m.command[0] < (SLOWEST_RUN if straight else FASTEST_WALK))
     if switch:
         m.family = m.wanted
         m.phase = phase

@@ -163,3 +163,10 @@ def test_toes_clear_the_floor_in_mid_swing(locomotion):
         progress = ((phase - 0.5 * foot) % 1.0) / 0.38
         toe = ends[..., locomotion.skeleton.end_index[side + "Toe"], 1]
         assert toe[(progress > 0.35) & (progress < 0.65)].min() > contact_height(locomotion.skeleton) + 0.008
+
+
+@pytest.mark.parametrize("wish", [(0, 0, 0.45), (0, 0, -0.45), (0, 1.5, 0), (-0.6, 0, 0), (0, 0, 0)])
+def test_nobody_goes_on_running_who_does_not_ask_for_it(locomotion, wish):
+    """At whatever moment of a run something slow is asked for, it is walked two seconds later."""
+    motion, _ = changed(locomotion, (3.5, 0, 0), wish, 2.5, phases=24)
+    assert not motion.states[-1].memory["family"].any()
