@@ -4,8 +4,8 @@ Somebody who starts leans into it, and who turns does so shoulders and arms firs
 from standing still, its pose less the blend's is taken over the gait's phase since the first foot left; a line through
 all of them, over how fast they turn, is the start as a primitive. Its phase is the gait's own and it is gone where it
 ends, so that it ends in the gait; `scripts/measure/starts.py` prints how much it tells, of starts and of stops.
-Only what is above the pelvis is kept: way, pelvis and legs follow the wish and the
-footing, and a recorded pelvis on another way than the wished one would be pushed about.
+Only what is above the pelvis is kept: way, pelvis and legs follow the wish and the footing, and a recorded pelvis on
+another way than the wished one would be pushed about.
 """
 
 from __future__ import annotations
@@ -209,7 +209,12 @@ def way_of(track: Track, library: Library, space: ControlSpace, at: np.ndarray, 
     way = [smooth[0]]
     for speed in velocity[:-1]:
         way.append(advance(way[-1], speed, np.array(1.0 / rate)))
-    return tuple(np.stack([np.interp(at, span, column) for column in np.transpose(x)], -1) for x in (way, velocity))
+    return _at(at, span, np.array(way)), _at(at, span, velocity)
+
+
+def _at(at: np.ndarray, span: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Columns (N, D) known at `span` (N,), at others (G,)."""
+    return np.stack([np.interp(at, span, column) for column in columns.T], -1)
 
 
 def _blend(library: Library, space: ControlSpace, velocity: np.ndarray, phases: np.ndarray) -> np.ndarray:

@@ -33,7 +33,7 @@ def pushable(samples: np.ndarray, reference: np.ndarray, velocity: np.ndarray) -
     shift = _shift(centre_of_mass(anatomy(skeleton), positions, orientations), samples[:, DURATION], velocity)
     if np.abs(shift).max() < 1e-4:
         return samples
-    moved = hips + np.stack([shift.real, np.zeros(count), shift.imag], -1)
+    moved = hips + np.stack([np.real(shift), np.zeros(count), np.imag(shift)], -1)
     there, orientations = forward_kinematics(skeleton, moved, local)
     for side in ("Left", "Right"):
         hip, knee, foot = (skeleton.index(side + name) for name in ("UpLeg", "Leg", "Foot"))
