@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .local_gaussians import features_of, likelihood_ratio
+from .local_gaussians import features_of, in_company, likelihood_ratio
 from .signed_distance import signed_distance
 from .total_variation import cheapest
 
@@ -23,7 +23,7 @@ class Segmentation:
     outside the model's silhouette [pixels], and everybody who is so deep in it. window: of the neighbourhood that statistics
     are of, squares of 4 pixels to each side of each of two boxes. floor: the least standard deviation [levels of 256].
     stray: how many pixels may have any colour. rounds: of statistics and region. steps: of each search for the region.
-    calm: the median of 3 × 3 pixels first."""
+    lonely: pixels like no neighbour say something, too."""
 
     shape: float = 0.05
     length: float = 2.0
@@ -33,7 +33,7 @@ class Segmentation:
     stray: float = 0.05
     rounds: int = 2
     steps: int = 30
-    calm: bool = True
+    lonely: bool = False
 
 
 SEGMENTATION = Segmentation()
@@ -59,12 +59,16 @@ def segmented(picture: np.ndarray, prior: np.ndarray, plate: np.ndarray | None =
         return Segmented(out, 0.0)
     more = int(chosen.reach) + 1
     part = np.s_[max(rows[0] - more, 0):rows[-1] + more + 1, max(columns[0] - more, 0):columns[-1] + more + 1]
-    features = features_of(picture[part], chosen.calm)
-    empty = None if plate is None else features_of(plate[part], chosen.calm)
+    features = features_of(picture[part])
+    empty = None if plate is None else features_of(plate[part])
+    heard = None if chosen.lonely else in_company(picture[part])
     levels = signed_distance(prior[part], chosen.reach)
     region, agreement = prior[part].astype(np.float32), 0.0
     for k in range(chosen.rounds):
-        ratio = likelihood_ratio(features, region, 1.0 - region, chosen.window, chosen.floor, chosen.stray, empty)
+        weights = (region, 1.0 - region) if heard is None else (region * heard, heard - region * heard)
+        ratio = likelihood_ratio(features, *weights, chosen.window, chosen.floor, chosen.stray, empty)
+        if heard is not None:
+            ratio *= heard
         if k == 0:
             agreement = _agreement(ratio, prior[part])
         region, _ = cheapest(costs_of(ratio, levels, chosen), chosen.length, chosen.steps, region)

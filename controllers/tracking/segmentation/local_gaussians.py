@@ -12,22 +12,31 @@ from ...compiled import kernel
 
 COARSE = 4
 """Statistics are of squares of so many pixels' side: they vary slowly."""
+ALIKE = 25
+"""Neighbours' levels differ by so much of 256 on average, and are still alike."""
 ELSEWHERE = 0.01
 """What the whole region counts for where none of it is near."""
 
 
-def features_of(picture: np.ndarray, calm: bool = True) -> np.ndarray:
-    """A picture (H, W, 3) or (H, W) uint8 as features (C, H, W) float32. calm: the median of 3 × 3 pixels first."""
-    deep = picture.reshape(*picture.shape[:2], -1)
-    height, width, channels = deep.shape
-    flat = np.ascontiguousarray(deep).reshape(height, width * channels)
-    if calm:
-        calmed = flat.copy()
-        median_kernel(flat, channels, calmed)
-        flat = calmed
-    out = np.empty((channels, height, width), np.float32)
+def features_of(picture: np.ndarray) -> np.ndarray:
+    """A picture (H, W, 3) or (H, W) uint8 as features (C, H, W) float32."""
+    flat, channels = _flat(picture)
+    out = np.empty((channels, *picture.shape[:2]), np.float32)
     feature_kernel(flat, out)
     return out
+
+
+def in_company(picture: np.ndarray) -> np.ndarray:
+    """1 for pixels (H, W) float32 of a picture (H, W, 3) or (H, W) uint8 that have two neighbours like them, 0 for others, which say nothing."""
+    flat, channels = _flat(picture)
+    out = np.empty(picture.shape[:2], np.float32)
+    company_kernel(flat, channels, ALIKE * channels, out)
+    return out
+
+
+def _flat(picture: np.ndarray) -> tuple[np.ndarray, int]:
+    height, width = picture.shape[:2]
+    return np.ascontiguousarray(picture).reshape(height, -1), picture.size // (height * width)
 
 
 def likelihood_ratio(features: np.ndarray, inside: np.ndarray, outside: np.ndarray, window: int, floor: float, stray: float,
@@ -57,26 +66,20 @@ def likelihood_ratio(features: np.ndarray, inside: np.ndarray, outside: np.ndarr
 
 
 @kernel(nogil=True)
-def median_kernel(picture, channels, out):
-    """Write the medians (H, W × C) of 3 × 3 pixels of a picture (H, W × C) uint8; its border stays as it is (Paeth 1990)."""
-    height, width = picture.shape
-    for y in range(1, height - 1):
-        for x in range(channels, width - channels):
-            a, b, c = picture[y - 1, x - channels], picture[y - 1, x], picture[y - 1, x + channels]
-            d, e, f = picture[y, x - channels], picture[y, x], picture[y, x + channels]
-            g, h, i = picture[y + 1, x - channels], picture[y + 1, x], picture[y + 1, x + channels]
-            a, b = min(a, b), max(a, b)
-            b, c = min(b, c), max(b, c)
-            a, b = min(a, b), max(a, b)
-            d, e = min(d, e), max(d, e)
-            e, f = min(e, f), max(e, f)
-            d, e = min(d, e), max(d, e)
-            g, h = min(g, h), max(g, h)
-            h, i = min(h, i), max(h, i)
-            g, h = min(g, h), max(g, h)
-            low, high = max(a, max(d, g)), min(c, min(f, i))
-            middle = max(min(b, e), min(max(b, e), h))
-            out[y, x] = max(min(low, middle), min(max(low, middle), high))
+def company_kernel(picture, channels, apart, out):
+    """Write 1 for each pixel (H, W) of a picture (H, W × C) uint8 that two of its eight neighbours are like, else 0."""
+    height, width = out.shape
+    for y in range(height):
+        for x in range(width):
+            alike = 0
+            for v in range(max(y - 1, 0), min(y + 2, height)):
+                for u in range(max(x - 1, 0), min(x + 2, width)):
+                    away = np.int32(0)
+                    for c in range(channels):
+                        away += abs(np.int32(picture[y, x * channels + c]) - np.int32(picture[v, u * channels + c]))
+                    if away <= apart:
+                        alike += 1
+            out[y, x] = 1.0 if alike > 2 else 0.0  # it is like itself
 
 
 @kernel(nogil=True, fastmath=True)
