@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from _tracking import Film
+from _tracking import Film, silhouette
 
-from gambol.controllers.tracking.twists import posed
+from gambol.controllers.tracking.segmentation import segmented
+from gambol.controllers.tracking.silhouettes import contour_of
+from gambol.controllers.tracking.twists import Configuration, posed
 from gambol.game.hosts import Offscreen
 from gambol.game.render import Body, mannequin
 from gambol.game.scene import Box, Figure, Pillar, Prop, Scene
@@ -75,14 +77,13 @@ def shots(film: Film) -> Shots:
     body, props = clothed(), clutter(film)
     warps = [LensWarp(lens) for lens in film.lenses]
     with Offscreen((16, 16), "full") as stage:
-        def drawn(warp: LensWarp, figures: tuple[Figure, ...]) -> np.ndarray:
+        plates, pictures = [], [[] for _ in film.truth[2:]]
+        for warp in warps:  # one after the other: another size is a new set of buffers
             stage.resize(warp.size)
-            return warp.bent(stage.frame(Scene(warp.camera, figures, props)))
-        plates, pictures = [drawn(warp, ()) for warp in warps], []
-        for pose in film.truth[2:]:
-            positions, orientations, _ = posed(film.chain, pose)
-            figure = Figure(positions, orientations, body=body)
-            pictures.append([drawn(warp, (figure,)) for warp in warps])
+            plates.append(warp.bent(stage.frame(Scene(warp.camera, (), props))))
+            for row, pose in zip(pictures, film.truth[2:]):
+                positions, orientations, _ = posed(film.chain, pose)
+                row.append(warp.bent(stage.frame(Scene(warp.camera, (Figure(positions, orientations, body=body),), props))))
     return Shots(pictures, plates)
 
 
@@ -90,3 +91,20 @@ def spoilt(pictures: Sequence[Sequence[np.ndarray]], seed: int) -> list[list[np.
     """Pictures with the paper's noise: 15 % of pixels of any colour, and three rectangles."""
     sensor = Sensor(replaced=0.15, rectangles=3, seed=seed)
     return [[sensor.disturbed(picture, c, t, 0.0) for c, picture in enumerate(row)] for t, row in enumerate(pictures)]
+
+
+def contours(film: Film, pictures: Sequence[Sequence[np.ndarray]], poses: Sequence[Configuration], frames: Sequence[int]) -> np.ndarray:
+    """A picture (H, W, 3) of pictures with the true contour, green, the segmentation's, blue, and the model's, red: a row a frame."""
+    half, rows = 110, []
+    for t in frames:
+        row = []
+        for lens, seen in zip(film.lenses, pictures[t - 2]):
+            true, ours = (silhouette(film, lens, pose) for pose in (film.truth[t], poses[t]))
+            shown = seen.copy()
+            for mask, colour in ((segmented(seen, ours).mask, (60, 140, 255)), (true, (0, 255, 0)), (ours, (255, 40, 40))):
+                x, y = contour_of(mask).pixels.astype(int).T
+                shown[y, x] = colour
+            x, y = contour_of(true).pixels.mean(0).astype(int)
+            row.append(np.pad(shown, ((half, half), (half, half), (0, 0)))[y:y + 2 * half, x:x + 2 * half].repeat(2, 0).repeat(2, 1))
+        rows.append(np.concatenate(row, 1))
+    return np.concatenate(rows)
