@@ -40,7 +40,7 @@ class TrackerSettings:
     firmness: float = FIRM
     solver: SolverSettings = SETTINGS
     rounds: int = 2
-    pictures: SolverSettings = SETTINGS
+    pictures: SolverSettings = replace(SETTINGS, outer=2)
     segmentation: Segmentation = SEGMENTATION
 
 

@@ -26,13 +26,13 @@ class Segmentation:
     lonely: pixels like no neighbour say something, too."""
 
     shape: float = 0.05
-    length: float = 2.0
+    length: float = 1.5
     reach: float = 18.0
-    window: int = 3
+    window: int = 2
     floor: float = 3.0
     stray: float = 0.05
     rounds: int = 2
-    steps: int = 30
+    steps: int = 20
     lonely: bool = False
 
 
