@@ -65,7 +65,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
-    who, surface = person_in(film, person), surface_of()
+    who, surface = person_in(film, person), surface_of(freedom="full")
     checked(out, [film.people[who]])
     poses = list(first_poses(film, surface, who, start))
     tracker = Tracker(surface, film.lenses, float(film.fps))
