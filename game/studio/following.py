@@ -37,7 +37,10 @@ def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Pat
     if motion is not None:
         clip = load(motion)
         if clip.skeleton.names != chain.skeleton.names:
-            clip = retarget(clip)
+            try:
+                clip = retarget(clip)
+            except ValueError as fault:
+                raise FootageError(f"{motion}: {fault}") from None
         if len(clip) < 2:
             raise FootageError(f"{motion}: holds one frame; a track begins with two")
         clip = clip.resample(footage.fps).slice(0, 2)
