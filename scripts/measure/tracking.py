@@ -21,13 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from _plots import pictures
-from _tracking import RATE, Errors, Film, errors, films, noisy, overlay
+from _tracking import RATE, Errors, Film, errors, films, noisy, overlay, silhouette
 
 from gambol.controllers.tracking import Track, Tracker, TrackerSettings
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
 from gambol.controllers.tracking.segmentation import segmented
-from gambol.controllers.tracking.silhouettes import rendered, skinned
-from gambol.controllers.tracking.twists import Configuration, posed
+from gambol.controllers.tracking.twists import Configuration
 
 BARE = TrackerSettings(penalty=False, gate=False)
 PAPER = TrackerSettings(pace=1.0, gate=False)
@@ -120,13 +119,17 @@ def images(film: Film, seeds: int, plots: Path | None) -> None:
 
                 frames = [len(film.truth) * k // 5 for k in (1, 2, 3, 4)]
                 Image.fromarray(contours(film, films_[0], runs[0][0], frames)).save(plots / f"{film.name} images {kind}.png".replace(" ", "_").replace(",", ""))
-    spent = []
-    drawn = rendered(film.lenses[0], skinned(film.surface, *posed(film.chain, film.truth[2])[:2]), film.surface.triangles).mask
-    for _ in range(20):
-        begun = time.perf_counter()
-        segmented(made.pictures[0][0], drawn)
-        spent.append(1e3 * (time.perf_counter() - begun))
-    print(f"    one view's segmentation: {np.median(spent):.1f} ms (least {min(spent):.1f})")
+    tracker, drawn = Tracker(film.surface, film.lenses, RATE), silhouette(film, film.lenses[0], film.truth[2])
+    state = tracker.step(tracker.start(film.truth[1], film.truth[0]), made.pictures[0])
+    for what, act in (("one view's segmentation", lambda _: segmented(made.pictures[0][0], drawn)),
+                      ("a frame of four views, all in", lambda k: tracker.step(state, made.pictures[1]))):
+        spent, worked = [], []
+        for k in range(20):
+            begun, own = time.perf_counter(), time.process_time()
+            act(k)
+            spent.append(1e3 * (time.perf_counter() - begun))
+            worked.append(1e3 * (time.process_time() - own))
+        print(f"    {what}: {np.median(spent):.1f} ms (least {min(spent):.1f}); processor {np.median(worked):.1f} ms (least {min(worked):.1f})")
 
 
 def rivals(film: Film, seeds: int, _plots: Path | None) -> None:
