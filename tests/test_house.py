@@ -111,6 +111,7 @@ PLAN = {
         "tracking.silhouettes": "compiled tracking.twists tracking.cameras",
         "tracking.pose": "compiled body tracking.twists tracking.cameras tracking.silhouettes",
         "tracking.rivals": "tracking.twists",
+        "tracking.segmentation": "compiled",
         "locomotion": "compiled files body contract mocap navigation",
         "scaled": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles",

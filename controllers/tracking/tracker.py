@@ -1,6 +1,7 @@
-"""A body followed through a film of several cameras: masks in, a pose out, frame by frame.
+"""A body followed through a film of several cameras: pictures or masks in, a pose out, frame by frame.
 
-A `Track` is all that is remembered; it goes in, and another one comes out.
+A `Track` is all that is remembered; it goes in, and another one comes out. Pictures are segmented with the shape of the
+body at the pose that is expected, the pose is fitted to that, and so on by turns, as section 3 of Rosenhahn 2007 has it.
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, Observed, SolverSettings, calmed, judged, observed, penalty_of, predicted, solve
-from .silhouettes import Surface
-from .twists import Configuration
+from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, penalty_of, predicted, solve
+from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
+from .silhouettes import Surface, rendered, skinned
+from .twists import Configuration, posed
 
 FIRM = 3.0
 """How firmly the penalty holds, times what bounds on acceleration say, where contours are ROUGH."""
@@ -29,7 +31,7 @@ class TrackerSettings:
     """start: where a frame's search begins, at the prediction or at the last pose. penalty: draw it to the prediction, too.
     pace: how far joints go on as before where the penalty draws them, 1 as the paper's eq. (16), 0 not at all.
     gate: leave out cameras whose picture is not what could be expected. firmness: of the penalty, times what bounds on
-    acceleration say."""
+    acceleration say. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each."""
 
     start: Literal["prediction", "last"] = "prediction"
     penalty: bool = True
@@ -37,6 +39,9 @@ class TrackerSettings:
     gate: bool = True
     firmness: float = FIRM
     solver: SolverSettings = SETTINGS
+    rounds: int = 2
+    pictures: SolverSettings = replace(SETTINGS, outer=2)
+    segmentation: Segmentation = SEGMENTATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,27 +56,29 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class Tracker:
-    """Who follows a body. rate: frames a second of the film."""
+    """Who follows a body. rate: frames a second of the film. plates: each camera's picture with nobody in it, if there are any."""
 
     surface: Surface
     lenses: tuple[Lens, ...]
     rate: float = 60.0
     settings: TrackerSettings = field(default_factory=TrackerSettings)
+    plates: tuple[np.ndarray, ...] | None = None
 
     def start(self, now: Configuration, before: Configuration | None = None) -> Track:
         """A track from a known pose, and the one a frame earlier where that is known; else it stands still."""
         return Track(now, before or now, Evidence.fresh(len(self.lenses)))
 
-    def step(self, track: Track, masks: Sequence[np.ndarray | None]) -> Track:
-        """The track after one more frame. masks: (H, W) bool of each camera; None of one whose frame was dropped.
+    def step(self, track: Track, seen: Sequence[np.ndarray | None]) -> Track:
+        """The track after one more frame. seen: of each camera a mask (H, W) bool, or a picture (H, W, 3) or (H, W) uint8;
+        None of one whose frame was dropped.
 
-        ValueError for another number of masks, or one of another size than its camera's pictures.
+        ValueError for another number of them, or one of another size than its camera's pictures.
         """
-        if len(masks) != len(self.lenses):
-            raise ValueError(f"{len(self.lenses)} cameras need as many masks, got {len(masks)}")
+        if len(seen) != len(self.lenses):
+            raise ValueError(f"{len(self.lenses)} cameras need as many masks or pictures, got {len(seen)}")
         chosen, chain = self.settings, self.surface.chain
-        there = [mask is not None for mask in masks]
-        views = [_seen(lens, mask) for lens, mask in zip(self.lenses, masks)]
+        there = np.array([one is not None for one in seen])
+        shown = np.array([one is not None and one.dtype != bool for one in seen])
         target = predicted(chain, track.now, track.before)
         start = target if chosen.start == "prediction" else track.now
         rough = ROUGH if track.fit is None else min(max(track.fit.residual, CLEANEST), ROUGHEST)
@@ -79,18 +86,34 @@ class Tracker:
         penalty = None
         if chosen.penalty:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
-        kept = [track.evidence]
+        evidence, believed = track.evidence, there
+        for k in range(chosen.rounds if shown.any() else 1):
+            masks, agreements = self._masks(seen, start)
 
-        def believe(overlaps: np.ndarray) -> np.ndarray:
-            if not chosen.gate:
-                return np.array(there)
-            kept[0], believed = judged(track.evidence, overlaps)
-            return believed & there
-        fit = solve(self.surface, views, start, penalty, believe, chosen.solver)
+            def believe(overlaps: np.ndarray, first=k == 0, agreements=agreements) -> np.ndarray:
+                nonlocal evidence, believed
+                if chosen.gate and first:
+                    evidence, believed = judged(evidence, np.where(shown, agreements, overlaps))
+                return believed & there
+            views = [observed(lens, mask) for lens, mask in zip(self.lenses, masks)]
+            fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver)
+            start = fit.where
         if not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
-        return Track(fit.where, track.now, kept[0], fit)
+        return Track(fit.where, track.now, evidence, fit)
 
-
-def _seen(lens: Lens, mask: np.ndarray | None) -> Observed:
-    return observed(lens, np.zeros(lens.size[::-1], bool) if mask is None else mask)
+    def _masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> tuple[list[np.ndarray], np.ndarray]:
+        """Masks (H, W) bool, those of pictures found near a pose; and how well colours agree with that (C,), 0 for masks."""
+        plates = self.plates or (None,) * len(self.lenses)
+        found, vertices = [], None
+        for lens, one, plate in zip(self.lenses, seen, plates):
+            if one is None:
+                one = np.zeros(lens.size[::-1], bool)
+            if one.dtype != bool:
+                if vertices is None:
+                    vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+                drawn = rendered(lens, vertices, self.surface.triangles)
+                found.append(segmented(one, drawn.mask, plate, self.settings.segmentation))
+            else:
+                found.append(Segmented(one, 0.0))
+        return [one.mask for one in found], np.array([one.agreement for one in found])

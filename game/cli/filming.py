@@ -1,4 +1,4 @@
-"""`gambol film`: calibrated cameras film a scenario, and the truth lies beside."""
+"""`gambol film`: calibrated cameras film a scenario, and the truth lies beside. `gambol track`: somebody's motion from such footage."""
 
 from __future__ import annotations
 
@@ -41,3 +41,42 @@ def film(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see `
         raise Mistake(str(error)) from None
     kept = run.frames * len(lenses) - made
     say(f"{out}: {len(lenses)} cameras, {run.frames} frames" + (f"; {kept} pictures were there already" if kept else ""))
+
+
+@app.command()
+@plainly
+def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that `gambol film` made.")],
+          out: Annotated[Path, typer.Option("-o", "--out", help="The motion: a .bvh or .glb file.")],
+          person: Annotated[str | None, typer.Option(help="Whom to follow; the first by default.")] = None,
+          start: Annotated[Path | None, typer.Option(help="A motion file whose first two frames are the poses to begin with; the truth's by default.")] = None,
+          masks: Annotated[bool, typer.Option("--masks", help="Follow the true masks instead of the pictures.")] = False,
+          overlay: Annotated[Path | None, typer.Option(help="A .mp4 film, or a folder, of the contours found, blue, and the model's, red.")] = None) -> None:
+    """Follow somebody through what calibrated cameras filmed, without markers: the motion as a file."""
+    from contextlib import nullcontext
+
+    import numpy as np
+
+    from gambol.controllers.tracking import Tracker
+    from gambol.controllers.tracking.twists import local_turns
+
+    from ..output import Take, checked, recorder, write
+    from ..studio import error_of, first_poses, followed, overlaid, person_in, read_footage, surface_of
+
+    film = read_footage(footage)
+    if film.frames < 2:
+        raise Mistake(f"{footage}: holds one frame; a track begins with two")
+    who, surface = person_in(film, person), surface_of(freedom="full")
+    checked(out, [film.people[who]])
+    poses = list(first_poses(film, surface, who, start))
+    tracker = Tracker(surface, film.lenses, float(film.fps))
+    drawn = None if overlay is None else overlaid(film, surface, 1, poses[1])
+    with (nullcontext() if drawn is None or overlay is None else recorder(overlay, (drawn.shape[1], drawn.shape[0]), film.fps)) as tape, progress_bar() as bar:
+        for number, one in enumerate(bar.track(followed(film, tracker, poses, who, masks), film.frames - 2, description=film.people[who]), 2):
+            poses.append(one.now)
+            if tape is not None:
+                tape.write(overlaid(film, surface, number, one.now))
+    turned = [local_turns(surface.chain, pose) for pose in poses]
+    files = write(out, [Take(film.people[who], surface.chain.skeleton, tuple(turned), np.zeros((len(poses), 4), bool))], film.fps)
+    off = error_of(film, surface, poses, who)
+    say(f"{files[0]}: {len(poses)} frames of {film.people[who]}" + (
+        "" if off is None else f"; joints {100 * off.mean():.1f} cm from the truth, {100 * off.max():.0f} at worst"))

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.tracking.cameras import Lens, ring
-from gambol.controllers.tracking.silhouettes import Contour, Surface, contour_of, rendered, skinned
+from gambol.controllers.tracking.silhouettes import Surface, contour_of, rendered, skinned
 from gambol.controllers.tracking.twists import Chain, Configuration, fitted, local_turns, posed
 from gambol.game.studio import surface_of
 
@@ -80,7 +80,7 @@ def overlay(film: Film, masks: Sequence[Sequence[np.ndarray]], poses: Sequence[C
     for t in frames:
         row = []
         for lens, mask in zip(film.lenses, masks[t - 2]):
-            true, ours = (_contour(film, lens, pose) for pose in (film.truth[t], poses[t]))
+            true, ours = (contour_of(silhouette(film, lens, pose)) for pose in (film.truth[t], poses[t]))
             picture = np.where(mask[..., None], 150, 40).astype(np.uint8).repeat(3, -1)
             for contour, colour in ((true, (0, 255, 0)), (ours, (255, 60, 60))):
                 x, y = contour.pixels.astype(int).T
@@ -92,9 +92,10 @@ def overlay(film: Film, masks: Sequence[Sequence[np.ndarray]], poses: Sequence[C
     return np.concatenate(rows)
 
 
-def _contour(film: Film, lens: Lens, pose: Configuration) -> Contour:
+def silhouette(film: Film, lens: Lens, pose: Configuration) -> np.ndarray:
+    """The model's mask (H, W) at a pose."""
     positions, orientations, _ = posed(film.chain, pose)
-    return contour_of(rendered(lens, skinned(film.surface, positions, orientations), film.surface.triangles).mask)
+    return rendered(lens, skinned(film.surface, positions, orientations), film.surface.triangles).mask
 
 
 @dataclass(frozen=True, eq=False)

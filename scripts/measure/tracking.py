@@ -1,12 +1,13 @@
 """Measure tracking: how far poses are off with clean and with noisy silhouettes, corrupted frames, the rivals, and a frame's time.
 
-    python scripts/measure/tracking.py DIR [--seeds 3] [--frames 120] [--only clean,noise,corrupted,rivals,time] [--plots FOLDER]
+    python scripts/measure/tracking.py DIR [--seeds 3] [--frames 120] [--only clean,noise,corrupted,rivals,images,time] [--plots FOLDER]
 
 DIR is a folder of motion capture with CMU's subjects 14, 16 and 49 in it. Each clip is first brought onto the chain's 26
 degrees of freedom, and that is filmed from four sides at 60 frames a second: what is measured is tracking, not how stiff a
 trunk is. The film's mesh and the model's are the same. Angles are geodesic, of each joint that turns and the hips; the turn
 of a limb about itself is told apart, as silhouettes hardly show it. Noise: silhouettes with 15 % of all pixels wrong and
-three rectangles, then the majority of 5 × 5 pixels, in place of a segmentation of such pictures.
+three rectangles, then the majority of 5 × 5 pixels, in place of a segmentation of such pictures. Images are the real thing:
+somebody in patterned clothes among clutter, drawn as the studio draws, segmented and followed; a second of it takes a minute.
 """
 
 from __future__ import annotations
@@ -20,10 +21,11 @@ from pathlib import Path
 import numpy as np
 
 from _plots import pictures
-from _tracking import RATE, Errors, Film, errors, films, noisy, overlay
+from _tracking import RATE, Errors, Film, errors, films, noisy, overlay, silhouette
 
 from gambol.controllers.tracking import Track, Tracker, TrackerSettings
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
+from gambol.controllers.tracking.segmentation import segmented
 from gambol.controllers.tracking.twists import Configuration
 
 BARE = TrackerSettings(penalty=False, gate=False)
@@ -34,9 +36,10 @@ WAYS = {"no penalty": BARE, "the paper's penalty": PAPER, "ours, joints at rest"
 
 
 
-def track(film: Film, masks: Sequence[Sequence[np.ndarray | None]], settings: TrackerSettings) -> tuple[list[Configuration], list[Track]]:
+def track(film: Film, masks: Sequence[Sequence[np.ndarray | None]], settings: TrackerSettings, plates: Sequence[np.ndarray] | None = None
+          ) -> tuple[list[Configuration], list[Track]]:
     """Poses of all frames, the first two given."""
-    tracker = Tracker(film.surface, film.lenses, RATE, settings)
+    tracker = Tracker(film.surface, film.lenses, RATE, settings, None if plates is None else tuple(plates))
     state, tracks = tracker.start(film.truth[1], film.truth[0]), []
     for seen in masks:
         state = tracker.step(state, seen)
@@ -86,13 +89,47 @@ def corrupted(film: Film, seeds: int, _plots: Path | None) -> None:
 
 
 def _with_lies(film: Film, seed: int, kind: str) -> list[list[np.ndarray]]:
-    rng = np.random.default_rng(100 + seed)
-    masks = [film.masks(t) for t in range(2, len(film.truth))] if kind == "clean" else with_noise(film, seed)
-    for start in range(int(rng.integers(8, 22)), len(masks) - 2, 22):
+    return _lied([film.masks(t) for t in range(2, len(film.truth))] if kind == "clean" else with_noise(film, seed), seed)
+
+
+def _lied(seen: Sequence[list[np.ndarray]], seed: int) -> list[list[np.ndarray]]:
+    """Masks or pictures, two frames in 22 of another moment's, mirrored and elsewhere."""
+    rng, out = np.random.default_rng(100 + seed), list(seen)
+    for start in range(int(rng.integers(8, 22)), len(out) - 2, 22):
         for t in (start, start + 1):
-            other = masks[int(rng.integers(0, len(masks)))]
-            masks[t] = [np.roll(mask[:, ::-1], rng.integers(-40, 41, 2) * mask.shape[1] // 640, (0, 1)) for mask in other]
-    return masks
+            other = out[int(rng.integers(0, len(out)))]
+            out[t] = [np.roll(one[:, ::-1], rng.integers(-40, 41, 2) * one.shape[1] // 640, (0, 1)) for one in other]
+    return out
+
+
+def images(film: Film, seeds: int, plots: Path | None) -> None:
+    """Pictures instead of silhouettes: without a fault, with the paper's 15 % and rectangles in them, with frames of something else."""
+    from _footage import contours, shots, spoilt
+
+    made = shots(film)
+    kinds = {"clean": [made.pictures], "noisy": [spoilt(made.pictures, seed) for seed in range(seeds)]}
+    kinds |= {f"{kind}, corrupted": [_lied(one, seed) for seed, one in enumerate(kinds[kind])] for kind in ("clean", "noisy")}
+    for kind, films_ in kinds.items():
+        for name in ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate", "ours, gate, empty pictures known"):
+            plates = made.plates if "empty" in name else None
+            runs = [track(film, one, WAYS[name.removesuffix(", empty pictures known")], plates) for one in films_]
+            told(f"{kind}: {name}", [errors(film.chain, one, film.truth) for one, _ in runs])
+            if plots is not None and name == "ours, gate":
+                from PIL import Image
+
+                frames = [len(film.truth) * k // 5 for k in (1, 2, 3, 4)]
+                Image.fromarray(contours(film, films_[0], runs[0][0], frames)).save(plots / f"{film.name} images {kind}.png".replace(" ", "_").replace(",", ""))
+    tracker, drawn = Tracker(film.surface, film.lenses, RATE), silhouette(film, film.lenses[0], film.truth[2])
+    state = tracker.step(tracker.start(film.truth[1], film.truth[0]), made.pictures[0])
+    for what, act in (("one view's segmentation", lambda _: segmented(made.pictures[0][0], drawn)),
+                      ("a frame of four views, all in", lambda k: tracker.step(state, made.pictures[1]))):
+        spent, worked = [], []
+        for k in range(20):
+            begun, own = time.perf_counter(), time.process_time()
+            act(k)
+            spent.append(1e3 * (time.perf_counter() - begun))
+            worked.append(1e3 * (time.process_time() - own))
+        print(f"    {what}: {np.median(spent):.1f} ms (least {min(spent):.1f}); processor {np.median(worked):.1f} ms (least {min(worked):.1f})")
 
 
 def rivals(film: Film, seeds: int, _plots: Path | None) -> None:
@@ -142,7 +179,7 @@ def main() -> None:
     parser.add_argument("--plots", type=Path, help="a folder for pictures of contours and model under noise")
     args = parser.parse_args()
     pictures(parser, args.plots)
-    parts = {"clean": clean, "noise": noise, "corrupted": corrupted, "rivals": rivals}
+    parts = {"clean": clean, "noise": noise, "corrupted": corrupted, "rivals": rivals, "images": images}
     wanted = [part for part in args.only.split(",") if part]
     every = [film for film in films(args.folder, args.width, args.frames) if any(word in film.name for word in args.clips.split(","))]
     for name in wanted:

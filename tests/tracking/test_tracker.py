@@ -78,8 +78,49 @@ def test_a_dropped_frame_is_no_evidence(film):
 def test_as_many_masks_as_cameras(film):
     surface, lenses, truth, _ = film
     tracker = Tracker(surface, lenses)
-    with pytest.raises(ValueError, match="4 cameras need as many masks, got 1"):
+    with pytest.raises(ValueError, match="4 cameras need as many masks or pictures, got 1"):
         tracker.step(tracker.start(truth[0]), [None])
+
+
+@pytest.fixture(scope="module")
+def pictures():
+    """Seven frames of somebody dull before ground that runs from dark to light, with noise; and a picture with nobody in it."""
+    surface, lenses, rng = stick_body(), cameras(160), np.random.default_rng(3)
+    truth = [stride(surface.chain, 0.1 + t / RATE) for t in range(8)]
+    plate = (60.0 + 0.6 * np.arange(160))[:, None] + np.array([[[0.0, 12.0, 4.0]]]) + np.zeros((160, 160, 1))
+
+    def shown(mask):
+        made = np.where(mask[..., None], 0.5 * plate + (70.0, 30.0, 20.0), plate) + rng.normal(size=plate.shape) * 4
+        return np.clip(made, 0, 255).astype(np.uint8)
+    return surface, lenses, truth, [[shown(mask) for mask in masks(surface, one, lenses)] for one in truth], shown(np.zeros((160, 160), bool))
+
+
+@pytest.mark.parametrize("plates", [False, True])
+def test_pictures_are_followed(pictures, plates):
+    surface, lenses, truth, seen, plate = pictures
+    tracker = Tracker(surface, lenses, RATE, plates=(plate,) * 4 if plates else None)
+    track = tracker.start(truth[1], truth[0])
+    for t in range(2, 7):
+        track = tracker.step(track, seen[t])
+        assert track.fit.believed.all() and off(surface.chain, track.now, truth[t]).mean() < 0.03
+
+
+def test_pictures_of_something_else_are_left_out(pictures):
+    """Colours that do not go with the expected shape; the segmentation alone would find that shape anywhere."""
+    surface, lenses, truth, seen, _ = pictures
+    tracker, rng = Tracker(surface, lenses, RATE), np.random.default_rng(0)
+    track = tracker.step(tracker.start(truth[1], truth[0]), seen[2])
+    wild = [rng.integers(0, 256, (160, 160, 3), np.uint8), np.roll(seen[3][1][:, ::-1], 45, 1), seen[3][2], None]
+    after = tracker.step(track, wild)
+    assert after.fit.believed.tolist() == [False, False, True, False]
+    assert off(surface.chain, after.now, truth[3]).mean() < 0.03
+
+
+def test_masks_and_pictures_go_together(pictures):
+    surface, lenses, truth, seen, _ = pictures
+    tracker = Tracker(surface, lenses, RATE)
+    track = tracker.step(tracker.start(truth[1], truth[0]), [*seen[2][:2], *masks(surface, truth[2], lenses)[2:]])
+    assert track.fit.believed.all() and off(surface.chain, track.now, truth[2]).mean() < 0.02
 
 
 def jittery(chain, seed=0, size=0.03):

@@ -1,0 +1,112 @@
+"""Footage tracked: somebody's motion from what cameras filmed, and pictures of how well the model lies on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from gambol.controllers.mocap import load, retarget
+from gambol.controllers.tracking import Track, Tracker
+from gambol.controllers.tracking.segmentation import segmented
+from gambol.controllers.tracking.silhouettes import Surface, contour_of, rendered, skinned
+from gambol.controllers.tracking.twists import Configuration, fitted, posed
+
+from .footage import Footage, FootageError
+
+FOUND, MODEL = (60, 140, 255), (255, 40, 40)
+"""Colours of the contour that the segmentation finds, and of the model's."""
+
+
+def person_in(footage: Footage, name: str | None) -> int:
+    """The number of a person, the first by default. FootageError where nobody is called that."""
+    if not footage.people:
+        raise FootageError(f"{footage.path}: shows nobody")
+    if name is None:
+        return 0
+    if name not in footage.people:
+        raise FootageError(f"{footage.path}: shows no {name}; it has {', '.join(footage.people)}")
+    return footage.people.index(name)
+
+
+def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Path | None = None) -> tuple[Configuration, Configuration]:
+    """The poses of the first two frames, by a motion file, else by the truth. FootageError, MotionFileError where there are none."""
+    chain = surface.chain
+    if motion is not None:
+        clip = load(motion)
+        if clip.skeleton.names != chain.skeleton.names:
+            try:
+                clip = retarget(clip)
+            except ValueError as fault:
+                raise FootageError(f"{motion}: {fault}") from None
+        if len(clip) < 2:
+            raise FootageError(f"{motion}: holds one frame; a track begins with two")
+        clip = clip.resample(footage.fps).slice(0, 2)
+        track = fitted(chain, clip.root, clip.rotations)
+    else:
+        truth = footage.truth()
+        try:
+            names = [str(name) for name in truth["names"]]
+            turned, at = truth["orientations"][:2, person].astype(float), truth["joints"][:2, person].astype(float)
+        except (KeyError, IndexError):
+            turned, at, names = np.zeros(0), np.zeros(0), []
+        if names != list(chain.skeleton.names) or turned.shape != (2, len(names), 3, 3) or not np.isfinite(turned).all():
+            raise FootageError(f"{footage.path / 'truth.npz'}: does not say where somebody is in the first two frames; name a motion file")
+        local = turned.copy()
+        for j, parent in enumerate(chain.skeleton.parents):
+            if parent >= 0:
+                local[:, j] = np.swapaxes(turned[:, parent], -1, -2) @ turned[:, j]
+        track = fitted(chain, at[:, 0], Rotation.from_matrix(local.reshape(-1, 3, 3)).as_matrix().reshape(local.shape))
+    return Configuration(track.root[0], track.angles[0]), Configuration(track.root[1], track.angles[1])
+
+
+def seen_in(footage: Footage, number: int, person: int = 0, masks: bool = False) -> list[np.ndarray | None]:
+    """What each camera saw in a frame: pictures (H, W, 3) uint8, or masks (H, W) bool of a person; None of what was dropped."""
+    out: list[np.ndarray | None] = []
+    for lens in footage.lenses:
+        if masks:
+            found = footage.picture(lens.name, "mask", number)
+            out.append(None if found is None else found == person + 1)
+            continue
+        shown = footage.picture(lens.name, "frame", number)
+        if shown is not None and (shown.dtype != np.uint8 or shown.shape[2:] not in ((), (3,))):
+            raise FootageError(f"{footage.file(lens.name, 'frame', number)}: needs 8 bits of red, green and blue, or of grey")
+        out.append(shown)
+    return out
+
+
+def followed(footage: Footage, tracker: Tracker, start: Sequence[Configuration], person: int = 0, masks: bool = False) -> Iterator[Track]:
+    """The track after each frame from the third on; start: the poses of the first two."""
+    track = tracker.start(start[1], start[0])
+    for number in range(2, footage.frames):
+        track = tracker.step(track, seen_in(footage, number, person, masks))
+        yield track
+
+
+def error_of(footage: Footage, surface: Surface, poses: Sequence[Configuration], person: int = 0) -> np.ndarray | None:
+    """How far joints are from the truth (T, J) [m]; None where there is none."""
+    try:
+        true = footage.truth()["joints"][:, person]
+    except (FootageError, KeyError, IndexError):
+        return None
+    at = np.stack([posed(surface.chain, pose)[0] for pose in poses])
+    return np.linalg.norm(at - true, axis=-1) if true.shape == at.shape else None
+
+
+def overlaid(footage: Footage, surface: Surface, number: int, where: Configuration, height: int = 360) -> np.ndarray:
+    """All cameras' pictures of a frame side by side (H, W, 3) uint8, with the contour found there, blue, and the model's, red."""
+    from PIL import Image
+
+    vertices, row = skinned(surface, *posed(surface.chain, where)[:2]), []
+    for lens, one in zip(footage.lenses, seen_in(footage, number)):
+        mask = rendered(lens, vertices, surface.triangles).mask
+        shown = np.zeros((*mask.shape, 3), np.uint8) if one is None else one[..., None].repeat(3, -1) if one.ndim == 2 else one.copy()
+        found = [] if one is None else [(segmented(one, mask).mask, FOUND)]
+        for region, colour in (*found, (mask, MODEL)):
+            x, y = contour_of(region).pixels.astype(int).T
+            shown[y, x] = colour
+        row.append(np.asarray(Image.fromarray(shown).resize((max(round(height * lens.size[0] / lens.size[1]), 1), height))))
+    return np.concatenate(row, 1)
+
