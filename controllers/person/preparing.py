@@ -1,6 +1,6 @@
 """Compiling what a person needs, once, in programs beside a game, which finds it on disk afterwards.
 
-One program, `main("person")`, compiles all of a walk, then of a jump. Two lumps of it come from another, `main("ahead")`,
+One program, `main("person")`, compiles all of a walk, then of a jump and of walks to goals. Two lumps of it come from another, `main("ahead")`,
 which it hears on its standard input, so that two cores walk in half the time: what places feet, and how strong a body is.
 Compiling holds the interpreter's lock: threads would not do.
 """
@@ -23,9 +23,10 @@ from ..jump import Jump, rehearse
 from ..jump.body import measures
 from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
+from ..navigation import planning
 
 PARTS = ("walk", "jump")
-KERNELS = 127
+KERNELS = 153
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 
@@ -134,4 +135,5 @@ def main(part: str, library: str = "") -> None:
     measures(jump.physique, low_arms=True)
     sys.stdin.readline()  # and the strength
     rehearse(jump)
+    planning.rehearse()
     _note("jump", walker)
