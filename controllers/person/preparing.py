@@ -23,7 +23,6 @@ from ..jump import Jump, rehearse
 from ..jump.body import measures
 from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
-from ..navigation import planning
 
 PARTS = ("walk", "jump")
 KERNELS = 153
@@ -103,6 +102,13 @@ def place(walker: Locomotion) -> None:
             forward_kinematics(walker.skeleton, root, turns)
 
 
+def goals() -> None:
+    """Compile, or load, what plans a way to a goal."""
+    from ..navigation import planning  # loads what a game starts without
+
+    planning.rehearse()
+
+
 def _some(walker: Locomotion) -> tuple[Any, ...]:
     """What the parts of a step are told of: a character's memory, its body and legs, places and turns of joints, a pose,
     a time."""
@@ -135,5 +141,5 @@ def main(part: str, library: str = "") -> None:
     measures(jump.physique, low_arms=True)
     sys.stdin.readline()  # and the strength
     rehearse(jump)
-    planning.rehearse()
+    goals()
     _note("jump", walker)
