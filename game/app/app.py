@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..explain import broken, rows, told
+from ..explain import broken, on_the_way, rows
 from ..hosts import Event, KeyEvent, MouseMove, Scroll
 from ..input import DEFAULT, Bindings, Wish, help_sheet
 from ..scene import Scene
@@ -307,7 +307,7 @@ class Play:
 
     def _texts(self, moment: SessionState) -> tuple[tuple[str, ...], ...]:
         """The lines in each player's corner; what concerns all stands in the first one's."""
-        own = [(moving(moment, who), *(part for line in told(moment.after.characters[who].state) for part in broken(line)))
+        own = [(moving(moment, who), *(part for line in on_the_way(moment.after.characters[who].state) for part in broken(line)))
                for who in range(len(moment.players))]
         lines = []
         if self.past.look is not None:

@@ -6,8 +6,8 @@ from .jump import broken, explained
 from .jump_preview import Preview, preview
 from .points import RADIUS, Row, pointed, rows
 from .quality import Quality, quality_of
-from .way import led, told
+from .way import led, on_the_way
 
 __all__ = [
-    "RADIUS", "Preview", "Quality", "Row", "broken", "explained", "led", "pointed", "preview", "quality_of", "rows", "told",
+    "RADIUS", "Preview", "Quality", "Row", "broken", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows",
 ]
