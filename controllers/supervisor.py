@@ -11,6 +11,8 @@ from copy import copy
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from .body import Pose, Skeleton
 from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, seconds
 from .navigation import going
