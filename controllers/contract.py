@@ -6,6 +6,7 @@ replaying, testing and crowds need nothing more than keeping states.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -14,6 +15,9 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from .body import Pose, Skeleton
+
+HIGHEST = 1e5
+"""No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +32,35 @@ class Leap:
     airtime: float | None = None
 
 
+@dataclass(frozen=True)
+class Goal:
+    """A place to walk to, and how to stand there.
+
+    place: x, z or x, y, z [m] in the world; a height says only where it is drawn. heading: [rad], or None to look there the way one
+    comes. within: so many seconds after it was asked for the way is to end, or None for the pace that people choose.
+    ValueError for what is no place, heading or time.
+    """
+
+    place: tuple[float, ...]
+    heading: float | None = None
+    within: float | None = None
+
+    def __post_init__(self):
+        place = tuple(float(value) for value in self.place)
+        if len(place) not in (2, 3) or not all(abs(value) <= HIGHEST for value in place):
+            raise ValueError(f"a goal is x, z or x, y, z within ±{HIGHEST:g} m, got {self.place!r}")
+        if self.heading is not None and not math.isfinite(self.heading):
+            raise ValueError(f"a goal's heading must be finite [rad], or None; got {self.heading!r}")
+        if self.within is not None and not self.within > 0.0:
+            raise ValueError(f"a goal is to be reached within more than 0 s, or None; got {self.within!r}")
+        object.__setattr__(self, "place", place)  # whatever it was given as, it can be compared
+
+    @property
+    def floor(self) -> np.ndarray:
+        """The place (2,) x, z [m]."""
+        return np.array([self.place[0], self.place[-1]])
+
+
 @dataclass(frozen=True, eq=False)
 class Intent:
     """What somebody wants of a character, in the character's own ground frame.
@@ -38,6 +71,7 @@ class Intent:
     radius and height (`gambol.game.scene.scene` has both). points: (n, 3) [m] in the world, where the points on
     the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish.
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
+    goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -45,6 +79,7 @@ class Intent:
     around: Sequence[Any] = ()
     points: np.ndarray | None = None
     look: np.ndarray | None = None
+    goal: Goal | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:
@@ -72,6 +107,7 @@ class CharacterState:
     floor: (...) how high the floor lies that the character stands on [m].
     previous, elapsed: the pose a step before and that step's length [s]: how the body moves, for
     whoever takes over. None where nobody knows.
+    going: how far it is on the way to its goal, a `gambol.controllers.navigation.Going`; None where it has none.
     """
 
     ground: np.ndarray
@@ -82,6 +118,7 @@ class CharacterState:
     floor: np.ndarray | float = 0.0
     previous: Pose | None = None
     elapsed: float = 0.0
+    going: Any = None
 
     @property
     def active(self) -> str:
@@ -135,10 +172,6 @@ def seconds(dt: Any) -> float:
     return plain
 
 
-HIGHEST = 1e5
-"""No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
-
-
 def level(floor: Any) -> Any:
     """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±1e5 m."""
     sound = abs(floor) <= HIGHEST if isinstance(floor, float) else np.all(np.abs(np.asarray(floor, float)) <= HIGHEST)
@@ -169,6 +202,11 @@ class Controller(Protocol):
     def tuned(self, settings: Any) -> Controller:
         """The same controller under other settings; itself where it has none."""
         return self
+
+    def limits(self, share: float = 1.0) -> np.ndarray | None:
+        """Half-spaces (H, 4) n·(v_f, ω, v_l) + d ≤ 0 of the velocities that it walks with, and a `share` of them; None of
+        one that doesn't walk."""
+        return None
 
     def start(self, ground: Any = (0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. Unable, of one that only

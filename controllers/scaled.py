@@ -52,6 +52,11 @@ class Scaled(Controller):
         """The same under other settings."""
         return replace(self, controller=self.controller.tuned(settings))
 
+    def limits(self, share: float = 1.0) -> np.ndarray | None:
+        """The half-spaces (H, 4) of the velocities that it walks with, in its own size."""
+        planes = self.controller.limits(share)
+        return None if planes is None else planes / np.array([*self._speeds, 1.0])
+
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """Standing at x, z [m], heading, on a floor so high [m]."""
         x, z, heading = (float(v) for v in ground)

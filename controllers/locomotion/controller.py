@@ -66,6 +66,10 @@ class Locomotion(Controller):
         """The standard human that the poses are of."""
         return self.library.skeleton
 
+    def limits(self, share: float = 1.0) -> np.ndarray | None:
+        """The half-spaces (H, 4) of the velocities that it walks with, none of a library without walks."""
+        return None if self.walk is None else self.walk.half_spaces(share)
+
     def start(self, ground: ArrayLike = (0.0, 0.0, 0.0), floor: np.ndarray | float = 0.0) -> CharacterState:
         """A character at rest at ground (..., 3) x, z [m], heading [rad], on a floor (...) [m] high.
         ValueError unless finite."""

@@ -1,11 +1,12 @@
 """Getting somewhere: from a wish in the world to an intent, along a path, past what stands about."""
 
 from .goal import Following, arrived, wish
+from .navigator import SHARE, Going, going
 from .obstacles import floor_at, gap, is_box, slide, slope
 from .path_following import Path, follow
 from .steering import Reach, Steering, drift, in_world, steer, turn_towards
 
 __all__ = [
-    "Following", "Path", "Reach", "Steering", "arrived", "drift", "floor_at", "follow", "gap", "in_world", "is_box", "slide", "slope", "steer",
+    "SHARE", "Following", "Going", "Path", "Reach", "Steering", "arrived", "drift", "floor_at", "follow", "gap", "going", "in_world", "is_box", "slide", "slope", "steer",
     "turn_towards", "wish",
 ]

@@ -1,6 +1,6 @@
 """Compiling what a person needs, once, in programs beside a game, which finds it on disk afterwards.
 
-One program, `main("person")`, compiles all of a walk, then of a jump. Two lumps of it come from another, `main("ahead")`,
+One program, `main("person")`, compiles all of a walk, then of a jump and of walks to goals. Two lumps of it come from another, `main("ahead")`,
 which it hears on its standard input, so that two cores walk in half the time: what places feet, and how strong a body is.
 Compiling holds the interpreter's lock: threads would not do.
 """
@@ -25,7 +25,7 @@ from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
 
 PARTS = ("walk", "jump")
-KERNELS = 127
+KERNELS = 153
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 
@@ -102,6 +102,13 @@ def place(walker: Locomotion) -> None:
             forward_kinematics(walker.skeleton, root, turns)
 
 
+def goals() -> None:
+    """Compile, or load, what plans a way to a goal."""
+    from ..navigation import planning  # loads what a game starts without
+
+    planning.rehearse()
+
+
 def _some(walker: Locomotion) -> tuple[Any, ...]:
     """What the parts of a step are told of: a character's memory, its body and legs, places and turns of joints, a pose,
     a time."""
@@ -134,4 +141,5 @@ def main(part: str, library: str = "") -> None:
     measures(jump.physique, low_arms=True)
     sys.stdin.readline()  # and the strength
     rehearse(jump)
+    goals()
     _note("jump", walker)

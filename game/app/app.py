@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..explain import broken, rows
+from ..explain import broken, on_the_way, rows
 from ..hosts import Event, KeyEvent, MouseMove, Scroll
 from ..input import DEFAULT, Bindings, Wish, help_sheet
 from ..scene import Scene
@@ -22,6 +22,7 @@ from ..world import DT, FixedStep, Methods, World
 from .capture import Capture
 from .hands import Hands
 from .past import History
+from .pointing import Pointing
 from .held_points import HeldPoints
 from .hints import Teacher
 from .preparing import Preparing
@@ -47,7 +48,7 @@ class Play:
         self.past = History(opening(controller, players, learnt) if world is None else begin(world, players, learnt))
         self.hands, self.showing, self.kept = Hands(bindings), Showing(), Recordings(log, capture)
         self.watching = None if tape is None else Watching(tape)
-        self.held_points = HeldPoints(self.now.methods, stream)
+        self.held_points, self.pointing = HeldPoints(self.now.methods, stream), Pointing()
         self.preparing, self.teacher, self.refused = preparing, teacher, False
         self.done = self.helping = self.full_screen = self.wants_picture = False
         self.clock, self.held = FixedStep(), 0.0
@@ -106,9 +107,10 @@ class Play:
         """Take an event that is about a point under the pointer; whether it was."""
         match event:
             case MouseMove(x, y, dx, dy):
+                self.pointing.move(x, y)
                 return self.held_points.move(x, y, dx, dy, self.hands.keyboard.held("run", self.hands.bindings))
             case Scroll(dy=notches):
-                return self.held_points.scroll(notches)
+                return self.pointing.scroll(notches) or self.held_points.scroll(notches)
             case KeyEvent(key, pressed) if self.hands.grabs(key):
                 return self.held_points.grab(self.now) if pressed else self.held_points.let_go()
         return False
@@ -141,7 +143,7 @@ class Play:
 
     def _ask(self, action: str, player: int) -> None:
         """Something that the next tick is to do, unless one looks back or watches."""
-        if "=" in action and action.partition("=")[0] not in comparison.ACTIONS:
+        if "=" in action and action.partition("=")[0] not in {*comparison.ACTIONS, "goto"}:
             try:
                 settings.read(action)
             except settings.SettingError as error:
@@ -196,7 +198,7 @@ class Play:
         if self.past.look is None and not asked and self.past.kept and self.hands.holds("rewind"):
             self.past.go(0)
         if not (asked or self.past.look or self.watching):  # what is pressed may change whose the points are
-            for action in self.held_points.actions(self.now, self.now.number * DT):
+            for action in (*self.held_points.actions(self.now, self.now.number * DT), *self.pointing.actions(self.now, self._points)):
                 self._wish(Wish(pressed=(action,)))
         asked_for = self.hands.wishes(self.players)
         asked_for = asked_for if self.jumps else self._grounded(asked_for)
@@ -272,7 +274,8 @@ class Play:
         moment, fraction, cameras = self.past.seen(1.0 if halted and self.past.look is None else self.clock.alpha)
         self.previews = previews(moment, self.previews)
         views = scenes(moment, fraction, cameras, self.showing.overlays, self._texts(moment), self.previews)
-        self.held_points.look(cameras[0], size[0] / (len(views) * size[1]))
+        for one in (self.held_points, self.pointing):
+            one.look(cameras[0], size[0] / (len(views) * size[1]))
         views = (replace(views[0], figures=self.held_points.marked(views[0].figures, moment)), *views[1:])
         if self.helping:
             sheet = help_sheet(self.hands.bindings, self.hands.keyboard, self.hands.pads, self.players)
@@ -293,13 +296,19 @@ class Play:
         return views[0] if len(views) == 1 else views
 
     @property
+    def _points(self) -> bool:
+        """Whether the key is held that sends the first player to the pointer; a captured mouse points nowhere."""
+        return self.jumps and not (self.mouse_captured or self.now.paused) and self.hands.keyboard.held("go_to", self.hands.bindings)
+
+    @property
     def _taught(self) -> bool:
         """Whether somebody plays whom hints could help: nobody looks back or watches."""
         return self.past.look is None and self.watching is None
 
     def _texts(self, moment: SessionState) -> tuple[tuple[str, ...], ...]:
         """The lines in each player's corner; what concerns all stands in the first one's."""
-        own = [(moving(moment, who),) for who in range(len(moment.players))]
+        own = [(moving(moment, who), *(part for line in on_the_way(moment.after.characters[who].state) for part in broken(line)))
+               for who in range(len(moment.players))]
         lines = []
         if self.past.look is not None:
             lines += self.past.status(self.hands)

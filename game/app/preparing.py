@@ -33,7 +33,7 @@ class Preparing:
 
     @property
     def jumps(self) -> bool:
-        """Whether somebody may jump, without halting the game."""
+        """Whether somebody may jump, or be sent to a goal, without halting the game."""
         return self.loading is not None and not self.loading.is_alive()
 
     @property
@@ -64,3 +64,4 @@ class Preparing:
 def _load(jump: Any) -> None:
     if jump is not None:
         rehearse(jump)
+    preparing.goals()

@@ -22,7 +22,7 @@ class Signals:
     """N steps of one character, oldest first; the last is the moment looked at. All in its own body's size.
 
     numbers: (N,) of the steps. asked, blended, achieved: (N, 3) v_f, ω, v_l [m/s, rad/s, m/s]; what
-    the hands ask for, what the blended primitives have, how the root moves. phase: (N,) of the gait.
+    the hands ask for, or a plan to a goal, what the blended primitives have, how the root moves. phase: (N,) of the gait.
     contacts: (N, 4) bool. NaN where the active controller has no such thing.
     """
 
@@ -90,4 +90,6 @@ def _row(world: World, who: int) -> np.ndarray:
     share = weights(character)
     blend, phase = (np.full(3, np.nan), np.nan) if share is None else \
         (share @ character.controller.library.velocities * own(whole), character.state.memory["phase"])
-    return np.concatenate([[world.number], whole.intent.velocity, blend, state.velocity, [phase], state.contacts])
+    way = state.going
+    asked = whole.intent.velocity if way is None else way.plan.at(way.time)[1]
+    return np.concatenate([[world.number], asked, blend, state.velocity, [phase], state.contacts])

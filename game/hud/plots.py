@@ -25,7 +25,7 @@ def draw(signals: Signals, scale: float) -> None:
     for number, (name, colour, _) in enumerate(CURVES):
         if number:
             imgui.same_line(0.0, 14 * scale)
-        imgui.text_colored(imgui.ImVec4(*colour), name)
+        imgui.text_colored(imgui.ImVec4(*colour), "asked or planned" if name == "asked" else name)
     imgui.same_line(0.0, 14 * scale)
     imgui.text_disabled(f"last {SPAN:.0f} s")
     width, room = imgui.get_content_region_avail()

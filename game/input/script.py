@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Intent, Leap
+from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status
 from gambol.controllers.navigation import Path, follow, steer
 
 from .pilot import STEERING
@@ -47,7 +47,7 @@ class Move:
     velocity, until: v_f [m/s], ω [rad/s], v_l [m/s] at the beginning and the end, linear between.
     points: x, z [m] to walk along from wherever the character is, instead of `velocity`.
     speed: [m/s] along them. facing: a heading to hold [rad], or None. jump: what it ends with;
-    until it can begin, the rest of the move goes on.
+    until it can begin, the rest of the move goes on. goal: where to go instead, as it is planned.
     """
 
     seconds: float
@@ -57,6 +57,7 @@ class Move:
     speed: float = 1.2
     facing: float | None = None
     jump: Jump | None = None
+    goal: Goal | None = None
 
     @property
     def runs(self) -> bool:
@@ -69,7 +70,7 @@ class Script:
     """Where somebody is in a list of moves.
 
     steps: made of the current move. path, progress: along it. asked: for how many steps its jump was
-    asked for; jumped: whether it began. refused: why jumps were not made, so far.
+    asked for; jumped: whether it began. refused: why jumps were not made and places not reached, so far.
     """
 
     moves: tuple[Move, ...]
@@ -108,6 +109,9 @@ class Script:
             where = "up" if jump.place is None else "to ({:g}, {:g}, {:g})".format(*jump.place)
             why = state.refused or "it never came to where it could jump from"
             refused = (*refused, f"no jump {where}: {why}")
+        goal, way = self.moves[self.index].goal, _way(self.moves[self.index], state)
+        if goal is not None and way is not None and way.reason:
+            refused = (*refused, "no way to ({:g}, {:g}): {}".format(*goal.place, way.reason))
         return Script(self.moves, self.index + 1, refused=refused)
 
     def _over(self, state: CharacterState, dt: float) -> bool:
@@ -119,11 +123,16 @@ class Script:
             return True
         if move.jump is not None and not move.runs:
             return self.asked * dt > PATIENCE and (now is None or now.landed)
+        way = _way(move, state)
+        if way is not None:
+            return self.steps > 0 and way.kind != "running"
         if move.points:
             return self.steps > 0 and (self.path is None or self.progress >= self.path.length - ARRIVED)
         return False
 
     def _ask(self, move: Move, state: CharacterState, dt: float) -> tuple[Script, Intent]:
+        if move.goal is not None:
+            return self, Intent(goal=move.goal)
         if not move.points:
             if move.facing is not None:
                 return self, steer(state.ground, np.zeros(2), move.facing, state.velocity[1], STEERING)
@@ -162,6 +171,11 @@ class Script:
 def jumping(state: CharacterState) -> Any:
     """What somebody who jumps remembers of it; None for everybody else."""
     return state.memory.memory if state.active == "jump" else None
+
+
+def _way(move: Move, state: CharacterState) -> Status | None:
+    """How the walk to a move's goal stands; None where that is not what it is about."""
+    return state.going.status if move.goal is not None and state.going is not None and state.going.goal == move.goal else None
 
 
 def _from_here(ground: np.ndarray, points) -> Path | None:

@@ -16,9 +16,10 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.jump import GRAVITY
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import built
+from gambol.controllers.supervisor import Supervisor
 
 from ..camera import between
-from ..explain import broken, explained, pointed, rows
+from ..explain import broken, explained, led, pointed, rows
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
@@ -68,6 +69,8 @@ def opening(scenario: Scenario, controller: Any) -> World:
             someone, jumper = controller, actor.jumper(scenario.gravity)
             if actor.body is not None or jumper.gravity[1] != EARTH:
                 someone = built(controller, jumper.physique, jumper.gravity)
+            if not someone.parts and any(move.go_to is not None for move in actor.moves):
+                someone = Supervisor({"locomotion": someone})  # which plans the way
             x, z, heading = actor.start
             state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
             cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor),
@@ -99,7 +102,7 @@ class Act:
 
     @property
     def refused(self) -> tuple[str, ...]:
-        """The jumps that were not made so far, and why: a line for each."""
+        """The jumps that were not made and places that were not reached so far, and why: a line for each."""
         return tuple(f"{character.name}: {why}" for character, script in zip(self.world.characters, self.scripts)
                      for why in script.refused)
 
@@ -154,7 +157,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
             corner = part[0] == 0.0 and part[1] == lowest
             title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
             text = ((title,) if title else ()) + (why if not made else ())
-            people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
+            people = led(pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over), after, over)
             made.append(Scene(camera, people, after.props, over, text, caption=caption if corner else None, part=part))
         lines = rows(before) if any(scene.overlays.errors for scene in made) else ()
         if lines or old.shot.panels:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.jump import Jump as JumpController
 from gambol.controllers.jump.body import airtime_up
 from gambol.controllers.navigation import floor_at
@@ -17,8 +17,15 @@ from ..scene import Prop
 from .fields import Airtime, Degrees, Length, Pace, Place, Point, Seconds, Table, Velocity
 
 
+KINDS = ("velocity", "walk_to", "go_to", "path", "stop", "jump_to", "jump")
+"""What a move may be."""
+
+
 class MoveTable(Table):
-    """One move: exactly one of velocity, walk_to, path, stop, jump_to and jump. Angles in degrees.
+    """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to and jump. Angles in degrees.
+
+    walk_to: x, z [m], straight there. go_to: x, z [m] as people go there, round what stands about, to stand there with a `heading`, by
+    default as it comes; arrive: no later than this after the move began [s].
 
     jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
     velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
@@ -29,6 +36,9 @@ class MoveTable(Table):
     velocity: Velocity | None = None
     until: Velocity | None = None
     walk_to: Point | None = None
+    go_to: Point | None = None
+    heading: Degrees | None = None
+    arrive: Seconds | None = None
     path: Annotated[tuple[Point, ...], Field(min_length=1)] | None = None
     stop: Literal[True] | None = None
     jump_to: Place | None = None
@@ -40,17 +50,17 @@ class MoveTable(Table):
 
     @model_validator(mode="after")
     def _one_thing(self):
-        kinds = [k for k in ("velocity", "walk_to", "path", "stop", "jump_to", "jump") if getattr(self, k) is not None]
+        kinds = [k for k in KINDS if getattr(self, k) is not None]
         feet = [k for k in kinds if k in ("velocity", "walk_to", "path")]
         if len(kinds) != 1 and not (len(kinds) == 2 and "jump_to" in kinds and feet):
-            raise ValueError("needs exactly one of velocity, walk_to, path, stop, jump_to, jump, or jump_to with a run-up; "
+            raise ValueError(f"needs exactly one of {', '.join(KINDS)}, or jump_to with a run-up; "
                              f"has {' and '.join(kinds) or 'none'}")
         walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump")
         for name, fits, with_ in (("airtime", self.jump_to is not None, "jump_to; a jump has its height"),
                                   ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
             if getattr(self, name) is not None and not fits:
                 raise ValueError(f"`{name}` goes with {with_}")
-        if self.seconds is None and not walks and not (jumps and not feet):
+        if self.seconds is None and not walks and not (jumps and not feet) and self.go_to is None:
             raise ValueError(f"{kinds[0]} needs `for`, how many seconds it lasts")
         if self.until is not None and kinds[0] != "velocity":
             raise ValueError("`until` goes with velocity: where it has changed to at the end")
@@ -60,6 +70,11 @@ class MoveTable(Table):
             raise ValueError("`facing` goes with walk_to, path or stop; velocity has its own ω")
         if self.facing is not None and jumps:
             raise ValueError("`facing` goes with walk_to, path or stop; who jumps faces where it goes")
+        if self.facing is not None and self.go_to is not None:
+            raise ValueError("`facing` goes with walk_to, path or stop; who goes to a place turns as people do, and stands there with a `heading`")
+        for name in ("heading", "arrive"):
+            if getattr(self, name) is not None and self.go_to is None:
+                raise ValueError(f"`{name}` goes with go_to")
         for name in ("velocity", "until"):
             value = getattr(self, name)
             if value is not None and abs(value[2]) > abs(value[0]) + 1e-9:
@@ -82,7 +97,8 @@ class MoveTable(Table):
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
                     until=None if self.until is None else _forward(self.until),
                     points=points, speed=self.speed or 1.2,
-                    facing=None if self.facing is None else math.radians(self.facing), jump=leap)
+                    facing=None if self.facing is None else math.radians(self.facing), jump=leap,
+                    goal=None if self.go_to is None else Goal(self.go_to, None if self.heading is None else math.radians(self.heading), self.arrive))
 
 
 def _forward(velocity) -> tuple[float, float, float]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
+
+from gambol.controllers.contract import Goal
 
 from ..camera import Follow, cycled
 from ..input import Aim, Pilot
@@ -15,7 +18,7 @@ from .state import TINTS, SessionState, Player, newcomer, owners
 SLOWER = (1, 2, 4, 10)
 """Slow motion: how many ticks one step of the world takes."""
 ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"))
-"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", and `comparison.ACTIONS`."""
+"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", where to go, `goal_of`, and `comparison.ACTIONS`."""
 
 
 def done(moment: SessionState, who: int, action: str) -> SessionState:
@@ -24,6 +27,8 @@ def done(moment: SessionState, who: int, action: str) -> SessionState:
     player = moment.players[who]
     if name in comparison.ACTIONS:
         return _compared(moment, action)
+    if name == "goto":
+        return _with(moment, who, replace(player, goal=goal_of(action)))
     if equals and name != "back":
         return _tuned(moment, who, action)
     if name == "pause":
@@ -46,6 +51,21 @@ def done(moment: SessionState, who: int, action: str) -> SessionState:
     return moment
 
 
+def goal_of(action: str) -> Goal | None:
+    """Where "goto=x/z" [m] sends a character, "goto=x/z/heading" [degrees] to stand there so; "goto=" sends it nowhere.
+    SettingError for what is no place."""
+    text = action.partition("=")[2]
+    if not text:
+        return None
+    try:
+        numbers = [float(part) for part in text.split("/")]
+        if len(numbers) not in (2, 3):
+            raise ValueError("two or three numbers")
+        return Goal(tuple(numbers[:2]), math.radians(numbers[2]) if len(numbers) == 3 else None)
+    except ValueError as error:
+        raise settings.SettingError(f"{action}: needs x/z [m] or x/z/heading [degrees]; {error}") from None
+
+
 def _with(moment: SessionState, who: int, player: Player) -> SessionState:
     return replace(moment, players=moment.players[:who] + (player,) + moment.players[who + 1:])
 
@@ -58,7 +78,7 @@ def _reset(moment: SessionState) -> SessionState:
     players = []
     for old, character in zip(moment.players, world.characters):
         camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
-        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim()))
+        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim(), goal=None))
     return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0),
                      None if moment.comparison is None else replace(moment.comparison, pins=None))
 

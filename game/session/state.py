@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from gambol.controllers.contract import Goal
 from gambol.controllers.navigation import Steering
 
 from ..camera import Follow, PlayerCamera, between
@@ -24,13 +25,15 @@ TINTS = (TINT, (0.20, 0.46, 0.72))
 
 @dataclass(frozen=True, eq=False)
 class Player:
-    """One pair of hands: its pilot, how it steers, where it aims, its camera now and (`last`) a tick ago."""
+    """One pair of hands: its pilot, how it steers, where it aims, its camera now and (`last`) a tick ago. goal: where its character
+    is sent, until the hands ask for something else."""
 
     pilot: Pilot
     camera: PlayerCamera
     last: PlayerCamera
     steering: Steering = STEERING
     aim: Aim = Aim()
+    goal: Goal | None = None
 
     @staticmethod
     def behind(character: Character) -> Player:

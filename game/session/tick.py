@@ -7,6 +7,7 @@ window, a film of a log and the tests play the same game, to the bit.
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -69,12 +70,13 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
         camera = player.camera.turned(command.swing * DT) if command.swing else player.camera
-        players.append(replace(player, pilot=pilot, camera=camera, aim=aim))
+        goal = None if math.hypot(*wish.move) > 0.0 or wish.turn or aim.stands or wish.jump else player.goal  # hands take over at once
+        players.append(replace(player, pilot=pilot, camera=camera, aim=aim, goal=goal))
         props = moment.after.props
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
         leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
-        intents.append(replace(command.intent(state, player.steering), leap=leap))
+        intents.append(replace(command.intent(state, player.steering), leap=leap, goal=goal))
     held = None if moment.comparison is None else moment.comparison.goals
     intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)

@@ -196,14 +196,16 @@ def pose_between(before: Pose, after: Pose, alpha: float) -> Pose:
 def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> tuple[Figure, ...]:
     """What to draw of the characters between two worlds.
 
-    predict: seconds of the path ahead, if each character keeps the velocity it was asked for.
+    predict: seconds of the path ahead, if each character keeps the velocity it was asked for; who goes to a goal has all of the plan ahead.
     """
     drawn = []
     for old, new in zip(before.characters, after.characters):
         pose = pose_between(old.state.pose, new.state.pose, alpha)
         positions, orientations = forward_kinematics(new.controller.skeleton, pose.root, pose.rotations)
         ground = ground_between(old.state, new.state, alpha)
-        ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16))
+        way = new.state.going
+        ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16)) if way is None else \
+            np.vstack([ground, way.plan.at(np.linspace(min(way.time, way.plan.seconds), way.plan.seconds, 48))[0]])
         lift = float(new.state.floor) + FLOOR_LIFT
         here = np.array([[ground[0], lift, ground[1]]])
         contacts = (old if alpha < 0.5 else new).state.contacts

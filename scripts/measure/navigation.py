@@ -19,25 +19,24 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
-from _plots import pictures, pyplot
+from _navigation import CLEARANCE, RECORDED, SETS, around_the_start, draw_rooms
+from _plots import pictures
 
 from gambol.controllers.body import wrap
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import arrived, wish
 from gambol.controllers.navigation.identification import likeness, planned_like, read_paths, straight
-from gambol.controllers.navigation.planning import FREE, HUMAN, PUBLISHED, plan
+from gambol.controllers.navigation.planning import FREE, plan
 from gambol.controllers.navigation.routes import distance, grid_way, shapes_of
+from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box, Pillar
 
 ROOT = Path(__file__).resolve().parents[2]
-RECORDED = ROOT.parent / "shared" / "human_paths" / "human_paths.npz"
-CLEARANCE = 0.30
 SWEPT = 1e-3
 """A disc this much smaller [m] than the clearance is swept: grazing is no collision."""
 SHARE = 0.9
 """What is left of the library's velocities [share] serves to catch up."""
-SETS = {"published": PUBLISHED, "human": HUMAN}
 HARD = [(0.0, 3.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (-1.5, 1.0, -np.pi), (0.0, 0.5, np.pi), (0.0, 0.0, np.pi)]
 """Goals ahead, behind, at the side, turned round and on the spot."""
 
@@ -170,53 +169,40 @@ def followed(walker, count: int, rng) -> None:
               f"{late.mean():.1f} s after the plan's end, worst {late.max():.1f} s", flush=True)
 
 
-def draw_rooms(drawn, path: Path) -> None:
-    """Plans in rooms, the disc of the clearance along them."""
-    plt = pyplot()
-    figure, axes = plt.subplots(3, 4, figsize=(16, 12))
-    for axis, (shapes, made) in zip(axes.flat, drawn):
-        for x, z, half, long, heading, radius in shapes:
-            if radius > 0:
-                axis.add_patch(plt.Circle((x, z), radius, color="0.6"))
-            else:
-                c, s = np.cos(heading), np.sin(heading)
-                axis.fill(*[[x + a * c * half + b * s * long for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))],
-                            [z - a * s * half + b * c * long for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))]], color="0.6")
-        _, ground, _ = made.sampled(40)
-        for place in ground:
-            axis.add_patch(plt.Circle(place[:2], CLEARANCE, color="tab:blue", alpha=0.07))
-        _arrows(axis, ground, "tab:blue")
-        axis.set(aspect="equal", xlim=(4.5, -4.5), ylim=(-4.5, 4.5), title=f"{made.seconds:.1f} s")
-    figure.savefig(path)
-    plt.close(figure)
-
-
-def _arrows(axis, ground, colour) -> None:
-    axis.plot(ground[:, 0], ground[:, 1], color=colour)
-    axis.quiver(ground[:, 0], ground[:, 1], np.sin(ground[:, 2]), np.cos(ground[:, 2]), color=colour, angles="xy", scale=25, width=0.004)
-
-
-def around_the_start(limits, folder: Path) -> None:
-    """Ten goals about the start, as figure 13 of Truong 2010 shows one; beside people's walks, moved to begin where the plans do."""
-    plt = pyplot()
-    figure, axes = plt.subplots(1, 3, figsize=(18, 6))
-    for axis, (name, weights) in zip(axes, SETS.items()):
-        for k in range(10):
-            angle = 2 * np.pi * k / 10
-            made = plan(np.zeros(3), (2 * np.sin(angle), 2 * np.cos(angle), 0.0), weights=weights, limits=limits)
-            _arrows(axis, made.sampled(25)[1], f"C{k}")
-        axis.set(aspect="equal", title=f"ten goals at 2 m, {name} weights, all to face up")
-        axis.invert_xaxis()
-    if RECORDED.exists():
-        paths = read_paths(RECORDED)
-        for n in range(len(paths)):
-            axes[2].plot(*(paths.places[n] - paths.goals[n, :2]).T, color="black", lw=1.5)
-            made = plan(paths.starts[n] - [*paths.goals[n, :2], 0], (0.0, 0.0, paths.goals[n, 2]), limits=limits)
-            _arrows(axes[2], made.sampled(15)[1], "tab:blue")
-        axes[2].set(aspect="equal", title="people (black) and plans to where they went, to face up")
-        axes[2].invert_xaxis()
-    figure.savefig(folder / "goals.png")
-    plt.close(figure)
+def sent(walker, count: int, seed: int) -> None:
+    """How somebody who is told a goal among ten things follows his plans and arrives, under a supervisor, with plans of his own."""
+    someone, rng = Supervisor({"locomotion": walker}), np.random.default_rng(seed)
+    rows, failed, steps, planned, near = [], [], [], [], []
+    while len(rows) + len(failed) < count:
+        things = tuple(room(rng))
+        shapes = shapes_of(things)
+        start, goal = ((*rng.uniform(-3.5, 3.5, 2), rng.uniform(-np.pi, np.pi)) for _ in range(2))
+        if np.hypot(start[0] - goal[0], start[1] - goal[1]) < 1.0 or nearest(np.array([start[:2], goal[:2]]), shapes) < CLEARANCE:
+            continue
+        state, asked, off, way, plans = someone.start(start), Goal(goal[:2], goal[2]), [], [], 0
+        for _ in range(60 * 40):
+            begun = time.process_time()
+            state, _ = someone.step(state, Intent(goal=asked, around=things), 1 / 60)
+            (planned if state.going.plans > plans else steps).append(1e3 * (time.process_time() - begun))
+            plans, made = state.going.plans, state.going
+            if someone.status(state).kind != "running":
+                break
+            where, _ = made.plan.at(made.time)
+            off.append((np.hypot(*(where - state.ground)[:2]), abs(wrap(where[2] - state.ground[2]))))
+            way.append(state.ground[:2])
+        if someone.status(state).kind != "done":
+            failed.append(someone.status(state).reason or "not there after 40 s")
+            continue
+        last = made.plan.goal - state.ground
+        rows.append((*np.mean(off, 0), *np.max(off, 0), np.hypot(*last[:2]), abs(wrap(last[2])), plans))
+        near.append(nearest(np.array(way), shapes))
+    place, heading, worst_place, worst_heading, end, end_heading, plans = np.array(rows).T
+    print(f"sent among ten things: {len(rows)} of {count} arrived; off the plan {100 * place.mean():.1f} cm, {np.degrees(heading.mean()):.1f}° (worst moment "
+          f"{100 * worst_place.max():.1f} cm, {np.degrees(worst_heading.max()):.1f}°); at the goal worst {100 * end.max():.1f} cm, {np.degrees(end_heading.max()):.1f}°; "
+          f"{int(plans.sum())} plans; the middle of the body never nearer to anything than {100 * min(near):.1f} cm; a step {np.median(steps):.2f} ms, one that plans "
+          f"{np.median(planned):.1f} ms, worst {max(planned):.1f} ms")
+    for why in sorted(set(failed)):
+        print(f"  failed, {failed.count(why)}: {why}")
 
 
 def main() -> None:
@@ -237,6 +223,7 @@ def main() -> None:
     if given.plots:
         around_the_start(limits, given.plots)
     followed(walker, 10 if given.quick else 50, rng)
+    sent(walker, 10 if given.quick else 50, given.seed)
     rooms(limits, 40 if given.quick else given.scenes, given.seed, given.plots)
     costs(limits, 3 if given.quick else 25, rng)
 

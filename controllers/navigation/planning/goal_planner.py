@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -96,6 +96,17 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
     for near, tasks in same.values():
         _solve(found, tasks, grounds, velocities, goals, weights, planes, near, shapes, clearance, top)
     return [one for one in found if one is not None]
+
+
+class _Post(NamedTuple):
+    foot: tuple[float, float, float] = (0.5, 0.0, 0.5)
+    radius: float = 0.1
+    height: float = 1.0
+
+
+def rehearse() -> None:
+    """A plan that nobody needs, past a post, so that what it compiles or loads does not halt a game."""
+    plan(np.zeros(3), (1.0, 1.0, 1.0), limits=np.array([[1.0, 0.0, 0.0, -2.0]]), around=(_Post(),))
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:

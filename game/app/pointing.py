@@ -1,0 +1,68 @@
+"""Sending a character to the place on the floor that the pointer is over, as actions that a log keeps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..scene import Camera
+from ..session import SessionState
+from .point_picking import unproject
+
+FARTHEST = 60.0
+"""Nobody is sent farther away than this [m]."""
+NOTCH = 15
+"""What a notch of the wheel turns the heading at the goal by [degrees]."""
+EVERY = 6
+"""While it is dragged, a goal moves at most every so many ticks: each time the way is planned anew."""
+
+
+class Pointing:
+    """The pointer over the floor while the key is held that sends somebody there. heading: at the goal [degrees]; None as one comes."""
+
+    def __init__(self):
+        self.camera: Camera | None = None
+        self.aspect, self.pointer = 1.0, (0.0, 0.0)
+        self.held, self.waited = False, EVERY
+        self.heading: int | None = None
+        self.asked: tuple[tuple[float, float], int | None] | None = None
+
+    def look(self, camera: Camera, aspect: float) -> None:
+        """How the floor is seen from now on. aspect: width over height of the picture that has it."""
+        self.camera, self.aspect = camera, aspect
+
+    def move(self, x: float, y: float) -> None:
+        """The pointer is at x, y, in heights of the picture."""
+        self.pointer = (x, y)
+
+    def scroll(self, notches: float) -> bool:
+        """The wheel; whether it turns the heading at a goal that is held."""
+        if self.held and notches:
+            self.heading = ((self.heading or 0) + round(math.copysign(max(abs(notches), 1.0), notches)) * NOTCH) % 360
+        return self.held
+
+    def actions(self, now: SessionState, held: bool) -> list[str]:
+        """What the hands ask for in this tick; held: whether the key is down."""
+        if held and not self.held:
+            self.heading, self.asked, self.waited = None, None, EVERY
+        self.held, self.waited = held, self.waited + 1
+        now_asked = (self.pointer, self.heading)
+        if not held or self.waited < EVERY or now_asked == self.asked:  # a camera that moves drags nothing
+            return []
+        place = self.place(float(now.after.characters[0].state.floor))
+        if place is None:
+            return []
+        self.asked, self.waited = now_asked, 0
+        return ["goto={:.2f}/{:.2f}".format(*place) + ("" if self.heading is None else f"/{self.heading}")]
+
+    def place(self, floor: float) -> tuple[float, float] | None:
+        """Where x, z [m] the pointer is on a floor so high [m]; None above the horizon, or too far away."""
+        if self.camera is None:
+            return None
+        eye = np.asarray(self.camera.eye, float)
+        along = unproject(self.camera, self.aspect, np.array([*self.pointer, 1.0])) - eye
+        if along[1] > -1e-6:
+            return None
+        way = along * (floor - eye[1]) / along[1]
+        return (float(eye[0] + way[0]), float(eye[2] + way[2])) if way[1] < 0.0 and float(np.hypot(way[0], way[2])) < FARTHEST else None
