@@ -82,13 +82,13 @@ def going(state: CharacterState, intent: Intent, limits: Callable[[float], np.nd
     limits: gives the half-spaces (H, 4) of a share of what is walked, or None where nobody walks. walks: whether he does now; who jumps
     doesn't, and goes on afterwards. dt: the step that is to be made [s].
     """
-    goal, now = intent.goal, state.going
+    goal = intent.goal
+    now: Going | None = state.going
     if goal is None:
         return None, intent
     if not walks:
         return now, replace(intent, velocity=np.zeros(3))
-    known = now is not None and now.goal == goal
-    if not known:
+    if now is None or now.goal != goal:
         now = _begun(state, intent, goal, limits(SHARE), now)
     elif _changed(now, intent.around, float(state.floor)):
         now = _again(now, state, intent, limits(SHARE), anew=True)
@@ -114,7 +114,7 @@ def _astray(now: Going, state: CharacterState) -> bool:
     if now.there:
         return not _within(now, state, AWAY)
     off = now.plan.at(now.time)[0] - state.ground
-    return math.hypot(off[0], off[1]) > OFF[0] or abs(wrap(off[2])) > OFF[1] or now.time > now.plan.seconds + LATE
+    return math.hypot(off[0], off[1]) > OFF[0] or abs(float(wrap(off[2]))) > OFF[1] or now.time > now.plan.seconds + LATE
 
 
 def _within(now: Going, state: CharacterState, near: tuple[float, float]) -> bool:
