@@ -24,7 +24,8 @@ class Manners(NamedTuple):
     horizon: no collision may come for so long; soon: who are too near part within this. halflife: of the spring by which legs
     take up a wish. aside: what each leaves between bodies beside their radii, and wall beside what stands about; brake: how
     long it takes to come as near to that. hurry: who avoids others goes this much faster than he wishes at most; stir: who wishes for less goes
-    this fast at most [m/s]. right: how far beside head-on [sine] people still pass on the right. sight: what lies farther off the way one looks than
+    this fast at most [m/s]. right: how far beside head-on [sine] people still pass on the right,
+    and first: likewise where they cross, lest both dither. sight: what lies farther off the way one looks than
     this [rad] is not seen, unless it is nearer than `felt`. see: nobody farther is looked at, and of those the `most` nearest.
     still: who wishes for less than about this [m/s] leaves it to others to go round him.
     """
@@ -38,6 +39,7 @@ class Manners(NamedTuple):
     hurry: float = 1.15
     stir: float = 0.4
     right: float = 0.2
+    first: float = 0.03
     sight: float = math.radians(100.0)
     felt: float = 0.7
     see: float = 6.0
@@ -87,7 +89,6 @@ def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, mann
     planes = np.empty((near.shape[1] + shapes.shape[0], 4))
     other, best, slope = np.empty_like(planes), np.empty(2), np.empty(3)
     for i in range(count):
-        x, z = places[i, 0] + late * velocities[i, 0], places[i, 1] + late * velocities[i, 1]
         vx, vz = velocities[i, 0], velocities[i, 1]
         speed = math.hypot(wishes[i, 0], wishes[i, 1])
         fastest = max(manners.hurry * speed, manners.stir)
@@ -105,13 +106,16 @@ def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, mann
             j = near[i, k]
             if j == count or j == i:
                 continue
-            share = _share(i, j, places, wishes, headings, manners)
-            px, pz = places[j, 0] + late * velocities[j, 0] - x, places[j, 1] + late * velocities[j, 1] - z
+            mine, yours = _care(i, j, places, wishes, headings, manners), _care(j, i, places, wishes, headings, manners)
+            if mine == 0.0:
+                continue
+            apart = radii[i] + radii[j] + 2.0 * manners.aside
+            px, pz = _meeting(places[j, 0] - places[i, 0], places[j, 1] - places[i, 1], late * (velocities[j, 0] - vx), late * (velocities[j, 1] - vz), apart)
             if px == 0.0 and pz == 0.0:
                 px = 1e-3 if i < j else -1e-3
             facing = vx * velocities[j, 0] + vz * velocities[j, 1] < 0.0
-            half_plane(px, pz, vx - velocities[j, 0], vz - velocities[j, 1], radii[i] + radii[j] + 2.0 * manners.aside,
-                       manners.horizon, manners.soon, share, manners.right if facing else 0.0, planes[number])
+            half_plane(px, pz, vx - velocities[j, 0], vz - velocities[j, 1], apart, manners.horizon,
+                       manners.soon, mine / (mine + yours), manners.right if facing else manners.first, planes[number])
             planes[number, 0] += vx
             planes[number, 1] += vz
             number += 1
@@ -122,10 +126,18 @@ def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, mann
 
 
 @kernel
-def _share(i, j, places, wishes, headings, manners):
-    """How much of avoiding each other is i's; what is left is j's."""
-    mine, yours = _care(i, j, places, wishes, headings, manners), _care(j, i, places, wishes, headings, manners)
-    return mine / (mine + yours) if mine + yours > 0.0 else 0.5
+def _meeting(px, pz, dx, dz, apart):
+    """Where (px, pz) is [m] once both have taken up their wishes, (dx, dz) later; on the way there, if they come too near before."""
+    square = dx * dx + dz * dz
+    t = min(max(-(px * dx + pz * dz) / square, 0.0), 1.0) if square > 0.0 else 1.0
+    qx, qz = px + t * dx, pz + t * dz
+    near = math.hypot(qx, qz)
+    if near > apart:
+        return px + dx, pz + dz
+    if near < 0.3 * apart:  # the side they would pass on says little: away from where the other is
+        far = math.hypot(px, pz)
+        return (px * near / far, pz * near / far) if far > 0.0 else (0.0, 0.0)
+    return qx, qz
 
 
 @kernel

@@ -23,8 +23,8 @@ def half_plane(px, pz, vx, vz, apart, horizon, soon, share, right, plane):
     """The velocities that ORCA leaves to A beside B (section 4.2), relative to A's own; plane: (4,) for them.
 
     px, pz: from A to B [m]. vx, vz: A's velocity less B's [m/s]. apart: the sum of their radii [m]. horizon: for how long
-    no collision may come [s]; soon: who overlap part within this [s]. share: how much of the change that it takes is A's (the paper: half). right: how
-    far beside head-on [sine] they still pass each other on the right.
+    no collision may come [s]; soon: who overlap part within this [s]. share: how much of the change that it takes, or of the room
+    that is left, is A's (the paper: half). right: how far beside head-on [sine] they still pass each other on the right.
     """
     square = px * px + pz * pz
     if square > apart * apart:
@@ -41,14 +41,13 @@ def half_plane(px, pz, vx, vz, apart, horizon, soon, share, right, plane):
                 dx, dz = -(px * leg + pz * apart) / square, (px * apart - pz * leg) / square
             nx, nz = -dz, dx
             far = -(vx * nx + vz * nz)
-    else:
-        wx, wz = vx - px / soon, vz - pz / soon
-        length = math.hypot(wx, wz)
+    else:  # away from each other, never through
+        length = math.sqrt(square)
         if length > PARALLEL:
-            nx, nz = wx / length, wz / length
+            nx, nz = -px / length, -pz / length
         else:
             nx, nz = 1.0, 0.0
-        far = apart / soon - length
+        far = (apart - length) / soon - (vx * nx + vz * nz)
     plane[0], plane[1], plane[2], plane[3] = share * far * nx, share * far * nz, nx, nz
 
 
