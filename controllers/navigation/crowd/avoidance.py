@@ -27,14 +27,15 @@ class Manners(NamedTuple):
     this fast at most [m/s]. right: how far beside head-on [sine] people still pass on the right,
     and first: likewise where they cross, lest both dither. sight: what lies farther off the way one looks than
     this [rad] is not seen, unless it is nearer than `felt`. see: nobody farther is looked at, and of those the `most` nearest.
-    still: who wishes for less than about this [m/s] leaves it to others to go round him.
+    still: who wishes for less than about this [m/s] leaves it to others to go round him. differ: by how much
+    people differ in giving way, told from their numbers, so that no two wait for each other for ever; below 1.
     """
 
-    horizon: float = 3.0
+    horizon: float = 2.2
     soon: float = 0.5
     halflife: float = 0.22
     aside: float = 0.08
-    wall: float = 0.06
+    wall: float = 0.10
     brake: float = 0.4
     hurry: float = 1.15
     stir: float = 0.4
@@ -45,6 +46,7 @@ class Manners(NamedTuple):
     see: float = 6.0
     most: int = 12
     still: float = 0.3
+    differ: float = 0.5
 
 
 def lag(halflife: float) -> float:
@@ -148,4 +150,5 @@ def _care(i, j, places, wishes, headings, manners):
     if far > manners.felt and math.sin(headings[i]) * dx + math.cos(headings[i]) * dz < math.cos(manners.sight) * far:
         return 0.0
     speed = math.hypot(wishes[i, 0], wishes[i, 1])
-    return 0.1 + speed / (speed + manners.still)
+    temper = 1.0 + manners.differ * (2.0 * ((0.6180339887498949 * (i + 1)) % 1.0) - 1.0)
+    return temper * (0.1 + speed / (speed + manners.still))
