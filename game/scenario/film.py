@@ -25,6 +25,7 @@ from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
 from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods
 from .actor_table import ActorTable
+from .avoiding import avoiding
 from .camera_operator import Operator
 from .scenario import Scenario
 from .shot_table import ShotTable, overlays, parts
@@ -117,7 +118,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
         moves = [script.step(character.state, DT) if character.there(world.number) else (script, Intent())
                  for script, character in zip(scripts, world.characters)]
         scripts = tuple(script for script, _ in moves)
-        world = world.step([intent for _, intent in moves])
+        intents = [intent for _, intent in moves]
+        world = world.step(avoiding(world, intents) if scenario.avoid else intents)
 
 
 def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:

@@ -30,7 +30,7 @@ class Scenario(Table):
 
     title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
     pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. stage: what
-    stands there beside its own props. poster: the moment [s] that stands for the film. database: what the methods of
+    stands there beside its own props. avoid: actors who walk avoid each other. poster: the moment [s] that stands for the film. database: what the methods of
     those who follow points learn from; Gambol's own motion by default.
     """
 
@@ -42,6 +42,7 @@ class Scenario(Table):
     overlays: Shown = ("mesh",)
     gravity: Gravity = 9.81
     stage_name: Annotated[str, one_of(STAGES)] | None = Field(None, alias="stage")
+    avoid: bool = False
     poster: Moment | None = None
     database: Annotated[str, AfterValidator(beside_the_file)] | None = None
     shots: Annotated[tuple[ShotTable, ...], Field(min_length=1)] = (ShotTable(),)
