@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
+from sampling import BATCHES, KINDS
+
 for name, same in (("gambol", True), ("seek", False)):  # a busy machine breaks no law, and fixtures here are values
     settings.register_profile(name, derandomize=same, database=None, deadline=None, print_blob=True,
                               suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
@@ -30,6 +32,18 @@ def shared() -> Path:
     if not (SHARED / "mocap").is_dir():
         pytest.skip("no ../shared/mocap beside the project: recorded motion is not to be had here")
     return SHARED
+
+
+@pytest.fixture(params=KINDS)
+def kind(request):
+    """Of which kind the sampled rotations are."""
+    return request.param
+
+
+@pytest.fixture(params=BATCHES, ids=str)
+def batch(request):
+    """How many of them there are: the leading axes."""
+    return request.param
 
 
 def pytest_addoption(parser):

@@ -9,7 +9,7 @@ from .contact import (HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact
 from .ground_frame import advance, compose, relative, screw
 from .human import CONTACT_HEIGHT, HEEL, STATURE, human
 from .ik import distance_kernel, pole_of, two_bone_kernel, two_bone_turns
-from .rotation_kernels import exp_kernel, log_kernel, product_kernel, relative_kernel
+from .rotation_kernels import exp_kernel, log_kernel, product_kernel, quaternion_kernel, relative_kernel
 from .rotations import between, exp, heading_of, log, mean, wrap, yaw
 from .skeleton import Skeleton, end_positions, forward_kinematics, local_rotations
 from .springs import damp, settle, spring_kernel
@@ -22,7 +22,7 @@ __all__ = [
     "contact_height", "contact_points", "damp", "detect_contacts", "distance_kernel", "end_positions", "exp",
     "exp_kernel", "feet_apart", "foot_drift", "foot_turn_kernel", "forward_kinematics", "heading_of", "heel_offset",
     "hull", "hull_kernel", "human", "joint_limits", "local_rotations", "log", "log_kernel", "margin", "margin_kernel",
-    "mean", "mirror_index", "point_speeds", "pole_of", "product_kernel", "relative", "relative_kernel", "rotations",
-    "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "standing_corners", "two_bone_kernel",
+    "mean", "mirror_index", "point_speeds", "pole_of", "product_kernel", "quaternion_kernel", "relative", "relative_kernel",
+    "rotations", "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "standing_corners", "two_bone_kernel",
     "two_bone_turns", "wrap", "yaw",
 ]

@@ -43,14 +43,10 @@ def relative_kernel(parent, child, out):
 
 
 @kernel
-def log_kernel(matrix, out):
-    """Write the rotation vector (3,) [rad], at most π long, of a rotation matrix (3, 3).
-
-    By the quaternion whose largest part comes first (Shepperd 1978), exact up to half a turn.
-    """
-    m = matrix
+def quaternion_kernel(matrix, out):
+    """Write a quaternion (4,) x, y, z, w of a rotation matrix (3, 3), of any length, by its largest part (Shepperd 1978)."""
+    m, q = matrix, out
     trace = m[0, 0] + m[1, 1] + m[2, 2]
-    q = np.empty(4)
     if trace > 0.0:
         q[3] = 1.0 + trace
         q[0], q[1], q[2] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
@@ -63,6 +59,13 @@ def log_kernel(matrix, out):
         j, k = (i + 1) % 3, (i + 2) % 3
         q[i] = 1.0 + m[i, i] - m[j, j] - m[k, k]
         q[j], q[k], q[3] = m[j, i] + m[i, j], m[k, i] + m[i, k], m[k, j] - m[j, k]
+
+
+@kernel
+def log_kernel(matrix, out):
+    """Write the rotation vector (3,) [rad], at most π long, of a rotation matrix (3, 3): exact up to half a turn."""
+    q = np.empty(4)
+    quaternion_kernel(matrix, q)
     if q[3] < 0.0:
         q = -q
     sine = math.sqrt(q[0] ** 2 + q[1] ** 2 + q[2] ** 2)

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import kernel
-from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES
+from .kernel import COLUMNS, LABELS_AT
 from .library import Library
+from .spline import in_columns, spline_kernel
 
 BEFORE, END = 0.12, 1.5
 """A start begins this long before its first toe-off and ends this long after it, in phase."""
@@ -42,13 +43,7 @@ def starting(library: Library) -> Starting:
     """The kernel's view of a library's start; no coefficients where it has none."""
     if library.start is None:
         return Starting(np.zeros((2, 2, 0, COLUMNS), np.float32))
-    given = library.start.coefficients
-    joints = len(library.skeleton)
-    table = np.zeros(given.shape[:3] + (COLUMNS,), np.float32)
-    for axis in range(3):
-        table[..., axis * LANES:axis * LANES + joints] = given[..., axis:3 * joints:3]
-    table[..., HIPS_AT:HIPS_AT + 3] = given[..., 3 * joints:]
-    return Starting(table)
+    return Starting(in_columns(library.start.coefficients))
 
 
 @kernel
@@ -113,13 +108,4 @@ def _beyond(m, start, d):
     table = start.coefficients[m.first]
     since = END - m.onset
     at = WAITING + since * PER_CYCLE if since > 0.0 else WAITING * max(1.0 + since / BEFORE, 0.0)
-    k = min(int(at), table.shape[1] - 4)
-    t = at - k
-    u = 1.0 - t
-    b0, b1 = u * u * u / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0
-    b2, b3 = (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0, t * t * t / 6.0
-    value = 0.0
-    for term in range(2):
-        value += m.shares[term] * (b0 * table[term, k, d] + b1 * table[term, k + 1, d]
-                                   + b2 * table[term, k + 2, d] + b3 * table[term, k + 3, d])
-    return value
+    return m.shares[0] * spline_kernel(table[0], d, at)[0] + m.shares[1] * spline_kernel(table[1], d, at)[0]

@@ -15,8 +15,9 @@ import numpy as np
 from ..body import contact_points, forward_kinematics, rotations as rot, spring_kernel
 from ..compiled import kernel
 from .cycles import RATE, Track
-from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES
+from .kernel import COLUMNS, LABELS_AT
 from .library import Idle, Library
+from .spline import in_columns, spline_kernel
 
 PER_SECOND = 5
 """Spline coefficients a second: glances take about half a second."""
@@ -105,12 +106,7 @@ def idling(library: Library) -> Idling:
     if library.idle is None:
         return Idling(np.zeros((0, COLUMNS), np.float32), np.zeros(0, np.int64), np.zeros(0, np.bool_))
     coefficients, ends = library.idle
-    joints = len(library.skeleton)
-    table = np.zeros((len(coefficients), COLUMNS), np.float32)
-    for axis in range(3):
-        table[:, axis * LANES:axis * LANES + joints] = coefficients[:, axis:3 * joints:3]
-    table[:, HIPS_AT:HIPS_AT + 3] = coefficients[:, 3 * joints:]
-    return Idling(table, *_follows(library, coefficients, ends))
+    return Idling(in_columns(coefficients), *_follows(library, coefficients, ends))
 
 
 def _follows(library: Library, coefficients: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -158,10 +154,10 @@ def idle_kernel(m, idle, liveliness, dt):
     there = follows + (m.moment - now)
     if m.presence > 1e-4:  # who walks fades nothing
         for d in range(LABELS_AT):
-            was, was_rate = _spline(idle, d, m.moment)
-            comes, comes_rate = _spline(idle, d, there)
+            was, was_rate = spline_kernel(idle.coefficients, d, m.moment)
+            comes, comes_rate = spline_kernel(idle.coefficients, d, there)
             m.blend[d] += m.presence * (was - comes)
-            m.blend_rate[d] += m.presence * (was_rate - comes_rate)
+            m.blend_rate[d] += m.presence * (was_rate * PER_SECOND - comes_rate * PER_SECOND)
         m.fade = FADE
     m.moment = there
 
@@ -171,18 +167,4 @@ def add_idle(m, idle, row):
     """Add to a row (COLUMNS,) what a character's idling shows."""
     if m.presence > 1e-4:
         for d in range(LABELS_AT):
-            row[d] += m.presence * _spline(idle, d, m.moment)[0]
-
-
-@kernel
-def _spline(idle, d, at):
-    """One column of the spline and its rate [1/s] at coefficient number `at`."""
-    k = min(int(at), idle.coefficients.shape[0] - 4)
-    t = at - k
-    a, b, c, e = (idle.coefficients[k, d], idle.coefficients[k + 1, d], idle.coefficients[k + 2, d],
-                  idle.coefficients[k + 3, d])
-    u = 1.0 - t
-    value = (u * u * u * a + (3.0 * t * t * t - 6.0 * t * t + 4.0) * b
-             + (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) * c + t * t * t * e) / 6.0
-    rate = 0.5 * (-u * u * a + (3.0 * t * t - 4.0 * t) * b + (-3.0 * t * t + 2.0 * t + 1.0) * c + t * t * e)
-    return value, rate * PER_SECOND
+            row[d] += m.presence * spline_kernel(idle.coefficients, d, m.moment)[0]

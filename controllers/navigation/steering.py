@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..body import advance, wrap
 from ..contract import Intent
@@ -41,14 +42,14 @@ class Steering:
     reach: Reach = Reach()
 
 
-def turn_towards(heading, wanted, turning=0.0, settings: Steering = Steering()) -> tuple[np.ndarray, np.ndarray]:
+def turn_towards(heading: ArrayLike, wanted: ArrayLike, turning: ArrayLike = 0.0, settings: Steering = Steering()) -> tuple[np.ndarray, np.ndarray]:
     """Angular speed ω [rad/s] and heading error [rad], both (...), that bring `heading` to `wanted`.
 
     heading, wanted: (...) [rad]. turning: (...) the present ω [rad/s]. The error lies within
     (-π, π], moved by up to `commit` to the side that the character turns to already.
     """
     lean = settings.commit * np.tanh(4.0 * np.asarray(turning, float) / settings.turn)
-    error = wrap(np.asarray(wanted) - heading - lean) + lean
+    error = wrap(np.asarray(wanted) - np.asarray(heading) - lean) + lean
     return settings.turn * np.tanh(settings.gain * error / settings.turn), error
 
 

@@ -2,19 +2,9 @@
 
 import numpy as np
 import pytest
-from sampling import BATCHES, KINDS, angle, rotations
+from sampling import angle, rotations
 
 from gambol.controllers.body.rotations import between, continuous, exp, heading_of, log, mean, wrap, yaw
-
-
-@pytest.fixture(params=KINDS)
-def kind(request):
-    return request.param
-
-
-@pytest.fixture(params=BATCHES, ids=str)
-def batch(request):
-    return request.param
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from gambol.controllers.body import anatomy, centre_of_mass, rotations as rot
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.locomotion import Idle, Library, LibraryError, Locomotion, Settings
 from gambol.controllers.locomotion import idle as idling
+from gambol.controllers.locomotion.spline import spline_kernel
 from playing import FPS, hold, play
 
 
@@ -59,22 +60,22 @@ def test_who_walks_or_aims_does_not_idle(locomotion):
 
 def test_a_spline_is_a_spline(locomotion):
     """Against scipy's own, values and rates."""
-    table = locomotion.tables[6]
+    table = locomotion.tables.idle
     whole = BSpline(np.arange(-3.0, len(table.coefficients) + 1), table.coefficients[:, 5].astype(float), 3)
     for at in (0.0, 3.25, 100.9, 412.5):
-        value, rate = idling._spline(table, 5, at)
+        value, rate = spline_kernel(table.coefficients, 5, at)
         assert value == pytest.approx(float(whole(at)), abs=1e-6)
-        assert rate == pytest.approx(float(whole(at, 1)) * idling.PER_SECOND, abs=1e-5)
+        assert rate * idling.PER_SECOND == pytest.approx(float(whole(at, 1)) * idling.PER_SECOND, abs=1e-5)
 
 
 def test_what_follows_is_alike(locomotion):
     """And whatever must be left can be, to a place that need not."""
-    table = locomotion.tables[6]
+    table = locomotion.tables.idle
     leaves = np.flatnonzero(table.follows >= 0)
     assert 0.1 < len(leaves) / len(table.follows) < 0.5 and np.all(table.follows[table.must] >= 0)
     assert not table.must[table.follows[leaves]].any()
-    there = np.array([[idling._spline(table, d, float(k))[0] for d in (72, 73, 74)] for k in table.follows[leaves]])
-    here = np.array([[idling._spline(table, d, float(k))[0] for d in (72, 73, 74)] for k in leaves])
+    there = np.array([[spline_kernel(table.coefficients, d, float(k))[0] for d in (72, 73, 74)] for k in table.follows[leaves]])
+    here = np.array([[spline_kernel(table.coefficients, d, float(k))[0] for d in (72, 73, 74)] for k in leaves])
     assert np.linalg.norm(there - here, axis=-1).max() < 0.15, "hips"
 
 

@@ -1,29 +1,15 @@
 """The laws of rigid motions and their twists, over batches and where formulas break, and the paper's printed equations."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.linalg import expm, logm
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "body"))
-from sampling import BATCHES, KINDS, rotations
+from sampling import rotations
 
 from gambol.controllers.tracking.twists import (adjoint, bracket, exp, hat, inverse, log, twist_exp_kernel, twist_log_kernel,
                                                 vee)
 
 SIZES = (0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3, 0.1, 0.199999, 0.200001, 1.0, 3.0, np.pi - 1e-3, np.pi - 1e-7)
-
-
-@pytest.fixture(params=KINDS)
-def kind(request):
-    return request.param
-
-
-@pytest.fixture(params=BATCHES, ids=str)
-def batch(request):
-    return request.param
 
 
 @pytest.fixture

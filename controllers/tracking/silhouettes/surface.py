@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...body import quaternion_kernel
 from ...compiled import kernel
 from ..twists import Chain
 
@@ -67,20 +68,8 @@ def skinned(surface: Surface, positions: np.ndarray, orientations: np.ndarray) -
 
 @kernel
 def _quaternion(m, q):
-    """Write the unit quaternion (x, y, z, w) of a rotation (3, 3), by its largest part (Shepperd 1978)."""
-    trace = m[0, 0] + m[1, 1] + m[2, 2]
-    if trace > 0.0:
-        q[3] = 1.0 + trace
-        q[0], q[1], q[2] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
-    else:
-        i = 0
-        if m[1, 1] > m[0, 0]:
-            i = 1
-        if m[2, 2] > m[i, i]:
-            i = 2
-        j, k = (i + 1) % 3, (i + 2) % 3
-        q[i] = 1.0 + m[i, i] - m[j, j] - m[k, k]
-        q[j], q[k], q[3] = m[j, i] + m[i, j], m[k, i] + m[i, k], m[k, j] - m[j, k]
+    """Write the unit quaternion (x, y, z, w) of a rotation (3, 3)."""
+    quaternion_kernel(m, q)
     size = math.sqrt(q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + q[3] ** 2)
     for i in range(4):
         q[i] /= size
