@@ -52,6 +52,9 @@ PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
 RISE_RATE = 8.0
 """A heel rises for its leg's sake no faster than this [rad/s] …"""
+LENDING = 0.7
+"""A heel that is free to rise takes this share of what its leg lacks, so that the knee bends nearly as the blend's; in a
+body's first stride, whose push is weak yet, it does not."""
 RISE_HALFLIFE = 0.12
 """… and sinks back with this half-life once its ball is free [s]."""
 ANCHOR_HALFLIFE = 0.03
@@ -253,7 +256,9 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
             ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
     stands = m.standing[2 * foot + 1] == 1
     if stands:
-        wanted = soft_reach(distance_kernel(positions[hip], ankle), reach)
+        asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
+        free = max(2.0 * m.anchor[foot] - 1.0, 0.0) * (1.0 - min(m.onset, 1.0)) * LENDING
+        wanted = soft_reach(asked - free * max(asked - blended, 0.0), reach)
         rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
         if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
             m.torn[foot] = 1
