@@ -109,7 +109,7 @@ PLAN = {
         "tracking": "",
         "tracking.twists": "compiled body",
         "tracking.cameras": "compiled files body",
-        "tracking.silhouettes": "compiled tracking.twists tracking.cameras",
+        "tracking.silhouettes": "body compiled tracking.twists tracking.cameras",
         "tracking.pose": "compiled body tracking.twists tracking.cameras tracking.silhouettes",
         "tracking.rivals": "tracking.twists",
         "tracking.segmentation": "compiled",

@@ -26,7 +26,7 @@ def test_no_law():
 def seek(tmp_path, *arguments):
     (tmp_path / "test_laws.py").write_text(LAWS)
     found = subprocess.run([sys.executable, "scripts/seek.py", "-n", "0", "--rounds", "1", *arguments, "-p", "tests.conftest", str(tmp_path)],
-                           cwd=ROOT, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT)})
+                           cwd=ROOT, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": os.pathsep.join((str(ROOT), str(ROOT / "tests")))})
     return found.returncode, found.stdout
 
 
