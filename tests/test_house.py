@@ -104,6 +104,7 @@ PLAN = {
         "navigation.identification": "files body navigation.planning",
         "reconstruction": "body contract",
         "supervisor": "body contract navigation",
+        "forecast": "body contract",
         "jump.muscles": "compiled jump.body",
         "jump": "body contract navigation",
         "tracking": "",

@@ -1,7 +1,8 @@
 """What is drawn to understand a motion: the arc of a jump that is aimed at, balance and forces, points and what they are
-missed by; the way to a goal; and how good a motion is, in figures.
+missed by; the way to a goal; coming footholds; and how good a motion is, in figures.
 """
 
+from .footholds import stepping
 from .jump import broken, explained
 from .jump_preview import Preview, preview
 from .points import RADIUS, Row, pointed, rows
@@ -9,5 +10,5 @@ from .quality import Quality, quality_of
 from .way import led, on_the_way
 
 __all__ = [
-    "RADIUS", "Preview", "Quality", "Row", "broken", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows",
+    "RADIUS", "Preview", "Quality", "Row", "broken", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows", "stepping",
 ]

@@ -19,7 +19,7 @@ from gambol.controllers.person import built
 from gambol.controllers.supervisor import Supervisor
 
 from ..camera import between
-from ..explain import broken, explained, led, pointed, rows
+from ..explain import broken, explained, led, pointed, rows, stepping
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
@@ -159,7 +159,8 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
             corner = part[0] == 0.0 and part[1] == lowest
             title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
             text = ((title,) if title else ()) + (why if not made else ())
-            people = led(pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over), after, over)
+            people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
+            people = stepping(led(people, after, over), after, over)
             made.append(Scene(camera, people, after.props, over, text, caption=caption if corner else None, part=part))
         lines = rows(before) if any(scene.overlays.errors for scene in made) else ()
         if lines or old.shot.panels:
