@@ -1,6 +1,6 @@
 """What a character will do in the next second if it is asked for the same all the while: its way and its coming footholds.
 
-Controllers are pure functions, so nothing need be guessed: the controller itself is stepped on, in long steps. Who asks again
+Controllers are pure functions, so nothing need be guessed: the controller itself is stepped on. Who asks again
 with another wish sees both planned anew.
 """
 
@@ -13,8 +13,9 @@ import numpy as np
 from .body import contact_points, forward_kinematics
 from .contract import CharacterState, Controller, Intent
 
-STEP = 1 / 30
-"""Seconds a step of a forecast: what is foretold of a walk is off by millimetres from what steps of half as long do."""
+STEP = 1 / 60
+"""Seconds a step of a forecast. Steps as long as those that are then made foretell them to rounding; of twice the length they
+take half the time, and are off by millimetres in steady walks, by up to 5 cm where a gait changes."""
 
 
 class Forecast(NamedTuple):
