@@ -69,7 +69,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
 
     worn = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn.values())
-    with Stream(worn, port or PORT, HOST if host is None else host) as source:
+    with Stream(worn, port or PORT, HOST if host is None else host, clock=time.monotonic) as source:
         if out is None:
             source.placement = _placement(source, height)
             watch(method, names, database, stream=source)

@@ -1,28 +1,27 @@
-"""A live stream of trackers by OSC over UDP, as VR programs send it: VMC protocol and VRChat's OSC trackers.
+"""A live stream of trackers by OSC over UDP, as VR programs send it (`osc_packets`).
 
-Understood are /VMC/Ext/Hmd/Pos, /VMC/Ext/Con/Pos and /VMC/Ext/Tra/Pos (a serial number, a position and a quaternion)
-and /tracking/trackers/N/position (a position), alone or in bundles. Both come from Unity, whose axes are left-handed:
-+X is to the right there. Packets are taken when somebody asks where the points are; there is no thread.
+Packets are taken when somebody asks where the points are; with a clock, a thread takes them as they come and notes when, and
+points are told one packet late, so that the network's unrest is not seen (`timeline`).
 """
 
 from __future__ import annotations
 
 import errno
-import logging
-import re
 import socket
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
-from pythonosc import osc_bundle, osc_message
-from pythonosc.osc_packet import OscPacket, ParseError
 
 from ...files import printable, reason, tables
 from ..control_points import ControlPoints, parse
 from ..pose_vector import SKELETON
+from .osc_packets import understood
 from .placing import Placement
+from .timeline import Timeline
 
 PORT = 39539
 """The port that VMC programs send to unless told otherwise. VRChat's is 9000."""
@@ -33,16 +32,11 @@ STALE = 0.15
 USUAL = {"hmd": "head+0/0.09/0.09", "1": "root", "2": "lankle", "3": "rankle"}
 """Which point a tracker is on unless somebody says so: a head-set is in front of the eyes, and VRChat's first three
 trackers are waist, left and right foot."""
-_VMC = re.compile(r"/VMC/Ext/(Hmd|Con|Tra)/Pos")
-_VRCHAT = re.compile(r"/tracking/trackers/([1-8]|head)/position")
-_FROM_UNITY = np.array([-1.0, 1.0, 1.0])
+PINNED = 1.0
+"""Whoever sends first is heard alone until silent for so long [s]."""
 _AT_ONCE = 4096  # packets taken in one go: a flood must not stop a frame
-_LONGEST_NAME, _MOST_NAMES = 100, 64  # of trackers: letters, and how many that are on no point are remembered
-# the library logs a broken packet whole, for everybody to see: here it is counted
-_quiet = logging.getLogger("gambol.osc")
-_quiet.disabled = True
-for _module in (osc_bundle, osc_message):
-    vars(_module)["logging"] = _quiet
+_MOST_NAMES = 64  # of trackers that are on no point: how many are remembered
+_LAGGING = 0.02  # the share by which the time that is asked for is brought to the clock, a question
 
 
 class StreamError(ValueError):
@@ -54,18 +48,22 @@ class Stream:
 
     points: what each tracker is on, a point as `controls.parse` has it by serial number, "hmd" for any head-set.
     A tracker that is called like one of these points is on it, too.
-    port, host: where to listen, see HOST. stale: [s] see STALE. placement: into the world; `placing` finds one.
+    port, host: where to listen, see HOST. stale: [s] see STALE. clock: tells the time [s], such as `time.monotonic`; with it
+    packets are timed as they arrive, and points told one packet late, evenly. placement: into the world; `placing` finds one.
     heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how many
-    packets were no OSC that we know. StreamError if host or port can't be had. Close it, or use it in a `with`.
+    packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
+    StreamError if host or port can't be had. Close it, or use it in a `with`.
     """
 
-    def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = HOST, stale: float = STALE):
+    def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = HOST, stale: float = STALE,
+                 clock: Callable[[], float] | None = None):
         self.controls = controls_of(points)
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
-        self.stale, self.placement, self.heard, self.broken = stale, Placement(), {}, 0
-        self._places = np.full((len(points), 3), np.nan)
-        self._since = np.full(len(points), -np.inf)
+        self.stale, self.placement, self.heard, self.broken, self.foreign = stale, Placement(), {}, 0, 0
+        self._places = [Timeline() for _ in points]
+        self._from, self._clock, self._lag = ("", -np.inf), clock, np.nan
+        self._arrived: deque[tuple[float, str, bytes]] = deque(maxlen=_AT_ONCE)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             if not host:
@@ -78,17 +76,22 @@ class Stream:
                                   f"{HOST} hears programs on it, 0.0.0.0 those on other machines, too") from None
             raise StreamError(f"port {port} can't be listened at ({reason(error)}): "
                               "close the program that does, or choose another port") from None
-        self._socket.setblocking(False)
+        self._address = self._socket.getsockname()[:2]
+        self._socket.settimeout(0.0 if clock is None else 0.2)
+        self._closed, self._thread = False, None
+        if clock is not None:
+            self._thread = Thread(target=self._listen, args=(clock,), name="trackers", daemon=True)
+            self._thread.start()
 
     @property
     def port(self) -> int:
         """Where it listens; the one that was found where 0 was asked for."""
-        return self._socket.getsockname()[1]
+        return self._address[1]
 
     @property
     def host(self) -> str:
         """The address that it listens at."""
-        return self._socket.getsockname()[0]
+        return self._address[0]
 
     @property
     def local(self) -> bool:
@@ -101,30 +104,64 @@ class Stream:
         return sorted(printable(serial) for serial in self.heard if serial not in self._index)
 
     def at(self, time: float) -> np.ndarray:
-        """See `sources.Source`: all that came since it was asked before counts as of now."""
-        for _ in range(_AT_ONCE):
-            try:
-                packet = self._socket.recv(65535)
-            except BlockingIOError:
-                break
-            except OSError:  # some systems report here that an earlier peer is gone
-                continue
-            self._take(packet, time)
-        fresh = time - self._since <= self.stale
-        return self.placement(np.where(fresh[:, None], self._places, np.nan))
+        """See `sources.Source`: without a clock all that came since it was asked before counts as of now."""
+        if self._clock is None:
+            now = time
+            for _ in range(_AT_ONCE):
+                if (packet := self._receive()) is None:
+                    break
+                if packet[1]:
+                    self._take(now, *packet)
+        else:
+            late = self._clock() - time
+            self._lag += (late - self._lag) * _LAGGING if abs(late - self._lag) < self.stale else late - self._lag
+            if np.isnan(self._lag):
+                self._lag = late
+            now = time + self._lag
+            while self._arrived:
+                self._take(*self._arrived.popleft())
+        lost = np.full(3, np.nan)
+        tell = (lambda one: one.newest) if self._clock is None else lambda one: one.at(now)
+        return self.placement(np.array([tell(one) if now - one.last <= self.stale else lost for one in self._places]))
 
-    def _take(self, packet: bytes, time: float) -> None:
-        found = understood(packet)
-        self.broken += found is None
-        for serial, kind, place in found or ():
+    def _listen(self, clock: Callable[[], float]) -> None:
+        while not self._closed:
+            if (packet := self._receive()) is not None and packet[1]:
+                self._arrived.append((clock(), *packet))
+
+    def _receive(self) -> tuple[str, bytes] | None:
+        """Who sent the next packet, and what; None where there is none, an empty one where some system reports that an earlier
+        peer is gone."""
+        try:
+            packet, sender = self._socket.recvfrom(65535)
+        except (BlockingIOError, TimeoutError):
+            return None
+        except OSError:
+            return None if self._closed else ("", b"")
+        return sender[0], packet or b"\0"
+
+    def _take(self, time: float, sender: str, packet: bytes) -> None:
+        if sender != self._from[0] and time - self._from[1] <= PINNED:
+            self.foreign += 1
+            return
+        seen = understood(packet)
+        if seen is None:
+            self.broken += 1
+            return
+        if seen.trackers:
+            self._from = sender, time
+        for serial, kind, place in seen.trackers:
             if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
                 self.heard[serial] = time
             number = self._index.get(serial, self._index.get("hmd") if kind == "Hmd" else None)
             if number is not None:
-                self._places[number], self._since[number] = place, time
+                self._places[number].heard(time, place, seen.sent)
 
     def close(self) -> None:
         """Listen no more."""
+        self._closed = True
+        if self._thread is not None:
+            self._thread.join(1.0)
         self._socket.close()
 
     def __enter__(self) -> Stream:
@@ -132,31 +169,6 @@ class Stream:
 
     def __exit__(self, *_) -> None:
         self.close()
-
-
-def understood(packet: bytes) -> list[tuple[str, str, np.ndarray]] | None:
-    """What a packet says: trackers' serial numbers, their kinds ("Hmd", "Con", "Tra") and places (3,) [m], Y up and
-    +X to the left of +Z. Empty for messages about something else, None for a packet that is broken."""
-    try:
-        messages = [timed.message for timed in OscPacket(packet).messages]
-    except (ParseError, ValueError, IndexError, RecursionError):
-        return None
-    found = []
-    for message in messages:
-        values = message.params
-        if match := _VMC.fullmatch(message.address):
-            serial, kind, numbers = (values[0] if values else None), match[1], values[1:4]
-        elif match := _VRCHAT.fullmatch(message.address):
-            serial, kind, numbers = match[1], "Hmd" if match[1] == "head" else "Tra", values[:3]
-        else:
-            continue
-        if not isinstance(serial, str) or len(serial) > _LONGEST_NAME or len(numbers) != 3 or not all(type(number) in (int, float) for number in numbers):
-            return None
-        place = np.array(numbers, float)
-        if not np.all(np.abs(place) < 1e3):  # NaN is not, either
-            return None
-        found.append((serial, kind, place * _FROM_UNITY))
-    return found
 
 
 def controls_of(points: Mapping[str, str]) -> ControlPoints:

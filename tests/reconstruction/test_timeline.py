@@ -1,0 +1,79 @@
+"""A tracker's packets in time: what a network makes uneven comes out even, one packet late and no later."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.reconstruction.live.timeline import ANEW, Timeline
+
+SECONDS, LATENCY = 12.0, 0.004
+
+
+def hand(t):
+    """Where a hand is (..., 3) [m] that is as fast and as restless as recorded ones, 1 m/s and 1200 m/s³."""
+    t = np.asarray(t)[..., None]
+    return np.sin(t * [5.1, 3.3, 7.0] + [0.0, 1.0, 2.0]) * [0.3, 0.2, 0.1] + 0.1 * np.sin(t * [11.0, 9.0, 13.0]) + 0.02 * np.sin(t * [33.0, 29.0, 37.0])
+
+
+def played(rate, unrest, loss, clock, seed=1):
+    """What is seen at 60 frames a second of packets that are late by |normal| of `unrest` [s] and lost by a share; and when."""
+    rng = np.random.default_rng(seed)
+    sent = np.arange(0.0, SECONDS, 1.0 / rate)
+    sent = sent[rng.random(len(sent)) >= loss]
+    arrived = sent + LATENCY + np.abs(rng.normal(0.0, unrest, len(sent)))
+    if clock:  # they may overtake each other
+        order = np.argsort(arrived, kind="stable")
+        sent, arrived = sent[order], arrived[order]
+    else:
+        arrived = np.maximum.accumulate(arrived)
+    line, times, seen, k = Timeline(), np.arange(1.0, SECONDS - 0.1, 1 / 60), [], 0
+    for now in times:
+        while k < len(sent) and arrived[k] <= now:
+            line.heard(arrived[k], hand(sent[k]), sent[k] if clock else None)
+            k += 1
+        seen.append(line.at(now))
+    return times, np.array(seen), line.period
+
+
+def restless(places):
+    return float(np.linalg.norm(np.diff(places, 3, axis=0), axis=-1).mean() * 60**3)
+
+
+@pytest.mark.parametrize("clock", [False, True])
+@pytest.mark.parametrize("rate", [50, 60, 72, 90, 120, 144])
+def test_a_stream_of_any_pace_is_seen_as_calmly_as_its_tracker_moved(rate, clock):
+    unrest = 0.003 if clock else min(0.003, 0.3 / rate)  # without the sender's clock no more than a third of the pace
+    times, seen, period = played(rate, unrest, 0.02, clock)
+    delay = LATENCY + unrest * np.sqrt(2 / np.pi) + 1.0 / rate  # by a packet, and by what the network is late on the average
+    late = min(np.arange(0.0, 0.06, 5e-4), key=lambda d: np.linalg.norm(seen - hand(times - d)))
+    assert late < delay + 0.002
+    assert restless(seen) < (1.1 if clock else 1.4) * restless(hand(times - late))
+    assert np.linalg.norm(seen - hand(times - late), axis=-1).mean() < 0.004
+    assert period == pytest.approx(1.0 / rate, rel=0.03)
+
+
+@pytest.mark.parametrize("rate", [60, 90, 144])
+def test_packets_that_come_evenly_are_met_exactly(rate):
+    times, seen, period = played(rate, 0.0, 0.0, False)
+    assert np.abs(seen - hand(times - LATENCY - 1.0 / rate)).max() < 3e-3 * (60 / rate) ** 2
+    assert period == pytest.approx(1.0 / rate, rel=1e-6)
+
+
+def test_a_packet_that_is_late_is_waited_for_along_the_motion_and_not_for_ever():
+    line = Timeline()
+    for k in range(60):
+        line.heard(k / 60, np.array([k / 60, 0.0, 0.0]))
+    for ahead in (1, 2):  # a step and two after the newest: two packets have not come
+        assert line.at((59 + ahead) / 60)[0] == pytest.approx((58 + ahead) / 60, abs=1e-6)
+    assert line.at(5.0)[0] == pytest.approx(60 / 60, abs=1e-6)
+
+
+def test_after_a_silence_it_begins_anew():
+    line = Timeline()
+    for k in range(60):
+        line.heard(k / 60, np.array([k / 60, 0.0, 0.0]))
+    line.heard(1.0 + ANEW + 1.0, np.array([9.0, 0.0, 0.0]))
+    assert line.at(1.0 + ANEW + 1.0)[0] == 9.0
+
+
+def test_nothing_heard_is_nowhere():
+    assert np.isnan(Timeline().at(0.0)).all()
