@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import signal
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from .base import Mistake, app, learn, plainly, progress_bar, say
+from . import live
+from .base import Mistake, app, learn, plainly, progress_bar
+from .live import FPS, SUFFIX, write_take
 from .play import watch
-
-FPS = 60
-_TELL = 3.0  # s between words about what is waited for
 
 
 @app.command()
 @plainly
-def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC file whose points are taken.")] = None,
+def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC file whose points are taken, or the packets of trackers that --keep kept.")] = None,
                 points: Annotated[str | None, typer.Option(help="Points on the body, with commas: lwrist,rwrist,lankle,rankle, or a set of the paper, 2 … 6. 4 by default.")] = None,
                 out: Annotated[Path | None, typer.Option("-o", "--out", help="A .bvh file of the motion, or a .glb file of the body in motion; a window shows it by default.")] = None,
                 method: Annotated[str, typer.Option(help="ours, or one that it is measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = "ours",
@@ -32,23 +28,29 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 host: Annotated[str | None, typer.Option(help="Whom to listen to: 127.0.0.1, programs on this machine, by default; 0.0.0.0, trackers on other machines, too.")] = None,
                 trackers: Annotated[Path | None, typer.Option("--map", help="A TOML file that says which tracker is on which point.")] = None,
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
-                seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None) -> None:
+                seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
+                keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
+                send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None) -> None:
     """Make a whole body's motion from the way of two to six points on it."""
     if (clip is None) == (stream is None):
         raise Mistake("reconstruct needs either a motion file or --stream osc")
     if stream not in (None, "osc"):
         raise Mistake(f"--stream {stream!r}: only osc is understood")
-    live = (("--port", port), ("--host", host), ("--map", trackers), ("--seconds", seconds), ("--height", height))
+    heard_again = clip is not None and clip.suffix.lower() == SUFFIX
+    listening = (("--port", port), ("--host", host), ("--keep", keep))
+    worn = (("--map", trackers), ("--seconds", seconds), ("--height", height), ("--send", send))
     recorded = (("--noise", noise or None), ("--seed", seed or None))
-    for option, given in live if stream is None else recorded:
+    for option, given in recorded if stream is not None else listening + (recorded if heard_again else worn):
         if given is not None:
-            raise Mistake(f"{option} goes with " + ("--stream" if stream is None else "a motion file"))
+            raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
     if out is None:
-        for option, given in (*recorded, ("--seconds", seconds)):
+        for option, given in (*recorded, *(() if send else (("--seconds", seconds),))):
             if given is not None:
                 raise Mistake(f"{option} goes with -o")
+        if heard_again and send is None:
+            raise Mistake(f"{clip}: packets are heard again into a motion, -o FILE, or for another program, --send HOST:PORT")
     else:
         from ..output import checked
 
@@ -58,23 +60,24 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         from gambol.controllers.reconstruction.database import Database
 
         Database.open(database)
-    if clip is not None:
+    if clip is not None and not heard_again:
         names = _named("4" if points is None else points)
         if out is None:
             watch(method, names, database, clip=clip)
         else:
             _clip(clip, names, out, method, database, noise / 100.0, seed)
         return
-    from gambol.controllers.reconstruction.live import HOST, PORT, Stream, read_map, usual_map
+    from gambol.controllers.reconstruction.live import read_map, usual_map
 
-    worn = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
-    names = ",".join(worn.values())
-    with Stream(worn, port or PORT, HOST if host is None else host, clock=time.monotonic) as source:
-        if out is None:
-            source.placement = _placement(source, height)
+    worn_on = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
+    names = ",".join(worn_on.values())
+    with live.heard(worn_on, clip, port, host, keep) as source:
+        if out is None and send is None:
+            source.placement = live.placement(source, height)
             watch(method, names, database, stream=source)
         else:
-            _record(source, _controller(method, database, names), out, height, seconds)
+            with live.sent(send) as sender:
+                live.record(source, _controller(method, database, names), out, height, seconds, sender)
 
 
 def _known(method: str) -> str:
@@ -129,7 +132,7 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
             spent += time.perf_counter() - began
             poses.append(pose)
             contacts.append(state.contacts)
-    _write(out, path.stem, controller.skeleton, poses, contacts)
+    write_take(out, path.stem, controller.skeleton, poses, contacts)
     for line in _figures(clip, poses):
         typer.echo(line)
     typer.echo(f"{'a frame':24} {1000 * spent / (len(clip) - 1):7.2f} ms")
@@ -163,105 +166,3 @@ def _figures(clip: Any, poses: list) -> list[str]:
     lines = [f"{'joints in the world':24} {away.mean():7.2f} cm, {away.max():.1f} at most",
              f"{'joint angles':24} {turned.mean():7.2f}°, {turned.max():.1f} at most"]
     return lines + ([f"{'jitter over the clip’s':24} {jitter(found, clip.frame_time) / restless:7.2f}"] if restless > 0.0 else [])
-
-
-def _record(source: Any, controller: Any, out: Path, height: float | None, seconds: float | None) -> None:
-    """Record what a stream says until the time is up or somebody stops it; what there is by then is written."""
-    import numpy as np
-
-    from gambol.controllers.contract import Intent
-    from gambol.controllers.locomotion import Locomotion
-    from gambol.controllers.reconstruction import towards
-    from gambol.controllers.supervisor import Supervisor
-
-    someone = Supervisor({"locomotion": Locomotion.load(), "reconstruction": controller})
-    someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
-    poses, contacts, lost = [], [], 0
-    with _stoppable():
-        try:
-            source.placement = _placement(source, height)
-            say("recording; Ctrl-C ends it")
-            state = None
-            for now in _ticks(seconds):
-                seen = source.at(now)
-                if state is None:
-                    if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
-                        continue
-                    state = someone.enter(controller.begin(seen), Intent())
-                intent = Intent(towards(state, seen), points=seen)
-                state, pose = someone.step(state, intent, 1 / FPS)
-                lost += someone.active(state)[0] != "reconstruction"
-                poses.append(pose)
-                contacts.append(state.contacts)
-        except KeyboardInterrupt:
-            pass
-        finally:
-            if poses:
-                _write(out, out.stem, someone.skeleton, poses, contacts)
-    if not poses:
-        raise Mistake(f"{out}: nothing was recorded")
-    if lost:
-        say(f"for {lost / FPS:.1f} s there was nothing to follow")
-    if source.broken:
-        say(f"{source.broken} packets were broken and left out")
-
-
-def _placement(source: Any, height: float | None) -> Any:
-    """Wait until somebody who wears the trackers stands still, and tell from it where floor and body are."""
-    import numpy as np
-
-    from gambol.controllers.reconstruction.live import Standing, placed
-
-    names = source.controls.names
-    say(f"listening at {source.host}, port {source.port}: stand upright for a second, in T-pose or with the arms down")
-    standing, told = Standing(), -_TELL / 2
-    for now in _ticks(None):
-        seen = source.at(now)
-        standing = standing.watch(now, seen)
-        if standing.place is not None:
-            try:
-                return placed(standing.place, source.controls, height)
-            except ValueError as error:
-                say(str(error))
-                standing, told = Standing(), now
-        if now - told > _TELL:
-            missing = [name for name, there in zip(names, np.isfinite(seen).all(-1)) if not there]
-            say(f"waiting for {', '.join(missing)}" if missing else "waiting for somebody who stands still")
-            if not source.heard and source.local:
-                say("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
-            if source.unknown:
-                say(f"on no point: {', '.join(source.unknown)}; --map says where they are")
-            told = now
-
-
-def _ticks(seconds: float | None) -> Iterator[float]:
-    """Times [s] of a steady clock, FPS a second, each when it has come."""
-    began, number = time.monotonic(), 0
-    while seconds is None or number < round(seconds * FPS):
-        due = began + number / FPS
-        time.sleep(max(0.0, due - time.monotonic()))
-        yield due
-        number += 1
-
-
-@contextmanager
-def _stoppable() -> Iterator[None]:
-    """Whoever ends the program from outside ends it like Ctrl-C does."""
-    def stop(*_: Any) -> None:
-        raise KeyboardInterrupt
-    kinds = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    before = [signal.signal(kind, stop) for kind in kinds]
-    try:
-        yield
-    finally:
-        for kind, handler in zip(kinds, before):
-            signal.signal(kind, handler)
-
-
-def _write(out: Path, name: str, skeleton: Any, poses: list, contacts: list) -> None:
-    import numpy as np
-
-    from ..output import Take, write
-
-    for path in write(out, [Take(name, skeleton, tuple(poses), np.stack(contacts))], FPS):
-        say(f"{path}: {len(poses)} frames, {len(poses) / FPS:.1f} s")

@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
 from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
 from gambol.controllers.reconstruction.live.placing import stances  # noqa: E402
 from gambol.game import cli  # noqa: E402
-from gambol.game.cli import reconstruct  # noqa: E402
+from gambol.game.cli import live  # noqa: E402
 from test_stream import bundle, tracker  # noqa: E402
 
 WORN = "lwrist", "rwrist", "lankle", "rankle"
@@ -150,8 +151,9 @@ def stream(motion, tmp_path, monkeypatch):
             performer.now += held_up if "recording" in line else 0.0
         told, port = [], free_port()
         performer = Performer(motion[2], port, lambda: any("recording" in line for line in told), then)
-        monkeypatch.setattr(reconstruct, "time", performer)
-        monkeypatch.setattr(reconstruct, "say", say)
+        monkeypatch.setattr(live, "time", performer)
+        monkeypatch.setattr(live, "_clock", lambda: None)  # packets count as of when they are asked for
+        monkeypatch.setattr(live, "say", say)
         with performer.socket:
             done = gambol("reconstruct", "--stream", "osc", "--port", port, "--points", ",".join(WORN), "--method", "nearest",
                           "--database", motion[0], "-o", tmp_path / "o.bvh", *more)
@@ -191,13 +193,14 @@ def test_a_stream_that_falls_silent_as_the_recording_begins_is_waited_for(stream
 
 PROGRAM = """
 import sys
-from gambol.game.cli import main, reconstruct
-ticks = reconstruct._ticks
+from gambol.game.cli import live, main
+live._clock = lambda: None
+ticks = live._ticks
 def told(seconds):
     for number, now in enumerate(ticks(seconds)):
         print("tick", number, file=sys.stderr, flush=True)
         yield now
-reconstruct._ticks = told
+live._ticks = told
 main()
 """
 
@@ -223,3 +226,31 @@ def test_a_program_that_hears_a_stream_keeps_it_when_it_is_ended_from_outside(mo
                     program.send_signal(signal.SIGINT)
     assert program.returncode == 0, said
     assert "packets were broken" in said[-1] and len(load(out)) >= 19
+
+
+def test_packets_that_were_kept_are_heard_again_into_a_motion_and_for_another_program(stream, motion, tmp_path, monkeypatch):
+    told, made = stream(lambda seconds: True, "--seconds", 2, "--keep", tmp_path / "take.packets")
+    assert any("take.packets: all packets" in line for line in told)
+    monkeypatch.setattr(live, "time", time)  # nobody performs any more
+    common = ["--points", ",".join(WORN), "--method", "nearest", "--database", motion[0]]
+    done = gambol("reconstruct", tmp_path / "take.packets", "-o", tmp_path / "again.bvh", *common)
+    assert done.exit_code == 0, done.output
+    again = load(tmp_path / "again.bvh")
+    assert walked(again) and len(again) > 100
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
+        listener.bind(("127.0.0.1", 0))
+        done = gambol("reconstruct", tmp_path / "take.packets", "--send", f"127.0.0.1:{listener.getsockname()[1]}", "--seconds", 0.5, *common)
+        assert done.exit_code == 0, done.output
+        listener.setblocking(False)
+        frames = [listener.recv(65535) for _ in range(25)]
+    assert all(b"/VMC/Ext/Bone/Pos" in frame and b"LeftUpperLeg" in frame for frame in frames)
+
+
+@pytest.mark.parametrize("arguments, why", [
+    (["take.packets"], "into a motion, -o FILE, or for another program"), (["take.packets", "-o", "o.bvh", "--keep", "b.packets"], "--keep goes with --stream"),
+    (["take.packets", "-o", "o.bvh", "--noise", "1"], "--noise goes with a motion file"), (["a.bvh", "--send", "x"], "--send goes with --stream"),
+    (["take.packets", "-o", "o.bvh"], "can't be read"), (["take.packets", "--send", "a:b"], "can't be read")])
+def test_mistakes_about_packets_are_told_in_a_line(arguments, why, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = gambol("reconstruct", *arguments)
+    assert done.exit_code == 2 and why in done.output, done.output

@@ -2,7 +2,7 @@
 
 import logging
 import socket
-import time
+from time import sleep
 
 import numpy as np
 import pytest
@@ -105,10 +105,10 @@ def test_a_sender_may_stop_and_another_may_go_on(stream, send):
 
 
 def test_whoever_sends_first_is_heard_alone(stream):
-    stream._take(0.0, "10.0.0.1", tracker("LHR-1", (0, 1, 0)).dgram)
-    stream._take(0.5, "10.0.0.2", tracker("LHR-1", (0, 9, 0)).dgram)
+    stream.take(0.0, "10.0.0.1", tracker("LHR-1", (0, 1, 0)).dgram)
+    stream.take(0.5, "10.0.0.2", tracker("LHR-1", (0, 9, 0)).dgram)
     assert stream.foreign == 1 and stream.at(0.1)[0, 1] == 1
-    stream._take(0.5 + PINNED + 0.01, "10.0.0.2", tracker("LHR-1", (0, 2, 0)).dgram)  # the first is silent now
+    stream.take(0.5 + PINNED + 0.01, "10.0.0.2", tracker("LHR-1", (0, 2, 0)).dgram)  # the first is silent now
     assert stream.at(0.5 + PINNED + 0.02)[0, 1] == 2
 
 
@@ -124,7 +124,7 @@ def test_a_thread_times_packets_as_they_come_and_places_are_told_one_packet_late
                 arrived = len(stream._arrived)
                 send(tracker("LHR-1", (0.0, np.sin(3.0 * sent / rate), 0.0)))
                 while len(stream._arrived) == arrived:
-                    time.sleep(0.0)
+                    sleep(0.0)
                 sent += 1
             now[0] = asked
             seen.append(stream.at(asked)[0, 1])

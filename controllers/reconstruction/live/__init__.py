@@ -1,9 +1,14 @@
-"""Where live points come from: recorded performances, trackers over the network, and how their wearer stands in the room."""
+"""Where live points come from: recorded performances, trackers over the network, and how their wearer stands in the room; and
+where the body goes that is made of them: to programs that show it.
+"""
 
-from .osc_stream import HOST, PORT, Stream, read_map, usual_map
+from .osc_stream import HOST, PORT, Replayed, Stream, Trackers, read_map, usual_map
+from .packet_log import SUFFIX, PacketLog, PacketLogError
 from .placing import Standing, placed
 from .sources import Recorded
+from .vmc_sender import Sender, SenderError, address
 
 __all__ = [
-    "HOST", "PORT", "Recorded", "Standing", "Stream", "placed", "read_map", "usual_map",
+    "HOST", "PORT", "SUFFIX", "PacketLog", "PacketLogError", "Recorded", "Replayed", "Sender", "SenderError", "Standing", "Stream",
+    "Trackers", "address", "placed", "read_map", "usual_map",
 ]

@@ -20,6 +20,7 @@ from ...files import printable, reason, tables
 from ..control_points import ControlPoints, parse
 from ..pose_vector import SKELETON
 from .osc_packets import understood
+from .packet_log import PacketLog, packets_of
 from .placing import Placement
 from .timeline import Timeline
 
@@ -43,26 +44,84 @@ class StreamError(ValueError):
     """A stream that can't be had, and what would help."""
 
 
-class Stream:
-    """Points from trackers. A `sources.Source`.
+class Trackers:
+    """Points from trackers whose packets somebody takes. A `sources.Source`, but for when packets come.
 
     points: what each tracker is on, a point as `controls.parse` has it by serial number, "hmd" for any head-set.
-    A tracker that is called like one of these points is on it, too.
-    port, host: where to listen, see HOST. stale: [s] see STALE. clock: tells the time [s], such as `time.monotonic`; with it
-    packets are timed as they arrive, and points told one packet late, evenly. placement: into the world; `placing` finds one.
-    heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how many
-    packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
-    StreamError if host or port can't be had. Close it, or use it in a `with`.
+    A tracker that is called like one of these points is on it, too. stale: [s] see STALE. placement: into the world; `placing`
+    finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
+    many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
     """
 
-    def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = HOST, stale: float = STALE,
-                 clock: Callable[[], float] | None = None):
+    def __init__(self, points: Mapping[str, str], stale: float = STALE):
         self.controls = controls_of(points)
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
         self.stale, self.placement, self.heard, self.broken, self.foreign = stale, Placement(), {}, 0, 0
         self._places = [Timeline() for _ in points]
-        self._from, self._clock, self._lag = ("", -np.inf), clock, np.nan
+        self._from = "", -np.inf
+
+    @property
+    def unknown(self) -> list[str]:
+        """Trackers that were heard but are on no point, by their names as they may be shown."""
+        return sorted(printable(serial) for serial in self.heard if serial not in self._index)
+
+    def take(self, time: float, sender: str, packet: bytes) -> None:
+        """Take a packet that came at a time [s] from a machine."""
+        if sender != self._from[0] and time - self._from[1] <= PINNED:
+            self.foreign += 1
+            return
+        seen = understood(packet)
+        if seen is None:
+            self.broken += 1
+            return
+        if seen.trackers:
+            self._from = sender, time
+        for serial, kind, place in seen.trackers:
+            if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
+                self.heard[serial] = time
+            number = self._index.get(serial, self._index.get("hmd") if kind == "Hmd" else None)
+            if number is not None:
+                self._places[number].heard(time, place, seen.sent)
+
+    def told(self, now: float, evenly: bool = True) -> np.ndarray:
+        """Where the points are (n, 3) [m] at a time: evenly, one packet late, or as the newest packets say."""
+        lost = np.full(3, np.nan)
+        return self.placement(np.array([lost if now - one.last > self.stale else one.at(now) if evenly else one.newest
+                                        for one in self._places]))
+
+
+class Replayed(Trackers):
+    """The trackers of a file of packets (`packet_log`), heard again as they came. PacketLogError if it can't be read.
+
+    duration: [s] from the first packet to the last. told_until: when it was asked last.
+    """
+
+    def __init__(self, points: Mapping[str, str], path: str | Path, stale: float = STALE):
+        super().__init__(points, stale)
+        self._packets = deque(packets_of(path))
+        self.duration, self.told_until = self._packets[-1][0], 0.0
+
+    def at(self, time: float) -> np.ndarray:
+        """See `sources.Source`; time 0 is when the first packet came."""
+        while self._packets and self._packets[0][0] <= time:
+            self.take(*self._packets.popleft())
+        self.told_until = time
+        return self.told(time)
+
+
+class Stream(Trackers):
+    """Points from trackers as they are sent.
+
+    port, host: where to listen, see HOST. clock: tells the time [s], such as `time.monotonic`; with it packets are timed as
+    they arrive, and points told one packet late, evenly. log: keeps them. For the rest see `Trackers`.
+    StreamError if host or port can't be had. Close it, or use it in a `with`.
+    """
+
+    def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = HOST, stale: float = STALE,
+                 clock: Callable[[], float] | None = None, log: PacketLog | None = None):
+        super().__init__(points, stale)
+        self._clock, self._lag, self.log = clock, np.nan, log
         self._arrived: deque[tuple[float, str, bytes]] = deque(maxlen=_AT_ONCE)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
@@ -98,36 +157,32 @@ class Stream:
         """Whether it hears nobody but this machine."""
         return self.host.startswith("127.")
 
-    @property
-    def unknown(self) -> list[str]:
-        """Trackers that were heard but are on no point, by their names as they may be shown."""
-        return sorted(printable(serial) for serial in self.heard if serial not in self._index)
-
     def at(self, time: float) -> np.ndarray:
         """See `sources.Source`: without a clock all that came since it was asked before counts as of now."""
         if self._clock is None:
-            now = time
             for _ in range(_AT_ONCE):
                 if (packet := self._receive()) is None:
                     break
                 if packet[1]:
-                    self._take(now, *packet)
-        else:
-            late = self._clock() - time
-            self._lag += (late - self._lag) * _LAGGING if abs(late - self._lag) < self.stale else late - self._lag
-            if np.isnan(self._lag):
-                self._lag = late
-            now = time + self._lag
-            while self._arrived:
-                self._take(*self._arrived.popleft())
-        lost = np.full(3, np.nan)
-        tell = (lambda one: one.newest) if self._clock is None else lambda one: one.at(now)
-        return self.placement(np.array([tell(one) if now - one.last <= self.stale else lost for one in self._places]))
+                    self._keep(time, *packet)
+                    self.take(time, *packet)
+            return self.told(time, evenly=False)
+        late = self._clock() - time
+        self._lag = self._lag + (late - self._lag) * _LAGGING if abs(late - self._lag) < self.stale else late
+        while self._arrived:
+            self.take(*self._arrived.popleft())
+        return self.told(time + self._lag)
 
     def _listen(self, clock: Callable[[], float]) -> None:
         while not self._closed:
             if (packet := self._receive()) is not None and packet[1]:
-                self._arrived.append((clock(), *packet))
+                now = clock()
+                self._keep(now, *packet)
+                self._arrived.append((now, *packet))
+
+    def _keep(self, time: float, sender: str, packet: bytes) -> None:
+        if self.log is not None:
+            self.log.add(time, sender, packet)
 
     def _receive(self) -> tuple[str, bytes] | None:
         """Who sent the next packet, and what; None where there is none, an empty one where some system reports that an earlier
@@ -139,23 +194,6 @@ class Stream:
         except OSError:
             return None if self._closed else ("", b"")
         return sender[0], packet or b"\0"
-
-    def _take(self, time: float, sender: str, packet: bytes) -> None:
-        if sender != self._from[0] and time - self._from[1] <= PINNED:
-            self.foreign += 1
-            return
-        seen = understood(packet)
-        if seen is None:
-            self.broken += 1
-            return
-        if seen.trackers:
-            self._from = sender, time
-        for serial, kind, place in seen.trackers:
-            if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
-                self.heard[serial] = time
-            number = self._index.get(serial, self._index.get("hmd") if kind == "Hmd" else None)
-            if number is not None:
-                self._places[number].heard(time, place, seen.sent)
 
     def close(self) -> None:
         """Listen no more."""

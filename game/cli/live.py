@@ -1,0 +1,191 @@
+"""Points from trackers that people wear: heard over the network or again from a file, recorded, and sent on."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from .base import Mistake, say
+
+FPS = 60
+SUFFIX = ".packets"
+_TELL = 3.0  # s between words about what is waited for
+
+
+@contextmanager
+def heard(worn: Mapping[str, str], packets: Path | None, port: int | None, host: str | None, keep: Path | None) -> Iterator[Any]:
+    """The trackers of a file of packets, or those that send now, all of whose packets are kept in another file."""
+    from gambol.controllers.reconstruction.live import HOST, PORT, PacketLog, Replayed, Stream
+
+    if packets is not None:
+        yield Replayed(worn, packets)
+        return
+    log = None if keep is None else PacketLog(keep)
+    try:
+        with Stream(worn, port or PORT, HOST if host is None else host, clock=_clock(), log=log) as source:
+            yield source
+    finally:
+        if log is not None:
+            log.close()
+            say(log.fault or f"{keep}: all packets; gambol reconstruct {keep} -o FILE hears them again")
+
+
+@contextmanager
+def sent(to: str | None) -> Iterator[Any]:
+    """A sender to a program that shows bodies; None where nobody asks for one."""
+    if to is None:
+        yield None
+        return
+    from gambol.controllers.body import human
+    from gambol.controllers.reconstruction.live import Sender, address
+
+    sender = Sender(human(), *address(to))
+    try:
+        yield sender
+    finally:
+        sender.close()
+
+
+def _clock() -> Any:
+    """What packets are timed by as they come."""
+    return time.monotonic
+
+
+def record(source: Any, controller: Any, out: Path | None, height: float | None, seconds: float | None, sender: Any = None) -> None:
+    """Record what trackers say until the time is up or somebody stops it; what there is by then is written.
+
+    out: None to keep nothing. sender: whom each frame is sent to.
+    """
+    import numpy as np
+
+    from gambol.controllers.contract import Intent
+    from gambol.controllers.locomotion import Locomotion
+    from gambol.controllers.reconstruction import towards
+    from gambol.controllers.supervisor import Supervisor
+
+    someone = Supervisor({"locomotion": Locomotion.load(), "reconstruction": controller})
+    someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
+    poses, contacts, lost = [], [], 0
+    with _stoppable():
+        try:
+            source.placement = placement(source, height)
+            say("recording; Ctrl-C ends it" if out is not None else "sending; Ctrl-C ends it")
+            state = None
+            for now in _times(source, seconds, sender is not None):
+                seen = source.at(now)
+                if state is None:
+                    if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
+                        continue
+                    state = someone.enter(controller.begin(seen), Intent())
+                intent = Intent(towards(state, seen), points=seen)
+                state, pose = someone.step(state, intent, 1 / FPS)
+                lost += someone.active(state)[0] != "reconstruction"
+                if sender is not None:
+                    sender.send(pose, state.ground, now, _sure(state))
+                if out is not None:
+                    poses.append(pose)
+                    contacts.append(state.contacts)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            if poses and out is not None:
+                write_take(out, out.stem, someone.skeleton, poses, contacts)
+    if not poses and out is not None:
+        raise Mistake(f"{out}: nothing was recorded")
+    if lost:
+        say(f"for {lost / FPS:.1f} s there was nothing to follow")
+    if source.broken:
+        say(f"{source.broken} packets were broken and left out")
+    if source.foreign:
+        say(f"{source.foreign} packets of another machine than the first were left out")
+    if sender is not None and sender.lost:
+        say(f"{sender.lost} frames could not be sent")
+
+
+def _sure(state: Any) -> float:
+    """How sure a body is of its pose: the share of the points that are followed; none while it follows nothing."""
+    gate = getattr(state.memory.memory, "gate", None)
+    return 0.0 if gate is None else float(gate.trusted.mean())
+
+
+def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
+    """Times [s] to ask a source at, FPS a second: as they come, or those of a file, where they need not be waited for."""
+    length = getattr(source, "duration", None)
+    if length is None:
+        yield from _ticks(seconds)
+        return
+    number, began, last = 0, time.monotonic(), length if seconds is None else min(length, source.told_until + seconds)
+    while (now := source.told_until + 1 / FPS) <= last:
+        if paced:
+            time.sleep(max(0.0, began + number / FPS - time.monotonic()))
+        number += 1
+        yield now
+
+
+def placement(source: Any, height: float | None) -> Any:
+    """Wait until somebody who wears the trackers stands still, and tell from it where floor and body are."""
+    import numpy as np
+
+    from gambol.controllers.reconstruction.live import Standing, placed
+
+    names = source.controls.names
+    live = not hasattr(source, "duration")
+    if live:
+        say(f"listening at {source.host}, port {source.port}: stand upright for a second, in T-pose or with the arms down")
+    standing, told = Standing(), -_TELL / 2
+    for now in _times(source, None, False):
+        seen = source.at(now)
+        standing = standing.watch(now, seen)
+        if standing.place is not None:
+            try:
+                return placed(standing.place, source.controls, height)
+            except ValueError as error:
+                say(str(error))
+                standing, told = Standing(), now
+        if now - told > _TELL:
+            missing = [name for name, there in zip(names, np.isfinite(seen).all(-1)) if not there]
+            say(f"waiting for {', '.join(missing)}" if missing else "waiting for somebody who stands still")
+            if live and not source.heard and source.local:
+                say("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
+            if source.unknown:
+                say(f"on no point: {', '.join(source.unknown)}; --map says where they are")
+            told = now
+    raise Mistake("nobody stands still in these packets, upright, in T-pose or with the arms down")
+
+
+def _ticks(seconds: float | None) -> Iterator[float]:
+    """Times [s] of a steady clock, FPS a second, each when it has come."""
+    began, number = time.monotonic(), 0
+    while seconds is None or number < round(seconds * FPS):
+        due = began + number / FPS
+        time.sleep(max(0.0, due - time.monotonic()))
+        yield due
+        number += 1
+
+
+@contextmanager
+def _stoppable() -> Iterator[None]:
+    """Whoever ends the program from outside ends it like Ctrl-C does."""
+    def stop(*_: Any) -> None:
+        raise KeyboardInterrupt
+    kinds = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    before = [signal.signal(kind, stop) for kind in kinds]
+    try:
+        yield
+    finally:
+        for kind, handler in zip(kinds, before):
+            signal.signal(kind, handler)
+
+
+def write_take(out: Path, name: str, skeleton: Any, poses: list, contacts: list) -> None:
+    """Write a recorded take, and say so."""
+    import numpy as np
+
+    from ..output import Take, write
+
+    for path in write(out, [Take(name, skeleton, tuple(poses), np.stack(contacts))], FPS):
+        say(f"{path}: {len(poses)} frames, {len(poses) / FPS:.1f} s")
