@@ -10,10 +10,15 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-from hypothesis import HealthCheck, is_hypothesis_test, settings
+# before anything loads numpy, and for the programs that tests start: tests run side by side on all cores, where threads of
+# each that wait for each other cost small matrices forty times what they save
+for library in ("OPENBLAS", "MKL", "OMP"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
-from sampling import BATCHES, KINDS
+import pytest  # noqa: E402
+from hypothesis import HealthCheck, is_hypothesis_test, settings  # noqa: E402
+
+from sampling import BATCHES, KINDS  # noqa: E402
 
 for name, same in (("gambol", True), ("seek", False)):  # a busy machine breaks no law, and fixtures here are values
     settings.register_profile(name, derandomize=same, database=None, deadline=None, print_blob=True,

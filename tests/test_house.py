@@ -122,7 +122,7 @@ PLAN = {
         "reconstruction.neighbours": "compiled reconstruction.database",
         "reconstruction.regression": "compiled body reconstruction.neighbours",
         "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",
-        "reconstruction.following": "body reconstruction.database reconstruction.regression",
+        "reconstruction.following": "contract body reconstruction.database reconstruction.regression",
         "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
                                 "reconstruction.baselines"),
         "reconstruction.evaluation": ("body reconstruction.database reconstruction.regression reconstruction.baselines "

@@ -2,7 +2,8 @@
 
 from . import control_points
 from .control_points import NAMES, SETS, ControlPoints, parse
-from .controller import Reconstruction, towards
+from .controller import Reconstruction
+from .following import towards
 from .database import Database, DatabaseError, build
 from .neighbours import Neighbourhood, Segments, Weights
 from .pose_vector import HEIGHT, JOINTS, SKELETON, WIDTH, encode

@@ -17,7 +17,7 @@ from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, contact_he
                     forward_kinematics, heading_of, human, settle, wrap)
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from .control_points import ControlPoints
-from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved
+from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved, spread
 from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
@@ -25,11 +25,10 @@ READY, HOLDS = 1.0, 1.2
 LOST = 1.0
 """Without a point for so long [s] it gives up."""
 FAR = 1.5
-"""Points that are farther from the body than this on the average [m] can't be taken hold of."""
+"""Points that are farther from the body than this on the average [m] can't be taken hold of; a body that is farther from where
+it begins anew is there at once."""
 APART = 2.5
 """No two points of a standard body are farther apart [m]."""
-CLOSE = 0.3
-"""Nobody walks to points that are so close [m]."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 LEAP = 0.2
@@ -201,6 +200,8 @@ class Reconstruction(Controller):
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
+        if self.starts is not None and gate.at_odds(self.dt) and spread(points) <= APART:
+            return self._anew(following, points, gate.smooth)
         memory, pose = self.method.step(following.memory, goals)
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
@@ -213,6 +214,15 @@ class Reconstruction(Controller):
         step = _CALMED * difference(following.pose, following.before)
         ahead = moved(following.pose, step)
         return replace(after, before=moved(pose, -step), offset=difference(moved(ahead, following.offset), pose))
+
+    def _anew(self, following: Following, points: np.ndarray, velocities: np.ndarray) -> Following:
+        """Begun anew from points that are at odds with the body. It comes there smoothly, unless nobody could."""
+        begun = self._frame(self._begun(*self.starts.find(points, velocities), points, self.dt), points)
+        ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
+        far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
+        offset = np.zeros_like(following.offset) if far else difference(ahead, begun.pose)
+        return replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, offset=offset,
+                       rate=np.zeros_like(offset) if far else following.rate, lost=0.0)
 
     def _after(self, state: CharacterState, pose: Pose, following: Following, dt: float) -> CharacterState:
         """The state with a new pose: its ground frame, velocity and contacts are told from the body."""
@@ -250,7 +260,7 @@ class Reconstruction(Controller):
         away = float(np.linalg.norm(seen - body, axis=-1)[there].mean())
         if away > FAR:
             raise Unable(f"the points are {away * self.factor:.1f} m away from the body")
-        apart = float(np.linalg.norm(seen[there][:, None] - seen[there], axis=-1).max())
+        apart = spread(seen[there])
         if apart > APART:
             raise Unable(f"two points are {apart * self.factor:.1f} m apart, which no body is")
         return away
@@ -264,20 +274,3 @@ class Reconstruction(Controller):
 
     def _grown(self, pose: Pose, level: float) -> Pose:
         return Pose(pose.root * self.factor + [0.0, level, 0.0], pose.rotations)
-
-
-def towards(state: CharacterState, points: np.ndarray) -> np.ndarray:
-    """The velocity (3,) with which a walker goes to points (n, 3) [m] that are too far away to be taken hold of.
-
-    Zero where none is seen, or close by.
-    """
-    there = points[np.isfinite(points).all(-1)]
-    if not len(there):
-        return np.zeros(3)
-    x, z, heading = (float(v) for v in state.ground)
-    way = there.mean(0)[[0, 2]] - [x, z]
-    distance = float(np.hypot(*way))
-    if distance < CLOSE:
-        return np.zeros(3)
-    bearing = float(wrap(np.arctan2(way[0], way[1]) - heading))
-    return np.array([min(1.4, distance) * max(np.cos(bearing), 0.0), np.clip(2.0 * bearing, -2.0, 2.0), 0.0])

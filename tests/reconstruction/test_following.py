@@ -16,8 +16,9 @@ from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump, Physique
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.reconstruction.control_points import SETS, parse
-from gambol.controllers.reconstruction.controller import LOST, Following, Reconstruction, towards
+from gambol.controllers.reconstruction.controller import LOST, Following, Reconstruction
 from gambol.controllers.reconstruction.evaluation.metrics import position_error
+from gambol.controllers.reconstruction.following.approach import towards
 from gambol.controllers.reconstruction.following.feet import GIVE
 from gambol.controllers.reconstruction.following.initial_pose import Starts
 from gambol.controllers.reconstruction.pose_vector import SKELETON
@@ -231,6 +232,17 @@ def test_a_wild_point_is_not_followed(follower, clip, points, wild):
     states = played(follower, follower.begin(seen[0]), seen[1:])
     assert position_error(bodies(SKELETON, states), truth[1:])[30:].max() < 0.06
     assert pulls(bodies(SKELETON, states)).max() < 2.5 * pulls(truth).max()
+
+
+@pytest.mark.parametrize("aside", [(0.0, 0.0, 0.0), (0.9, 0.0, 0.5), (-3.0, 0.0, 2.0)])
+def test_points_that_are_at_odds_with_the_body_begin_it_anew(follower, clip, points, aside):
+    """A clip that begins with four frames of a body at the origin, as some do: the fourth frame after them is right."""
+    empty = follower.controls.on(*(x[0] for x in clip.kinematics())) * [0.0, 1.0, 0.0] + [0.05, 0.0, 0.0]
+    there = points[60:] + np.array(aside)
+    states = played(follower, follower.begin(points[0]), [*[empty] * 4, *there])
+    away = position_error(bodies(SKELETON, states)[4:], clip.kinematics()[0][60:] + np.array(aside))
+    assert away[4 if np.linalg.norm(aside) > 2 else 60:].mean() < 0.03
+    assert np.median([np.abs(follower._points(s.pose) - p).max() for s, p in zip(states[64:], there[60:])]) < 0.02
 
 
 def test_it_gives_up_when_all_points_are_lost_and_then_it_stands(follower, points):

@@ -1,12 +1,13 @@
 """What makes a controller of a method: beginning from nothing but points, a gate for exchanged, lost and wild points, feet out
-of the floor, and taking a body over without a pop.
+of the floor, and taking a body over without a pop; the way to points that are far.
 """
 
+from .approach import spread, towards
 from .feet import above
 from .hand_over import difference, guessed_past, joints_of, moved
 from .initial_pose import Starts
 from .point_gate import Gate
 
 __all__ = [
-    "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved",
+    "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved", "spread", "towards",
 ]

@@ -96,6 +96,12 @@ class Gate:
         after = replace(self, raw=seen, rate=rate, smooth=smooth, steady=steady, trusted=believed, offset=offset, slip=slip)
         return after, np.where(believed[:, None], seen + offset, np.nan)
 
+    def at_odds(self, dt: float) -> bool:
+        """Whether all that is seen, two points or more, has moved like a body for two frames of dt [s], but not like this one:
+        then the body is wrong, and not the points."""
+        there = np.isfinite(self.raw).all(-1)
+        return int(there.sum()) >= 2 and not self.trusted.any() and bool((self.steady[there] > 1.5 * dt).all())
+
 
 def _length(vectors):
     return np.linalg.norm(vectors, axis=-1)

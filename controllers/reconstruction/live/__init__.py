@@ -6,9 +6,10 @@ from .osc_stream import HOST, PORT, Replayed, Stream, Trackers, read_map, usual_
 from .packet_log import SUFFIX, PacketLog, PacketLogError
 from .placing import Standing, placed
 from .sources import Recorded
+from .timeline import Timeline
 from .vmc_sender import Sender, SenderError, address
 
 __all__ = [
     "HOST", "PORT", "SUFFIX", "PacketLog", "PacketLogError", "Recorded", "Replayed", "Sender", "SenderError", "Standing", "Stream",
-    "Trackers", "address", "placed", "read_map", "usual_map",
+    "Timeline", "Trackers", "address", "placed", "read_map", "usual_map",
 ]
