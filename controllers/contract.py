@@ -208,6 +208,10 @@ class Controller(Protocol):
         one that doesn't walk."""
         return None
 
+    def readiness(self, state: CharacterState) -> Any:
+        """How fast (...) it takes a wish up now, as a share of how fast it does as it walks: less while it sets off."""
+        return 1.0
+
     def start(self, ground: Any = (0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. Unable, of one that only
         takes over from others."""

@@ -6,14 +6,14 @@ What is remembered of it is a value, `Going`, in the character's state: the same
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..body import wrap
-from ..contract import CharacterState, Goal, Intent, Status
+from ..contract import CharacterState, Controller, Goal, Intent, Status
 from .goal import arrived, wish
 from .obstacles import SHOULDER
 
@@ -46,7 +46,7 @@ QUICKER = 4
 class Going:
     """How somebody walks to a goal.
 
-    goal: as it was asked for. plan: the way, and `time` how long it has been followed [s]. heading: how he is to stand there [rad]. around, floor:
+    goal: as it was asked for. plan: the way, and `time` how far he is in it [s]. heading: how he is to stand there [rad]. around, floor:
     what stood about as it was planned, and how high the floor lay [m]. spent: since the goal was asked for [s]. stood: for how long he has stood at the goal [s].
     left: how far he was from the goal as it was planned [m]. held: so many plans in a row brought him no nearer. plans: how many were made.
     """
@@ -76,10 +76,10 @@ class Going:
         return Status("done" if self.there else "running")
 
 
-def going(state: CharacterState, intent: Intent, limits: Callable[[float], np.ndarray | None], walks: bool, dt: float) -> tuple[Going | None, Intent]:
+def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool, dt: float) -> tuple[Going | None, Intent]:
     """How the walk to intent.goal goes on, and what to ask of the walker for it: the same intent with the velocity to wish for.
 
-    limits: gives the half-spaces (H, 4) of a share of what is walked, or None where nobody walks. walks: whether he does now; who jumps
+    walker: by whose limits plans are made, and with whose readiness, while he sets off, their time runs. walks: whether he walks now; who jumps
     doesn't, and goes on afterwards. dt: the step that is to be made [s].
     """
     goal = intent.goal
@@ -89,15 +89,15 @@ def going(state: CharacterState, intent: Intent, limits: Callable[[float], np.nd
     if not walks:
         return now, replace(intent, velocity=np.zeros(3))
     if now is None or now.goal != goal:
-        now = _begun(state, intent, goal, limits(SHARE), now)
+        now = _begun(state, intent, goal, walker.limits(SHARE), now)
     elif _changed(now, intent.around, float(state.floor)):
-        now = _again(now, state, intent, limits(SHARE), anew=True)
+        now = _again(now, state, intent, walker.limits(SHARE), anew=True)
     elif not now.plan.reason and _astray(now, state):
-        now = _again(now, state, intent, limits(SHARE))
+        now = _again(now, state, intent, walker.limits(SHARE))
     near = _within(now, state, STAYS) if now.there else bool(np.abs(state.velocity).max() < STILL) and arrived(now.plan, now.time, state.ground)
     now = replace(now, stood=now.stood + dt if near and not now.plan.reason else 0.0)
     velocity = np.zeros(3) if now.there else wish(now.plan, now.time, state.ground, state.velocity)
-    return replace(now, time=now.time + dt, spent=now.spent + dt), replace(intent, velocity=velocity)
+    return replace(now, time=now.time + dt * float(walker.readiness(state)), spent=now.spent + dt), replace(intent, velocity=velocity)
 
 
 def _changed(now: Going, around: Sequence[Any], floor: float) -> bool:
