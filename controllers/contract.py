@@ -227,6 +227,10 @@ class Controller(Protocol):
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
         raise NotImplementedError
 
+    def refusal(self, state: CharacterState, intent: Intent) -> str | None:
+        """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
+        return None
+
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds. ValueError unless 0 < dt ≤ 0.1, see `seconds`."""
         raise NotImplementedError

@@ -107,6 +107,11 @@ class Supervisor(Controller):
             return Duty(name, entered.memory, why, gone_wrong), entered
         return replace(duty, refused=gone_wrong or refused), own
 
+    def refusal(self, state: CharacterState, intent: Intent) -> str | None:
+        """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""
+        found = [why for why in (part.refusal(self.active(state)[1], intent) for part in self.parts.values()) if why is not None]
+        return None if not found else "" if "" in found else found[0]
+
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
         """Who is on duty, and the state as that controller sees it."""
         return state.memory.active, replace(state, memory=state.memory.memory)
