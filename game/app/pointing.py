@@ -1,12 +1,13 @@
-"""Sending a character to the place on the floor that the pointer is over, as actions that a log keeps."""
+"""Sending a character to the place on the floor, or on a box, that the pointer is over, as actions that a log keeps."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from ..scene import Camera
+from ..scene import Box, Camera, Prop
 from ..session import SessionState
 from .point_picking import unproject
 
@@ -50,19 +51,31 @@ class Pointing:
         now_asked = (self.pointer, self.heading)
         if not held or self.waited < EVERY or now_asked == self.asked:  # a camera that moves drags nothing
             return []
-        place = self.place(float(now.after.characters[0].state.floor))
+        place = self.place(now.after.props)
         if place is None:
             return []
         self.asked, self.waited = now_asked, 0
         return ["goto={:.2f}/{:.2f}".format(*place) + ("" if self.heading is None else f"/{self.heading}")]
 
-    def place(self, floor: float) -> tuple[float, float] | None:
-        """Where x, z [m] the pointer is on a floor so high [m]; None above the horizon, or too far away."""
+    def place(self, props: Sequence[Prop]) -> tuple[float, float] | None:
+        """Where x, z [m] the pointer is on the floor, or on a box among props; None above the horizon, or too far away."""
         if self.camera is None:
             return None
         eye = np.asarray(self.camera.eye, float)
         along = unproject(self.camera, self.aspect, np.array([*self.pointer, 1.0])) - eye
         if along[1] > -1e-6:
             return None
-        way = along * (floor - eye[1]) / along[1]
+        far = min((share for share in (_met(eye, along, box) for box in props if isinstance(box, Box)) if share is not None), default=math.inf)
+        way = along * min(far, -eye[1] / along[1])
         return (float(eye[0] + way[0]), float(eye[2] + way[2])) if way[1] < 0.0 and float(np.hypot(way[0], way[2])) < FARTHEST else None
+
+
+def _met(eye: np.ndarray, along: np.ndarray, box: Box) -> float | None:
+    """How many times `along` (3,) from the eye (3,) a line of sight meets the top of a box; None where it does not."""
+    c, s = math.cos(box.heading), math.sin(box.heading)
+    rise = box.slope * np.array([s, 0.0, c])  # of the top, by x and z
+    fall, height = along[1] - rise @ along, eye[1] - box.centre[1] - 0.5 * box.size[1] - rise @ (eye - box.centre)
+    if fall > -1e-9 or height < 0.0:
+        return None
+    x, _, z = eye - height / fall * along - box.centre
+    return -height / fall if abs(c * x - s * z) <= 0.5 * box.size[0] and abs(s * x + c * z) <= 0.5 * box.size[2] else None

@@ -81,6 +81,14 @@ class Levels:
         which = self.floor - tops[:, ::-1].argmax(1)  # the floor where a box is no higher
         return which, tops[np.arange(len(places)), which]
 
+    def floors(self, places: np.ndarray, floor: float) -> np.ndarray:
+        """How high (P,) [m] somebody stands at one place (P, 2) after the other, who begins on a floor so high [m] and takes no higher step."""
+        heights = []
+        for row in self.tops(np.asarray(places, float)):
+            floor = float(row[row <= floor + STEP].max(initial=0.0))
+            heights.append(floor)
+        return np.array(heights)
+
     def shut(self, places: np.ndarray, heights: np.ndarray) -> np.ndarray:
         """Whether something stands or hangs over places (P, 2) on ground of heights (P,) that lets nobody stand there."""
         tops = self.tops(places)[:, :-1]
