@@ -16,13 +16,13 @@ from scipy.sparse.csgraph import dijkstra
 from ..obstacles import SHOULDER
 from .surfaces import Levels
 
-INSET = SHOULDER + 0.02
+INSET = SHOULDER + 0.06
 """Leaps begin and end so far from where a surface ends [m]: where walks lead to."""
 ROOM = 0.5
 """Nobody leaps onto, or off, what is narrower than this [m]."""
 APART = 0.5
 """From one place at a side to the next [m]."""
-BESIDE = 0.42
+BESIDE = 0.40
 """Who leaps up onto a box, or down from it, stands, or lands, so far from it [m]."""
 FARTHEST, HIGHEST = 2.6, 1.2
 """No leap from a stand is thought of that goes farther than this [m], or up higher."""

@@ -159,6 +159,7 @@ class Levels:
         """What stops somebody who walks in a region: the rails where it ends, and what stands or hangs in it."""
         mine = self.regions == region
         found: list[Rail | Post] = []
+        brinks: list[np.ndarray] = []
         for box in range(self.floor):
             if not mine[box]:
                 low, high = self.centres[box, 1] + self.halves[box, 1] * np.array([-1.0, 1.0])
@@ -169,7 +170,11 @@ class Levels:
             for side in range(4):
                 for stretch in _runs(np.flatnonzero(ends & (out.sides == side))):
                     middle, normal = out.places[stretch].mean(0), out.normals[stretch[0]]
-                    found.append(_rail(middle, np.array([THIN, len(stretch) * out.apart[stretch[0]]]), np.arctan2(normal[0], normal[1]) + np.pi / 2))
+                    half = 0.5 * len(stretch) * out.apart[stretch[0]] * np.array([normal[1], -normal[0]])
+                    brinks.append(np.array([middle - half, middle + half]))
+        for stretch in _joined(brinks):
+            along = stretch[1] - stretch[0]
+            found.append(_rail(stretch.mean(0), np.array([THIN, np.hypot(*along)]), np.arctan2(*along)))
         for x, y, z, radius, height in self.pillars.tolist():
             if self._counts(np.array([x, z]), y, y + height, mine):
                 found.append(Post((x, -TALL, z), radius, 2.0 * TALL))
@@ -200,6 +205,23 @@ def _levels(table: bytes, pillars: bytes) -> Levels:
 
 def _rail(place: np.ndarray, size: np.ndarray, heading: float) -> Rail:
     return Rail((float(place[0]), 0.0, float(place[1])), (float(size[0]), 2.0 * TALL, float(size[1])), float(heading))
+
+
+def _joined(stretches: list[np.ndarray]) -> list[np.ndarray]:
+    """Stretches, each from one place to another (2, 2), those that go on in each other as one: the sides of a flight of stairs."""
+    whole: list[np.ndarray] = []
+    for stretch in stretches:
+        while (k := next((k for k, other in enumerate(whole) if _goes_on(stretch, other) or _goes_on(other, stretch)), None)) is not None:
+            other = whole.pop(k)
+            stretch = np.array([stretch[0], other[1]] if _goes_on(stretch, other) else [other[0], stretch[1]])
+        whole.append(stretch)
+    return whole
+
+
+def _goes_on(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether a stretch (2, 2) goes on straight in another."""
+    along, further = one[1] - one[0], other[1] - other[0]
+    return bool(np.hypot(*(other[0] - one[1])) < BESIDE and along @ further > 0.999999 * np.hypot(*along) * np.hypot(*further))
 
 
 def _runs(numbers: np.ndarray) -> list[np.ndarray]:
