@@ -21,8 +21,10 @@ GIVEN_WAY = 0.2
 MANNERS = Manners()
 
 
-def avoiding(world: World, intents: Sequence[Intent]) -> list[Intent]:
+def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray | None]) -> list[Intent]:
     """The intents, one for each character, with which those who walk avoid each other and what stands about; untouched where nobody is in the way.
+
+    ways: (2,) [m/s] along x and z, where each would go in the world, if he were turned to it; None where his intent says all.
 
     Who jumps, follows points or is not there neither avoids nor is avoided.
     """
@@ -35,6 +37,8 @@ def avoiding(world: World, intents: Sequence[Intent]) -> list[Intent]:
     velocity = np.array([world.characters[i].state.velocity for i in who], float)
     asked = np.array([found[i].velocity for i in who], float)
     wishes = in_world(ground, asked)
+    for k, i in enumerate(who):
+        wishes[k] = wishes[k] if ways[i] is None else ways[i]
     chosen = avoid(ground[:, :2], in_world(ground, velocity), wishes, RADIUS, world.props, ground[:, 2], MANNERS)
     led = stepping(ground, velocity, chosen, STEERING, MANNERS)
     share = np.minimum(np.linalg.norm(chosen - wishes, axis=1, keepdims=True) / GIVEN_WAY, 1.0)

@@ -119,7 +119,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
                  for script, character in zip(scripts, world.characters)]
         scripts = tuple(script for script, _ in moves)
         intents = [intent for _, intent in moves]
-        world = world.step(avoiding(world, intents) if scenario.avoid else intents)
+        ways = [script.wished(character.state) for script, character in zip(scripts, world.characters)]
+        world = world.step(avoiding(world, intents, ways) if scenario.avoid else intents)
 
 
 def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:
