@@ -61,9 +61,9 @@ def corridor(count: int, rng) -> Scene:
     """A corridor of 4 × 30 m, half of them against the other half, each once along it and out."""
     half = count // 2
     one, other = spread(half, (-1.5, -19.0), (1.5, -3.0), rng), spread(count - half, (-1.5, 3.0), (1.5, 19.0), rng)
-    start, across = np.concatenate([one, other]), rng.uniform(-1.4, 1.4, count)
-    ends = np.column_stack([across, np.where(np.arange(count) < half, 24.0, -24.0)])
-    return Scene(facing(start, ends), lambda who, number, rng: ends[who] + [0.0, np.sign(ends[who, 1]) * rng.uniform(0, 14)] if number == 0 else None,
+    start = np.concatenate([one, other])
+    ends = np.concatenate([spread(half, (-5.0, 23.0), (5.0, 38.0), rng, 1.2), spread(count - half, (-5.0, -38.0), (5.0, -23.0), rng, 1.2)])
+    return Scene(facing(start, ends), lambda who, number, rng: ends[who] if number == 0 else None,
                  walls((-2.1, -20.0, -2.1, 20.0), (2.1, -20.0, 2.1, 20.0)))
 
 

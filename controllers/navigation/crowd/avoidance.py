@@ -24,7 +24,7 @@ class Manners(NamedTuple):
     horizon: no collision may come for so long; soon: who are too near part within this. halflife: of the spring by which legs
     take up a wish. aside: what each leaves between bodies beside their radii, and wall beside what stands about; brake: how
     long it takes to come as near to that. hurry: who avoids others goes this much faster than he wishes at most; stir: who wishes for less goes
-    this fast at most [m/s]. back: nobody who wishes for more goes back from where he wishes to faster than this [m/s]. right: how far beside head-on [sine] people still pass on the right,
+    this fast at most [m/s]. right: how far beside head-on [sine] people still pass on the right,
     and first: likewise where they cross, lest both dither. sight: what lies farther off the way one looks than
     this [rad] is not seen, unless it is nearer than `felt`. see: nobody farther is looked at, and of those the `most` nearest.
     still: who wishes for less than about this [m/s] leaves it to others to go round him. differ: by how much
@@ -39,7 +39,6 @@ class Manners(NamedTuple):
     brake: float = 0.4
     hurry: float = 1.15
     stir: float = 0.4
-    back: float = 0.1
     right: float = 0.2
     first: float = 0.03
     sight: float = math.radians(100.0)
@@ -89,7 +88,7 @@ def avoid(places, velocities, wishes, radii, around: Sequence[Any] = (), heading
 def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, manners, out):
     """What `avoid` gives, of every walker in turn. near: (N, K) who is nearest, himself among them, N for nobody."""
     count = places.shape[0]
-    planes = np.empty((near.shape[1] + shapes.shape[0] + 1, 4))
+    planes = np.empty((near.shape[1] + shapes.shape[0], 4))
     other, best, slope = np.empty_like(planes), np.empty(2), np.empty(3)
     for i in range(count):
         vx, vz = velocities[i, 0], velocities[i, 1]
@@ -104,10 +103,6 @@ def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, mann
                 least = min(-room / manners.brake, 0.5 * manners.stir)
                 planes[hard, 0], planes[hard, 1] = least * slope[0], least * slope[1]
                 hard += 1
-        if speed > manners.stir:  # people wait rather than turn back
-            planes[hard, 2], planes[hard, 3] = wishes[i, 0] / speed, wishes[i, 1] / speed
-            planes[hard, 0], planes[hard, 1] = -manners.back * planes[hard, 2], -manners.back * planes[hard, 3]
-            hard += 1
         number = hard
         for k in range(near.shape[1]):
             j = near[i, k]
