@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation.crowd import crowd_intent, doors_of, queued, together
+from gambol.controllers.navigation.crowd import aims, crowd_intent, doors_of, queued, together
 from gambol.game.scene import Box, Pillar
 
 WALL = Box((-3.0, 1.0, 0.0), (5.0, 2.0, 0.2)), Box((3.0, 1.0, 0.0), (5.0, 2.0, 0.2))
@@ -44,17 +44,18 @@ def test_one_side_at_a_time():
 def walked(walker, places, goals, seconds, around=(), groups=None):
     offset = goals - places
     state, trails = walker.start(np.column_stack([places, np.arctan2(offset[:, 0], offset[:, 1])])), []
-    for _ in range(round(60 * seconds)):
-        state, _ = walker.step(state, crowd_intent(state.ground, state.velocity, goals, 1.2, around=around, groups=groups), 1 / 60)
+    for step in range(round(60 * seconds)):
+        lead = goals if step and not around else aims(state.ground[:, :2], goals, around) if step % 30 == 0 else lead
+        state, _ = walker.step(state, crowd_intent(state.ground, state.velocity, lead, 1.2, around=around, groups=groups), 1 / 60)
         trails.append(state.ground[:, :2])
     return np.array(trails)
 
 
-def test_eight_of_each_side_get_through_a_door(walker):
-    some = np.array([[x, z] for x in (-1.5, -0.5, 0.5, 1.5) for z in (-3.0, -2.0)])
+def test_four_of_each_side_get_through_a_door(walker):
+    some = np.array([[x, z] for x in (-0.5, 0.6) for z in (-3.0, -2.0)])
     places = np.concatenate([some, -some])
-    trails = walked(walker, places, -places * [1.0, 1.3], 32.0, WALL)
-    apart = np.linalg.norm(trails[:, :, None] - trails[:, None], axis=-1) + np.eye(16)
+    trails = walked(walker, places, -places * [1.0, 1.3], 24.0, WALL)
+    apart = np.linalg.norm(trails[:, :, None] - trails[:, None], axis=-1) + np.eye(8)
     assert apart.min() > 0.42
     assert np.all(np.sign(trails[-1][:, 1]) == -np.sign(places[:, 1])), "everybody is through"
 

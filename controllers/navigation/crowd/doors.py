@@ -27,7 +27,7 @@ DENSE = 1.2
 """So many people stand on a square metre before a door, and no more."""
 EASE = 0.6
 """Over so long a way [m] people slow down behind those who wait."""
-SLIPS, FREE = 3, 1.8
+SLIPS, FREE = 2, 1.6
 """So many go on, however many are there; the others stay so far from the door [m], lest they press into it from all sides."""
 KEPT = 1.5
 """Those who let others out stay so far from the door [m] ..."""
