@@ -15,12 +15,17 @@ FARTHEST = 60.0
 """Nobody is sent farther away than this [m]."""
 NOTCH = 15
 """What a notch of the wheel turns the heading at the goal by [degrees]."""
+CLICKED = "LEFT_BUTTON"
+"""What a click sends with: held, it turns the camera."""
+CLICK, STILL = 15, 0.01
+"""A button that is let go within so many ticks, the pointer no farther than this from where it was [heights of the picture], has been clicked."""
 EVERY = 6
 """While it is dragged, a goal moves at most every so many ticks: each time the way is planned anew."""
 
 
 class Pointing:
-    """The pointer over the floor while the key is held that sends somebody there. heading: at the goal [degrees]; None as one comes."""
+    """The pointer over the floor while the key is held that sends somebody there, or as a button is clicked. heading: at the goal [degrees]; None as
+    one comes. down: where the button went down, and for how many ticks it has been held; None where it is up. clicked: since the last tick."""
 
     def __init__(self):
         self.camera: Camera | None = None
@@ -28,6 +33,8 @@ class Pointing:
         self.held, self.waited = False, EVERY
         self.heading: int | None = None
         self.asked: tuple[tuple[float, float], int | None] | None = None
+        self.down: tuple[tuple[float, float], int] | None = None
+        self.clicked = False
 
     def look(self, camera: Camera, aspect: float) -> None:
         """How the floor is seen from now on. aspect: width over height of the picture that has it."""
@@ -37,14 +44,27 @@ class Pointing:
         """The pointer is at x, y, in heights of the picture."""
         self.pointer = (x, y)
 
+    def button(self, pressed: bool) -> None:
+        """The button goes down or up; what moved the pointer meanwhile was a drag."""
+        if not pressed and self.down is not None:
+            at, ticks = self.down
+            self.clicked = ticks <= CLICK and math.dist(at, self.pointer) < STILL
+        self.down = (self.pointer, 0) if pressed else None
+
     def scroll(self, notches: float) -> bool:
         """The wheel; whether it turns the heading at a goal that is held."""
         if self.held and notches:
             self.heading = ((self.heading or 0) + round(math.copysign(max(abs(notches), 1.0), notches)) * NOTCH) % 360
         return self.held
 
-    def actions(self, now: SessionState, held: bool) -> list[str]:
-        """What the hands ask for in this tick; held: whether the key is down."""
+    def actions(self, now: SessionState, points: bool, held: bool) -> list[str]:
+        """What the hands ask for in this tick. points: whether the pointer points anywhere; held: whether the key is down."""
+        clicked, self.clicked = self.clicked and points, False
+        self.down = None if self.down is None else (self.down[0], self.down[1] + 1)
+        held = held and points
+        if clicked and not held:
+            place = self.place(now.after.props)
+            return [] if place is None else ["goto={:.2f}/{:.2f}".format(*place)]
         if held and not self.held:
             self.heading, self.asked, self.waited = None, None, EVERY
         self.held, self.waited = held, self.waited + 1
