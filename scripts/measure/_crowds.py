@@ -38,8 +38,8 @@ def facing(places, goals) -> np.ndarray:
 def hall(count: int, rng) -> Scene:
     """A hall of 18 × 18 m with four pillars, everybody to one place after the other."""
     pillars = [Pillar((x, 0.0, z), 0.3, 3.0) for x in (-4.0, 4.0) for z in (-4.0, 4.0)]
-    start = spread(count, (-8.5, -8.5), (8.5, 8.5), rng, 0.9)
-    start = start[np.argsort(np.abs(np.abs(start) - 4.0).max(1) < 0.8, kind="stable")]
+    start = spread(count + 12, (-8.5, -8.5), (8.5, 8.5), rng, 0.9)
+    start = start[np.argsort(np.linalg.norm(np.abs(start) - 4.0, axis=1) < 0.8, kind="stable")][:count]  # nobody begins in a pillar
 
     def goal(who, number, rng):
         place = rng.uniform(-8.0, 8.0, 2)
