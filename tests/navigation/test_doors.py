@@ -44,8 +44,9 @@ def test_one_side_at_a_time():
 def walked(walker, places, goals, seconds, around=(), groups=None):
     offset = goals - places
     state, trails = walker.start(np.column_stack([places, np.arctan2(offset[:, 0], offset[:, 1])])), []
+    lead = goals
     for step in range(round(60 * seconds)):
-        lead = goals if step and not around else aims(state.ground[:, :2], goals, around) if step % 30 == 0 else lead
+        lead = aims(state.ground[:, :2], goals, around) if step % 30 == 0 else lead
         state, _ = walker.step(state, crowd_intent(state.ground, state.velocity, lead, 1.2, around=around, groups=groups), 1 / 60)
         trails.append(state.ground[:, :2])
     return np.array(trails)

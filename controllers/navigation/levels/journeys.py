@@ -121,18 +121,19 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
             continue
         without = places + (INSET + BESIDE) * normals
         which, ground = levels.ground(without, height)  # what is higher is another box's matter
-        free = ~levels.shut(without, ground) & (levels.regions[which] != levels.regions[box])
+        own, theirs = int(levels.regions[box]), levels.regions[which]
+        free = ~levels.shut(without, ground) & (theirs != own)
         for k in np.flatnonzero(free):
             here, there = (places[k], height), (without[k], float(ground[k]))
-            _add(found, here, there, levels.regions[box], levels.regions[which[k]])
-            _add(found, there, here, levels.regions[which[k]], levels.regions[box])
+            _add(found, here, there, own, int(theirs[k]))
+            _add(found, there, here, int(theirs[k]), own)
         for other in broad:
-            if levels.regions[other] != levels.regions[box] and len(edges[other][0]):
+            if levels.regions[other] != own and len(edges[other][0]):
                 onto = _nearest_on(levels, other, places)
                 far = np.linalg.norm(onto - places, axis=1)
                 for k in np.argsort(far, kind="stable")[:NEAREST]:
                     if far[k] > 0.1:
-                        _add(found, (places[k], height), (onto[k], edges[other][2]), levels.regions[box], levels.regions[other])
+                        _add(found, (places[k], height), (onto[k], edges[other][2]), own, int(levels.regions[other]))
     return found
 
 
@@ -158,4 +159,4 @@ def _add(found: list, here: tuple[np.ndarray, float], there: tuple[np.ndarray, f
     way, up = there[0] - here[0], there[1] - here[1]
     if np.hypot(*way) <= FARTHEST and up <= HIGHEST:
         heading = math.atan2(way[0], way[1])
-        found.append((Crossing(np.array([*here[0], heading]), np.array([there[0][0], there[1], there[0][1]]), here[1]), int(off), int(onto)))
+        found.append((Crossing(np.array([*here[0], heading]), np.array([there[0][0], there[1], there[0][1]]), here[1]), off, onto))

@@ -73,7 +73,7 @@ class Levels:
         high = self.centres[:, 1] + self.halves[:, 1] + self.slopes * local[..., 1]
         return np.column_stack([np.where(over, high, -np.inf), np.zeros(len(places))])
 
-    def ground(self, places: np.ndarray, below=np.inf) -> tuple[np.ndarray, np.ndarray]:
+    def ground(self, places: np.ndarray, below: np.ndarray | float = np.inf) -> tuple[np.ndarray, np.ndarray]:
         """What is highest at places (P, 2), no higher than `below` (P,) [m]: which surfaces (P,), and how high (P,)."""
         tops = self.tops(places)
         tops = np.where(tops <= np.broadcast_to(below, len(places))[:, None] + 1e-9, tops, -np.inf)
