@@ -208,6 +208,10 @@ class Controller(Protocol):
         one that doesn't walk."""
         return None
 
+    def readiness(self, state: CharacterState) -> Any:
+        """How fast (...) it takes a wish up now, as a share of how fast it does as it walks: less while it sets off."""
+        return 1.0
+
     def start(self, ground: Any = (0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. Unable, of one that only
         takes over from others."""
@@ -222,6 +226,10 @@ class Controller(Protocol):
         """The state with this controller's own memory, ready to step: it takes over pose and motion as
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
         raise NotImplementedError
+
+    def refusal(self, state: CharacterState, intent: Intent) -> str | None:
+        """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
+        return None
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds. ValueError unless 0 < dt ≤ 0.1, see `seconds`."""

@@ -57,6 +57,10 @@ class Scaled(Controller):
         planes = self.controller.limits(share)
         return None if planes is None else planes / np.array([*self._speeds, 1.0])
 
+    def readiness(self, state: CharacterState) -> Any:
+        """How fast it takes a wish up, as a share of how fast it does as it walks."""
+        return self.controller.readiness(state)
+
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """Standing at x, z [m], heading, on a floor so high [m]."""
         x, z, heading = (float(v) for v in ground)

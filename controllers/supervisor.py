@@ -60,6 +60,11 @@ class Supervisor(Controller):
         """The half-spaces (H, 4) of the velocities that the first walks with."""
         return self.parts[self.first].limits(share)
 
+    def readiness(self, state: CharacterState) -> Any:
+        """How fast whoever is on duty takes a wish up, as a share of how fast it does as it walks."""
+        name, own = self.active(state)
+        return self.parts[name].readiness(own)
+
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
         state = self.parts[self.first].start(ground, floor)
@@ -71,7 +76,7 @@ class Supervisor(Controller):
         duty = state.memory
         way = None
         if intent.goal is not None:
-            way, intent = going(state, intent, self.limits, duty.active == self.first, dt)
+            way, intent = going(state, intent, self, duty.active == self.first, dt)
         own = replace(state, memory=duty.memory)
         duty, own = self._choose(duty, own, intent)
         before = state.pose
@@ -101,6 +106,11 @@ class Supervisor(Controller):
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"
             return Duty(name, entered.memory, why, gone_wrong), entered
         return replace(duty, refused=gone_wrong or refused), own
+
+    def refusal(self, state: CharacterState, intent: Intent) -> str | None:
+        """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""
+        found = [why for why in (part.refusal(self.active(state)[1], intent) for part in self.parts.values()) if why is not None]
+        return None if not found else "" if "" in found else found[0]
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
         """Who is on duty, and the state as that controller sees it."""

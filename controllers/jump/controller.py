@@ -124,6 +124,14 @@ class Jump(Controller):
             raise Refused(reason, self.nearest(start, place, floor, leap.airtime, intent.around), here)
         return plan(self.physique, start, way, place, floor)
 
+    def refusal(self, state: CharacterState, intent: Intent) -> str:
+        """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can."""
+        start, floor = self.start_of(state), float(level(state.floor))
+        if intent.leap is None:
+            return "nobody asked for a jump"
+        place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
+        return self.survey(start, place, floor, intent.leap.airtime, intent.around)[1]
+
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                around: Sequence[Any] = ()) -> tuple[Path, str]:
         """The path to a place (3,) off a floor [m], and why it can't be gone, if so: a look at the place, then `arc`."""

@@ -16,6 +16,7 @@ from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from .control_space import ControlSpace
 from .entry import entered
+from .first_stride import readiness
 from .idle import ENDS
 from .kernel import DURATION_AT
 from .library import Library
@@ -69,6 +70,10 @@ class Locomotion(Controller):
     def limits(self, share: float = 1.0) -> np.ndarray | None:
         """The half-spaces (H, 4) of the velocities that it walks with, none of a library without walks."""
         return None if self.walk is None else self.walk.half_spaces(share)
+
+    def readiness(self, state: CharacterState) -> np.ndarray:
+        """How fast (...) wishes are taken up, as a share of how fast a walker does: less while weight goes over for a first stride."""
+        return readiness(state.memory)
 
     def start(self, ground: ArrayLike = (0.0, 0.0, 0.0), floor: np.ndarray | float = 0.0) -> CharacterState:
         """A character at rest at ground (..., 3) x, z [m], heading [rad], on a floor (...) [m] high.

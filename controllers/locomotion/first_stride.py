@@ -75,6 +75,13 @@ def leans(m, ahead):
     return FIRST_PUSH + (1.0 - FIRST_PUSH) * done * done * (3.0 - 2.0 * done)
 
 
+def readiness(memory):
+    """The same (...) of what characters (...) remember, before their next step; those who stand as if they set off in it."""
+    onset = np.where(memory["settled"], BEFORE + END, memory["onset"])
+    done = np.clip((BEFORE + END - onset) / (BEFORE + LEANING), 0.0, 1.0)
+    return np.where(onset > 0.0, FIRST_PUSH + (1.0 - FIRST_PUSH) * done * done * (3.0 - 2.0 * done), 1.0)
+
+
 @kernel
 def start_kernel(m, start, wish, dt):
     """Lead on how far a start shows. One that comes to rest goes over into the blend's offset, which fades."""

@@ -36,7 +36,8 @@ class Following(NamedTuple):
 
 
 def wish(plan: Plan, time: float, ground: np.ndarray, velocity: np.ndarray, following: Following = Following()) -> np.ndarray:
-    """The velocity (3,) v_f, ω, v_l to wish for [m/s, rad/s, m/s], `time` [s] after the plan began.
+    """The velocity (3,) v_f, ω, v_l to wish for [m/s, rad/s, m/s], `time` [s] into the plan: who sets off is late, so his time runs by
+    his controller's `readiness`.
 
     ground: (3,) x, z [m], heading [rad], where the walker is. velocity: (3,) how he moves. Nothing once he has arrived, or where
     there is no plan.

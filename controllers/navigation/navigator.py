@@ -1,4 +1,4 @@
-"""Walking to a goal: a plan is made, followed, and made anew where it no longer holds.
+"""Walking to a goal: a plan is made, followed, and made anew where it no longer holds; where no walk leads on, he walks to a leap, and leaps.
 
 What is remembered of it is a value, `Going`, in the character's state: the same states and intents give the same walks, to the bit.
 """
@@ -6,15 +6,16 @@ What is remembered of it is a value, `Going`, in the character's state: the same
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..body import wrap
-from ..contract import CharacterState, Goal, Intent, Status
+from ..contract import CharacterState, Controller, Goal, Intent, Leap, Status
 from .goal import arrived, wish
+from .levels import Crossing, Leg, levels_of, named, next_leg
 from .obstacles import SHOULDER
 
 if TYPE_CHECKING:  # who never goes to a goal loads no planner
@@ -38,6 +39,14 @@ HELD_UP = 4
 """After so many plans in a row that were worth nothing he is held up."""
 LATE = 4.0
 """Who has not arrived so long after his plan's end [s] plans anew."""
+OFFSET, ASKEW, SLOW = 0.07, 0.1, 0.3
+"""Who is so near to where he is to leap from [m], turned to it so far [rad], and no faster than this [m/s], leaps."""
+REFUSED = 0.4
+"""A leap that can't be made for so long [s] is given up for another way."""
+MISSED = 0.5
+"""Who lands farther from where he should [m] leaps so no more."""
+ONWARD = 0.3
+"""Who has landed and has to go on is asked to walk at this speed [m/s], and gets up sooner."""
 QUICKER = 4
 """So often a quicker plan is sought for who has to be there within some time."""
 
@@ -46,27 +55,33 @@ QUICKER = 4
 class Going:
     """How somebody walks to a goal.
 
-    goal: as it was asked for. plan: the way, and `time` how long it has been followed [s]. heading: how he is to stand there [rad]. around, floor:
-    what stood about as it was planned, and how high the floor lay [m]. spent: since the goal was asked for [s]. stood: for how long he has stood at the goal [s].
-    left: how far he was from the goal as it was planned [m]. held: so many plans in a row brought him no nearer. plans: how many were made.
+    goal: as it was asked for. plan: the walk there, or to where the first of `crossings` is leapt, and `time` how far he is in it [s]. heading: how he
+    is to stand at its end [rad]. around: what stood about as it was planned, and stops what of it stops him. spent: since the goal was asked for [s].
+    stood: for how long he has stood at the plan's end [s]. left: how far he was from it as it was planned [m]. held: so many plans in a row brought him no nearer. plans:
+    how many were made. crossings: the leaps that are left. asked: for how long the first was asked for [s]. leapt: whether somebody else is on duty.
+    barred: leaps that he could not make.
     """
 
     goal: Goal
     plan: Plan
     heading: float
     around: Sequence[Any]
-    floor: float
+    stops: Sequence[Any]
     time: float = 0.0
     spent: float = 0.0
     stood: float = 0.0
     left: float = math.inf
     held: int = 0
     plans: int = 1
+    crossings: tuple[Crossing, ...] = ()
+    asked: float = 0.0
+    leapt: bool = False
+    barred: tuple[tuple[float, ...], ...] = ()
 
     @property
     def there(self) -> bool:
         """Whether he has arrived, and stands."""
-        return self.stood > STOOD
+        return self.stood > STOOD and not self.crossings
 
     @property
     def status(self) -> Status:
@@ -76,10 +91,10 @@ class Going:
         return Status("done" if self.there else "running")
 
 
-def going(state: CharacterState, intent: Intent, limits: Callable[[float], np.ndarray | None], walks: bool, dt: float) -> tuple[Going | None, Intent]:
+def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool, dt: float) -> tuple[Going | None, Intent]:
     """How the walk to intent.goal goes on, and what to ask of the walker for it: the same intent with the velocity to wish for.
 
-    limits: gives the half-spaces (H, 4) of a share of what is walked, or None where nobody walks. walks: whether he does now; who jumps
+    walker: by whose limits plans are made, and with whose readiness, while he sets off, their time runs. walks: whether he walks now; who jumps
     doesn't, and goes on afterwards. dt: the step that is to be made [s].
     """
     goal = intent.goal
@@ -87,26 +102,42 @@ def going(state: CharacterState, intent: Intent, limits: Callable[[float], np.nd
     if goal is None:
         return None, intent
     if not walks:
-        return now, replace(intent, velocity=np.zeros(3))
+        on = ONWARD if now is not None and not now.there and not now.plan.reason else 0.0
+        return now if now is None else replace(now, leapt=True), replace(intent, velocity=np.array([on, 0.0, 0.0]))
     if now is None or now.goal != goal:
-        now = _begun(state, intent, goal, limits(SHARE), now)
-    elif _changed(now, intent.around, float(state.floor)):
-        now = _again(now, state, intent, limits(SHARE), anew=True)
+        now = _begun(state, intent, goal, walker, None if now is None else now.plans)
+    elif now.leapt or _changed(now, intent.around):
+        now = _onward(now, state, intent, walker)
+    elif now.asked > REFUSED:
+        now = _onward(replace(now, barred=(*now.barred, named(now.crossings[0]))), state, intent, walker)
     elif not now.plan.reason and _astray(now, state):
-        now = _again(now, state, intent, limits(SHARE))
+        now = _again(now, state, intent, walker)
     near = _within(now, state, STAYS) if now.there else bool(np.abs(state.velocity).max() < STILL) and arrived(now.plan, now.time, state.ground)
     now = replace(now, stood=now.stood + dt if near and not now.plan.reason else 0.0)
     velocity = np.zeros(3) if now.there else wish(now.plan, now.time, state.ground, state.velocity)
-    return replace(now, time=now.time + dt, spent=now.spent + dt), replace(intent, velocity=velocity)
+    leap = intent.leap
+    if now.crossings and leap is None and not now.plan.reason and _ready(now, state):
+        leap, now = Leap(now.crossings[0].place), replace(now, asked=now.asked + dt)
+    now = replace(now, time=now.time + dt * float(walker.readiness(state)), spent=now.spent + dt)
+    return now, replace(intent, velocity=velocity, leap=leap)
 
 
-def _changed(now: Going, around: Sequence[Any], floor: float) -> bool:
+def _ready(now: Going, state: CharacterState) -> bool:
+    """Whether he stands where the next leap goes off, or nearly stands."""
+    return _within(now, state, (OFFSET, ASKEW)) and math.hypot(state.velocity[0], state.velocity[2]) < SLOW
+
+
+def _changed(now: Going, around: Sequence[Any]) -> bool:
     """Whether other things stand in the way than when it was planned."""
-    if around is now.around and abs(floor - now.floor) < 1e-3:
-        return False
-    from .routes import shapes_of
+    return around is not now.around and levels_of(around) is not levels_of(now.around)
 
-    return not np.array_equal(shapes_of(around, floor), shapes_of(now.around, now.floor))
+
+def _onward(now: Going, state: CharacterState, intent: Intent, walker: Controller) -> Going:
+    """The way from where he is, after a leap or where something else stands about now."""
+    barred = now.barred
+    if now.leapt and now.crossings and math.dist(state.ground[:2], now.crossings[0].place[[0, 2]]) > MISSED:
+        barred = (*barred, named(now.crossings[0]))
+    return replace(_begun(state, intent, now.goal, walker, now.plans, now.spent, barred), spent=now.spent)
 
 
 def _astray(now: Going, state: CharacterState) -> bool:
@@ -123,46 +154,53 @@ def _within(now: Going, state: CharacterState, near: tuple[float, float]) -> boo
     return math.hypot(off[0], off[1]) <= near[0] and abs(float(wrap(off[2]))) <= near[1]
 
 
-def _begun(state: CharacterState, intent: Intent, goal: Goal, planes: np.ndarray | None, before: Going | None) -> Going:
-    """The walk to a new goal."""
-    floor = float(state.floor)
-    if planes is None:
-        from .planning import Plan
-
-        none = Plan.none(state.ground, np.array([*goal.floor, state.ground[2]]), "nobody here walks")
-        return Going(goal, none, float(state.ground[2]), intent.around, floor)
-    heading = _arrival(state.ground, goal.floor, intent.around, floor) if goal.heading is None else goal.heading
-    made = _planned(state, np.array([*goal.floor, heading]), intent.around, planes, goal.within, True)
-    return Going(goal, made, heading, intent.around, floor, left=_left(state, made), plans=1 if before is None else before.plans + 1)
-
-
-def _again(now: Going, state: CharacterState, intent: Intent, planes: np.ndarray | None, anew: bool = False) -> Going:
-    """Another plan to the same goal. anew: something else stands about, so that what was tried before counts for nothing."""
+def _begun(state: CharacterState, intent: Intent, goal: Goal, walker: Controller, plans: int | None, spent: float = 0.0,
+           barred: tuple[tuple[float, ...], ...] = ()) -> Going:
+    """The way to a goal, `spent` [s] after it was asked for, as so many plans had been made."""
     from .planning import Plan
 
+    planes = walker.limits(SHARE)
+    if planes is None:
+        none = Plan.none(state.ground, np.array([*goal.floor, state.ground[2]]), "nobody here walks")
+        return Going(goal, none, float(state.ground[2]), intent.around, intent.around)
+    leg = next_leg(walker, state, goal, intent.around, barred)
+    heading = _arrival(state, leg) if leg.heading is None else leg.heading
+    end = np.array([*leg.place, heading])
+    within = None if leg.crossings or goal.within is None else max(goal.within - spent, 0.1)
+    made = Plan.none(state.ground, end, leg.reason) if leg.reason else _planned(state, end, leg.around, planes, within, not spent)
+    return Going(goal, made, heading, intent.around, leg.around, left=_left(state, made), plans=1 if plans is None else plans + 1,
+                 crossings=leg.crossings, barred=barred)
+
+
+def _again(now: Going, state: CharacterState, intent: Intent, walker: Controller) -> Going:
+    """Another plan to the same end."""
+    from .planning import Plan
+
+    planes = walker.limits(SHARE)
     assert planes is not None  # he walked
-    goal, left = np.array([*now.goal.floor, now.heading]), _left(state, now.plan)
-    held = 0 if anew or now.there or left < now.left - NEARER else now.held + 1
+    goal, left = now.plan.goal, _left(state, now.plan)
+    goal = np.array([goal[0], goal[1], now.heading])
+    held = 0 if now.there or left < now.left - NEARER else now.held + 1
     if held >= HELD_UP:
-        made = Plan.none(state.ground, goal, f"held up {left:.2f} m before the goal")
+        made = Plan.none(state.ground, goal, f"held up {left:.2f} m before the {'leap' if now.crossings else 'goal'}")
     else:
-        within = None if now.goal.within is None else max(now.goal.within - now.spent, 0.1)
-        made = _planned(state, goal, intent.around, planes, within, False)
-    return Going(now.goal, made, now.heading, intent.around, float(state.floor), spent=now.spent, left=left, held=held, plans=now.plans + 1)
+        within = None if now.goal.within is None or now.crossings else max(now.goal.within - now.spent, 0.1)
+        made = _planned(state, goal, now.stops, planes, within, False)
+    return replace(now, plan=made, time=0.0, stood=0.0, asked=0.0, left=left, held=held, plans=now.plans + 1)
 
 
 def _left(state: CharacterState, made: Plan) -> float:
     return float(np.hypot(*(made.goal - state.ground)[:2]))
 
 
-def _arrival(ground: np.ndarray, place: np.ndarray, around: Sequence[Any], floor: float) -> float:
+def _arrival(state: CharacterState, leg: Leg) -> float:
     """The heading [rad] with which the shortest way arrives; the walker's own where he is there already."""
     from .routes import shapes_of, ways
 
-    shapes = shapes_of(around, floor)
-    found = ways(np.asarray(ground[:2], float), place, shapes, SHOULDER) if len(shapes) else []
-    last = place - (found[0][-2] if found else ground[:2])
-    return float(ground[2]) if math.hypot(*last) < NEARER else math.atan2(*last)
+    shapes, here = shapes_of(leg.around, float(state.floor)), np.asarray(state.ground[:2], float)
+    found = ways(here, leg.place, shapes, SHOULDER) if len(shapes) else []
+    last = leg.place - (found[0][-2] if found else here)
+    return float(state.ground[2]) if math.hypot(*last) < NEARER else math.atan2(*last)
 
 
 def _planned(state: CharacterState, goal: np.ndarray, around: Sequence[Any], planes: np.ndarray, within: float | None, strictly: bool) -> Plan:

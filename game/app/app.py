@@ -22,7 +22,7 @@ from ..world import DT, FixedStep, Methods, World
 from .capture import Capture
 from .hands import Hands
 from .past import History
-from .pointing import Pointing
+from .pointing import CLICKED, Pointing
 from .held_points import HeldPoints
 from .hints import Teacher
 from .preparing import Preparing
@@ -111,8 +111,10 @@ class Play:
                 return self.held_points.move(x, y, dx, dy, self.hands.keyboard.held("run", self.hands.bindings))
             case Scroll(dy=notches):
                 return self.pointing.scroll(notches) or self.held_points.scroll(notches)
-            case KeyEvent(key, pressed) if self.hands.grabs(key):
-                return self.held_points.grab(self.now) if pressed else self.held_points.let_go()
+            case KeyEvent(key, pressed):
+                if key == CLICKED and not self.held_points.holds(self.now):
+                    self.pointing.button(pressed)
+                return self.hands.grabs(key) and (self.held_points.grab(self.now) if pressed else self.held_points.let_go())
         return False
 
     def do(self, action: str, player: int = 0) -> None:
@@ -198,7 +200,7 @@ class Play:
         if self.past.look is None and not asked and self.past.kept and self.hands.holds("rewind"):
             self.past.go(0)
         if not (asked or self.past.look or self.watching):  # what is pressed may change whose the points are
-            for action in (*self.held_points.actions(self.now, self.now.number * DT), *self.pointing.actions(self.now, self._points)):
+            for action in (*self.held_points.actions(self.now, self.now.number * DT), *self.pointing.actions(self.now, self._points, self.hands.keyboard.held("go_to", self.hands.bindings))):
                 self._wish(Wish(pressed=(action,)))
         asked_for = self.hands.wishes(self.players)
         asked_for = asked_for if self.jumps else self._grounded(asked_for)
@@ -297,8 +299,8 @@ class Play:
 
     @property
     def _points(self) -> bool:
-        """Whether the key is held that sends the first player to the pointer; a captured mouse points nowhere."""
-        return self.jumps and not (self.mouse_captured or self.now.paused) and self.hands.keyboard.held("go_to", self.hands.bindings)
+        """Whether the first player can be sent to the pointer; a captured mouse points nowhere."""
+        return self.jumps and not (self.mouse_captured or self.now.paused)
 
     @property
     def _taught(self) -> bool:

@@ -1,12 +1,13 @@
-"""Sending a character to the place on the floor that the pointer is over, as actions that a log keeps."""
+"""Sending a character to the place on the floor, or on a box, that the pointer is over, as actions that a log keeps."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from ..scene import Camera
+from ..scene import Box, Camera, Prop
 from ..session import SessionState
 from .point_picking import unproject
 
@@ -14,12 +15,17 @@ FARTHEST = 60.0
 """Nobody is sent farther away than this [m]."""
 NOTCH = 15
 """What a notch of the wheel turns the heading at the goal by [degrees]."""
+CLICKED = "LEFT_BUTTON"
+"""What a click sends with: held, it turns the camera."""
+CLICK, STILL = 15, 0.01
+"""A button that is let go within so many ticks, the pointer no farther than this from where it was [heights of the picture], has been clicked."""
 EVERY = 6
 """While it is dragged, a goal moves at most every so many ticks: each time the way is planned anew."""
 
 
 class Pointing:
-    """The pointer over the floor while the key is held that sends somebody there. heading: at the goal [degrees]; None as one comes."""
+    """The pointer over the floor while the key is held that sends somebody there, or as a button is clicked. heading: at the goal [degrees]; None as
+    one comes. down: where the button went down, and for how many ticks it has been held; None where it is up. clicked: since the last tick."""
 
     def __init__(self):
         self.camera: Camera | None = None
@@ -27,6 +33,8 @@ class Pointing:
         self.held, self.waited = False, EVERY
         self.heading: int | None = None
         self.asked: tuple[tuple[float, float], int | None] | None = None
+        self.down: tuple[tuple[float, float], int] | None = None
+        self.clicked = False
 
     def look(self, camera: Camera, aspect: float) -> None:
         """How the floor is seen from now on. aspect: width over height of the picture that has it."""
@@ -36,33 +44,58 @@ class Pointing:
         """The pointer is at x, y, in heights of the picture."""
         self.pointer = (x, y)
 
+    def button(self, pressed: bool) -> None:
+        """The button goes down or up; what moved the pointer meanwhile was a drag."""
+        if not pressed and self.down is not None:
+            at, ticks = self.down
+            self.clicked = ticks <= CLICK and math.dist(at, self.pointer) < STILL
+        self.down = (self.pointer, 0) if pressed else None
+
     def scroll(self, notches: float) -> bool:
         """The wheel; whether it turns the heading at a goal that is held."""
         if self.held and notches:
             self.heading = ((self.heading or 0) + round(math.copysign(max(abs(notches), 1.0), notches)) * NOTCH) % 360
         return self.held
 
-    def actions(self, now: SessionState, held: bool) -> list[str]:
-        """What the hands ask for in this tick; held: whether the key is down."""
+    def actions(self, now: SessionState, points: bool, held: bool) -> list[str]:
+        """What the hands ask for in this tick. points: whether the pointer points anywhere; held: whether the key is down."""
+        clicked, self.clicked = self.clicked and points, False
+        self.down = None if self.down is None else (self.down[0], self.down[1] + 1)
+        held = held and points
+        if clicked and not held:
+            place = self.place(now.after.props)
+            return [] if place is None else ["goto={:.2f}/{:.2f}".format(*place)]
         if held and not self.held:
             self.heading, self.asked, self.waited = None, None, EVERY
         self.held, self.waited = held, self.waited + 1
         now_asked = (self.pointer, self.heading)
         if not held or self.waited < EVERY or now_asked == self.asked:  # a camera that moves drags nothing
             return []
-        place = self.place(float(now.after.characters[0].state.floor))
+        place = self.place(now.after.props)
         if place is None:
             return []
         self.asked, self.waited = now_asked, 0
         return ["goto={:.2f}/{:.2f}".format(*place) + ("" if self.heading is None else f"/{self.heading}")]
 
-    def place(self, floor: float) -> tuple[float, float] | None:
-        """Where x, z [m] the pointer is on a floor so high [m]; None above the horizon, or too far away."""
+    def place(self, props: Sequence[Prop]) -> tuple[float, float] | None:
+        """Where x, z [m] the pointer is on the floor, or on a box among props; None above the horizon, or too far away."""
         if self.camera is None:
             return None
         eye = np.asarray(self.camera.eye, float)
         along = unproject(self.camera, self.aspect, np.array([*self.pointer, 1.0])) - eye
         if along[1] > -1e-6:
             return None
-        way = along * (floor - eye[1]) / along[1]
+        far = min((share for share in (_met(eye, along, box) for box in props if isinstance(box, Box)) if share is not None), default=math.inf)
+        way = along * min(far, -eye[1] / along[1])
         return (float(eye[0] + way[0]), float(eye[2] + way[2])) if way[1] < 0.0 and float(np.hypot(way[0], way[2])) < FARTHEST else None
+
+
+def _met(eye: np.ndarray, along: np.ndarray, box: Box) -> float | None:
+    """How many times `along` (3,) from the eye (3,) a line of sight meets the top of a box; None where it does not."""
+    c, s = math.cos(box.heading), math.sin(box.heading)
+    rise = box.slope * np.array([s, 0.0, c])  # of the top, by x and z
+    fall, height = along[1] - rise @ along, eye[1] - box.centre[1] - 0.5 * box.size[1] - rise @ (eye - box.centre)
+    if fall > -1e-9 or height < 0.0:
+        return None
+    x, _, z = eye - height / fall * along - box.centre
+    return -height / fall if abs(c * x - s * z) <= 0.5 * box.size[0] and abs(s * x + c * z) <= 0.5 * box.size[2] else None

@@ -11,6 +11,7 @@ import numpy as np
 
 from gambol.controllers.contract import CharacterState
 from gambol.controllers.navigation import Going
+from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import Figure, Line, Overlays, Sketch
 from ..world import World
@@ -23,6 +24,8 @@ LOOKS = 0.25
 """From one mark of the heading to the next [s] ..."""
 LONG = 0.16
 """... and how long it is [m]."""
+BEND = 0.35
+"""How high a leap that is ahead is drawn [m]."""
 PLACE = 0.16
 """The radius of the ring at a goal [m]."""
 PARTS = ("time", "forward", "turning", "sideways", "looking away")
@@ -37,19 +40,40 @@ def led(figures: Sequence[Figure], after: World, overlays: Overlays) -> tuple[Fi
 
 
 def _way(way: Going, floor: float) -> list[Sketch]:
-    tint = CANNOT if way.plan.reason else CAN
-    heading = way.plan.goal[2]
-    place = np.array([way.goal.place[0], floor, way.goal.place[-1]])
-    drawn: list[Sketch] = [replace(sketch, layer="path") for sketch in ring(place, tint, PLACE)]
-    if way.plan.reason:
-        return drawn
-    ahead = np.array([math.sin(heading), 0.0, math.cos(heading)])
-    drawn.append(Line("path", place + [0.0, LIFT, 0.0] + np.array([[0.0], [1.8 * PLACE]]) * ahead, tint, 0.05, flat=True))
-    first = math.ceil(way.time / LOOKS) * LOOKS
-    for x, z, turned in way.plan.at(np.arange(first, way.plan.seconds, LOOKS))[0]:
-        here, there = np.array([x, floor + LIFT, z]), np.array([math.sin(turned), 0.0, math.cos(turned)])
-        drawn.append(Line("path", here + np.array([[0.0], [LONG]]) * there, tint, 0.025, (0.9, 0.2), flat=True))
+    tint, levels = CANNOT if way.plan.reason else CAN, levels_of(way.around)
+    drawn: list[Sketch] = []
+    walked = way.plan.at(np.arange(math.ceil(way.time / LOOKS) * LOOKS, way.plan.seconds + LOOKS, LOOKS))[0]  # the last one is its end
+    heights = levels.floors(walked[:, :2], floor)
+    if not way.plan.reason:
+        for (x, z, turned), high in zip(walked[:-1], heights[:-1]):
+            drawn.append(_mark(np.array([x, high, z]), turned, np.array([0.0, LONG]), tint, 0.025, (0.9, 0.2)))
+    place, last = np.array([way.goal.place[0], heights[-1] if len(heights) else floor, way.goal.place[-1]]), None
+    for leap in way.crossings:
+        at = np.array([leap.ground[0], leap.height, leap.ground[1]])
+        drawn += [] if last is None else _onward(last, at, tint)
+        share = np.linspace(0.0, 1.0, 17)[:, None]
+        bent = at + share * (leap.place - at) + [0.0, LIFT, 0.0] + 4.0 * share * (1.0 - share) * [0.0, BEND, 0.0]
+        drawn.append(Line("path", bent, tint, 0.02, dashed=True))
+        last = leap.place
+    if last is not None:
+        straight = last + np.linspace(0.0, 1.0, 65)[:, None] * (place - last)
+        place[1] = levels.floors(straight[:, [0, 2]], float(last[1]))[-1]
+        drawn += _onward(last, place, tint)
+    drawn += [replace(sketch, layer="path") for sketch in ring(place, tint, PLACE)]
+    if not (way.plan.reason or way.crossings):
+        drawn.append(_mark(place, way.plan.goal[2], np.array([0.0, 1.8 * PLACE]), tint, 0.05, (1.0, 1.0)))
     return drawn
+
+
+def _mark(place: np.ndarray, heading: float, far: np.ndarray, tint, width: float, opacity: tuple[float, float]) -> Line:
+    """A short line that looks where somebody does."""
+    ahead = np.array([math.sin(heading), 0.0, math.cos(heading)])
+    return Line("path", place + [0.0, LIFT, 0.0] + far[:, None] * ahead, tint, width, opacity, flat=True)
+
+
+def _onward(here: np.ndarray, there: np.ndarray, tint) -> list[Sketch]:
+    """A walk that is not planned yet."""
+    return [Line("path", np.array([here, there]) + [0.0, LIFT, 0.0], tint, 0.02, (0.5, 0.5), dashed=True, flat=True)]
 
 
 def on_the_way(state: CharacterState) -> tuple[str, ...]:
@@ -63,7 +87,9 @@ def on_the_way(state: CharacterState) -> tuple[str, ...]:
         return ("at the goal",)
     parts = cost_of(way.plan)
     shares = "   ".join(f"{name} {value:.1f}" for name, value in zip(PARTS, parts) if value >= 0.05)
-    return (f"to the goal: {min(way.time, way.plan.seconds):.1f} of {way.plan.seconds:.1f} s", f"cost {way.plan.cost:.1f}: {shares}")
+    leaps = len(way.crossings)
+    where = "the goal" if not leaps else "a leap" if leaps == 1 else f"the first of {leaps} leaps"
+    return (f"to {where}: {min(way.time, way.plan.seconds):.1f} of {way.plan.seconds:.1f} s", f"cost {way.plan.cost:.1f}: {shares}")
 
 
 def cost_of(plan: Plan, samples: int = 200) -> np.ndarray:

@@ -102,6 +102,12 @@ class Script:
             script, intent = script._ask_jump(move, move.jump, state, intent)
         return replace(script, steps=script.steps + 1), intent
 
+    def wished(self, state: CharacterState) -> np.ndarray | None:
+        """The velocity (2,) [m/s] along x and z that its move along a path would have in the world, however its walker is turned; None of others."""
+        if self.done or self.path is None or self.moves[self.index].facing is not None:
+            return None
+        return follow(self.path, state.ground, np.float64(self.progress), self.moves[self.index].speed)[0]
+
     def _next(self, state: CharacterState) -> Script:
         """The beginning of the next move."""
         jump, refused = self.moves[self.index].jump, self.refused

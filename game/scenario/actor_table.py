@@ -42,7 +42,8 @@ class ActorTable(Table):
 
     body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
     points it follows instead of moves of its own. ghost: one sees through it. enters, leaves: when it is there [s], from
-    the beginning to the end by default; its moves begin as it enters. Who follows an actor comes and goes with it.
+    the beginning to the end by default; its moves begin as it enters. group: those of the same name walk together,
+    side by side, where actors avoid each other. Who follows an actor comes and goes with it.
     """
 
     name: FileName = "A"
@@ -54,6 +55,7 @@ class ActorTable(Table):
     gravity: Gravity | None = None
     enters: Moment = 0.0
     leaves: Seconds | None = None
+    group: FileName | None = None
     moves: tuple[MoveTable, ...] = ()
 
     @model_validator(mode="after")

@@ -111,6 +111,8 @@ class Act:
 def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
     """The run before the first step and after every one, without end."""
     world, props = opening(scenario, controller), scenario.stage()
+    names = [actor.group for actor in scenario.actors]
+    groups = [-1 if name is None else names.index(name) for name in names] + [-1] * (len(world.characters) - len(names))
     scripts = tuple(actor.script(actor.jumper(scenario.gravity), props) for actor in scenario.actors)
     scripts += (Script(()),) * (len(world.characters) - len(scripts))
     while True:
@@ -119,7 +121,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
                  for script, character in zip(scripts, world.characters)]
         scripts = tuple(script for script, _ in moves)
         intents = [intent for _, intent in moves]
-        world = world.step(avoiding(world, intents) if scenario.avoid else intents)
+        ways = [script.wished(character.state) for script, character in zip(scripts, world.characters)]
+        world = world.step(avoiding(world, intents, ways, groups) if scenario.avoid else intents)
 
 
 def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:

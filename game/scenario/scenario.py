@@ -54,6 +54,9 @@ class Scenario(Table):
         names = [actor.name for actor in self.actors]
         if len({name.casefold() for name in names}) < len(names):  # some disks know no capitals
             raise ValueError(f"actors need different names, in more than capitals; got {', '.join(names)}")
+        for i, actor in enumerate(self.actors):
+            if actor.group is not None and not self.avoid:
+                raise ValueError(f"actors[{i}].group: who walks together avoids each other: it goes with avoid = true")
         times = [shot.at for shot in self.shots]
         if times[0] != 0.0 or times != sorted(set(times)):
             raise ValueError(f"shots must begin at = 0 and then rise; got {', '.join(f'{t:g}' for t in times)}")

@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation
 from gambol.controllers.body import Pose, forward_kinematics, wrap
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import drift
+from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
@@ -207,10 +208,11 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16)) if way is None else \
             np.vstack([ground, way.plan.at(np.linspace(min(way.time, way.plan.seconds), way.plan.seconds, 48))[0]])
         lift = float(new.state.floor) + FLOOR_LIFT
+        along = np.full(len(ahead), lift) if way is None else levels_of(way.around).floors(ahead[:, :2], float(new.state.floor)) + FLOOR_LIFT
         here = np.array([[ground[0], lift, ground[1]]])
         contacts = (old if alpha < 0.5 else new).state.contacts
         drawn.append(Figure(positions, orientations, new.tint, contacts,
                             np.concatenate([old.trail, here]),
-                            np.stack([ahead[:, 0], np.full(len(ahead), lift), ahead[:, 1]], -1),
+                            np.stack([ahead[:, 0], along, ahead[:, 1]], -1),
                             new.controller.body, opacity=new.opacity if new.there(before.number) else 0.0))
     return tuple(drawn)

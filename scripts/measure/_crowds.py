@@ -38,8 +38,8 @@ def facing(places, goals) -> np.ndarray:
 def hall(count: int, rng) -> Scene:
     """A hall of 18 × 18 m with four pillars, everybody to one place after the other."""
     pillars = [Pillar((x, 0.0, z), 0.3, 3.0) for x in (-4.0, 4.0) for z in (-4.0, 4.0)]
-    start = spread(count, (-8.5, -8.5), (8.5, 8.5), rng, 0.9)
-    start = start[np.argsort(np.abs(np.abs(start) - 4.0).max(1) < 0.8, kind="stable")]
+    start = spread(count + 12, (-8.5, -8.5), (8.5, 8.5), rng, 0.9)
+    start = start[np.argsort(np.linalg.norm(np.abs(start) - 4.0, axis=1) < 0.8, kind="stable")][:count]  # nobody begins in a pillar
 
     def goal(who, number, rng):
         place = rng.uniform(-8.0, 8.0, 2)
@@ -61,9 +61,9 @@ def corridor(count: int, rng) -> Scene:
     """A corridor of 4 × 30 m, half of them against the other half, each once along it and out."""
     half = count // 2
     one, other = spread(half, (-1.5, -19.0), (1.5, -3.0), rng), spread(count - half, (-1.5, 3.0), (1.5, 19.0), rng)
-    start, across = np.concatenate([one, other]), rng.uniform(-1.4, 1.4, count)
-    ends = np.column_stack([across, np.where(np.arange(count) < half, 24.0, -24.0)])
-    return Scene(facing(start, ends), lambda who, number, rng: ends[who] + [0.0, np.sign(ends[who, 1]) * rng.uniform(0, 14)] if number == 0 else None,
+    start = np.concatenate([one, other])
+    ends = np.concatenate([spread(half, (-5.0, 23.0), (5.0, 38.0), rng, 1.2), spread(count - half, (-5.0, -38.0), (5.0, -23.0), rng, 1.2)])
+    return Scene(facing(start, ends), lambda who, number, rng: ends[who] if number == 0 else None,
                  walls((-2.1, -20.0, -2.1, 20.0), (2.1, -20.0, 2.1, 20.0)))
 
 

@@ -152,16 +152,18 @@ def followed(walker, count: int, rng) -> None:
         rows = []
         for _ in range(count):
             made = plan(np.zeros(3), (*rng.uniform(-4, 4, 2), rng.uniform(-np.pi, np.pi)), weights=weights, limits=limits)
-            state, off = walker.start(), []
-            for tick in range(1, int(60 * (made.seconds + 4))):
-                state, _ = walker.step(state, Intent(wish(made, (tick - 1) / 60, state.ground, state.velocity)), 1 / 60)
-                where, _ = made.at(tick / 60)
-                if tick / 60 <= made.seconds:
+            state, off, into, ticks = walker.start(), [], 0.0, 0
+            while into < made.seconds + 4:
+                ready = walker.readiness(state)
+                state, _ = walker.step(state, Intent(wish(made, into, state.ground, state.velocity)), 1 / 60)
+                into, ticks = into + ready / 60, ticks + 1
+                where, _ = made.at(into)
+                if into <= made.seconds:
                     off.append((np.hypot(*(where - state.ground)[:2]), abs(wrap(where[2] - state.ground[2]))))
-                elif arrived(made, tick / 60, state.ground) and np.abs(state.velocity).max() < 0.01:
+                elif arrived(made, into, state.ground) and np.abs(state.velocity).max() < 0.01:
                     break
             last = made.goal - state.ground
-            rows.append((*np.mean(off, 0), *np.max(off, 0), np.hypot(*last[:2]), abs(wrap(last[2])), tick / 60 - made.seconds))
+            rows.append((*np.mean(off, 0), *np.max(off, 0), np.hypot(*last[:2]), abs(wrap(last[2])), ticks / 60 - made.seconds))
         place, heading, worst_place, worst_heading, end, end_heading, late = np.array(rows).T
         print(f"followed by the walker, {name}: off {100 * place.mean():.1f} cm, {np.degrees(heading.mean()):.1f}° (worst walk {100 * place.max():.1f} cm, "
               f"{np.degrees(heading.max()):.1f}°; worst moment {100 * worst_place.max():.1f} cm, {np.degrees(worst_heading.max()):.1f}°); at the goal "

@@ -7,8 +7,10 @@ import pytest
 
 from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.app.app import Play
+from gambol.game.app.pointing import Pointing
 from gambol.game.app.point_picking import project
 from gambol.game.explain import led, on_the_way
 from gambol.game.explain.way import cost_of
@@ -16,12 +18,13 @@ from gambol.game.hosts.events import MouseMove, Scroll
 from gambol.game.input.script import Move, Script
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load
-from gambol.game.scene.scene import Line, Overlays
+from gambol.game.scene.scene import Box, Camera, Line, Overlays
 from gambol.game.session.actions import goal_of
 from gambol.game.session.input_log import LogWriter, read
 from gambol.game.session.replay import replay
 from gambol.game.session.settings import SettingError
-from gambol.game.world.world import DT, figures
+from gambol.game.world import STAGES
+from gambol.game.world.world import DT, Character, World, figures
 from hands import FRAME, at, press, release, text, wait
 from scenarios import written
 from stand_in import Glide
@@ -68,8 +71,6 @@ def test_whoever_can_not_walk_goes_on_with_his_moves():
 
 
 def test_the_plan_is_drawn_with_its_headings_and_said_with_its_cost(walker):
-    from gambol.game.world.world import Character, World
-
     world = World((Character("A", walker, walker.start()),))
     assert on_the_way(world.characters[0].state) == () and not led(figures(world, world, 1.0), world, Overlays(path=True))[0].sketches
     for _ in range(30):
@@ -129,6 +130,51 @@ def test_the_pointer_sends_somebody_and_a_stick_takes_over(walker, tmp_path):
     *_, last = replay(read(tmp_path / "played.gambol"), walker)
     again, played = last.after.characters[0].state, game.now.after.characters[0].state
     assert again.pose.root.tobytes() == played.pose.root.tobytes() and again.pose.rotations.tobytes() == played.pose.rotations.tobytes()
+
+
+def test_a_click_sends_and_a_drag_does_not(walker):
+    game = Play(walker)
+    point(game, (-0.5, 2.0))
+    press(game, "LEFT_BUTTON")
+    game.tick(FRAME)
+    release(game, "LEFT_BUTTON")
+    wait(game, 0.1)
+    assert np.allclose(game.now.players[0].goal.place, (-0.5, 2.0), atol=0.02)
+    press(game, "W")
+    wait(game, 0.2)
+    release(game, "W")
+    point(game, (0.5, 2.5))
+    press(game, "LEFT_BUTTON")
+    game.handle(MouseMove(game.pointing.pointer[0] + 0.1, game.pointing.pointer[1], 0.1, 0.0))
+    release(game, "LEFT_BUTTON")
+    wait(game, 0.1)
+    assert game.now.players[0].goal is None, "that turned the camera"
+    press(game, "LEFT_BUTTON")
+    wait(game, 0.5)
+    release(game, "LEFT_BUTTON")
+    wait(game, 0.1)
+    assert game.now.players[0].goal is None, "that was held"
+
+
+def test_the_pointer_lies_on_what_is_nearest_in_its_way():
+    seen = Pointing()
+    seen.look(Camera(np.array([0.0, 3.0, -4.0]), np.array([0.0, 0.5, 1.0])), 1.6)
+    props = Box((0.0, 0.4, 1.0), (2.0, 0.8, 2.0)), Box((0.0, 0.2, 3.0), (2.0, 0.6, 2.0), 0.0, slope=0.2)
+    for place in ((0.2, 0.8, 0.9), (0.1, 0.5, 3.0), (0.1, 0.5 + 0.2 * 0.4, 3.4), (2.5, 0.0, 1.0)):
+        x, y, _ = project(seen.camera, seen.aspect, np.array(place))
+        seen.move(float(x), float(y))
+        assert np.allclose(seen.place(props), (place[0], place[2]), atol=1e-6), place
+
+
+def test_leaps_ahead_are_drawn_and_said():
+    someone = person()
+    world = World((Character("A", someone, someone.start((3.4, 5.0, 0.0), 0.3)),), STAGES["course"])
+    for _ in range(5):
+        world = world.step([Intent(goal=Goal((3.4, 7.2)))])
+    sketches = led(figures(world, world, 1.0), world, Overlays(path=True))[0].sketches
+    bent = [one for one in sketches if isinstance(one, Line) and one.dashed and len(one.points) == 17]
+    assert len(bent) == 1 and bent[0].points[-1, 1] == pytest.approx(0.6, abs=0.05) and bent[0].points[:, 1].max() > 0.7
+    assert "to a leap" in on_the_way(world.characters[0].state)[0]
 
 
 def test_nobody_is_sent_to_the_sky(walker):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.body import anatomy, centre_of_mass, log
+from gambol.controllers.body.springs import spring_kernel
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import LibraryError, Library, Locomotion, Settings, Start, first_stride_build
 from gambol.controllers.locomotion.cycles import track
@@ -30,6 +31,17 @@ def test_both_feet_stand_while_weight_is_shifted_then_one_leaves(locomotion, wis
     first = int(np.flatnonzero(~stood[leaves])[0])
     assert stood[leaves, 1 - first]
     assert first == (0 if wish[1] > 0 or wish[1] == 0 and wish[2] >= 0 else 1)
+
+
+def test_readiness_is_how_fast_a_wish_is_taken_up(locomotion):
+    """The spring by which a walker takes up a wish to turn has come as far as one that ran by his readiness."""
+    state, spent = locomotion.start(), 0.0
+    assert locomotion.readiness(state) < 0.5
+    for _ in range(FPS // 2):
+        spent += locomotion.readiness(state) / FPS
+        state, _ = locomotion.step(state, Intent(np.array([0.0, 1.0, 0.0])), 1 / FPS)
+        assert state.velocity[1] == pytest.approx(spring_kernel(0.0, 0.0, 1.0, 0.11, spent)[0], abs=0.06)
+    assert locomotion.readiness(state) == 1.0 and locomotion.readiness(locomotion.start(np.zeros((4, 3)))).shape == (4,)
 
 
 @pytest.mark.parametrize("wish", [(1.3, 0, 0), (0.8, 0, 0), (0, 1.5, 0)])

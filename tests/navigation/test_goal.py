@@ -19,16 +19,17 @@ def walker():
 @pytest.mark.parametrize("goal", [(0.0, 2.5, 0.0), (1.5, 1.0, -1.0), (-1.0, -2.0, 2.0), (0.6, 0.0, 0.0)])
 def test_a_walker_follows_a_plan_to_its_goal(walker, goal):
     made = plan(np.zeros(3), goal, limits=walker.walk.half_spaces(0.9))
-    state, off, tick = walker.start(), [], 0
-    while tick / 60 < made.seconds + 3.0:
-        state, _ = walker.step(state, Intent(wish(made, tick / 60, state.ground, state.velocity)), 1 / 60)
-        tick += 1
-        where, _ = made.at(tick / 60)
-        if tick / 60 < made.seconds:
+    state, off, time = walker.start(), [], 0.0
+    while time < made.seconds + 3.0:
+        ready = walker.readiness(state)
+        state, _ = walker.step(state, Intent(wish(made, time, state.ground, state.velocity)), 1 / 60)
+        time += ready / 60
+        where, _ = made.at(time)
+        if time < made.seconds:
             off.append((np.hypot(*(where - state.ground)[:2]), abs(wrap(where[2] - state.ground[2]))))
-    assert np.mean(off, 0)[0] < 0.08 and np.degrees(np.mean(off, 0)[1]) < 10  # late by a shift of weight
+    assert np.mean(off, 0)[0] < 0.01 and np.degrees(np.mean(off, 0)[1]) < 1.5
     assert np.hypot(*(made.goal - state.ground)[:2]) < 0.03 and abs(wrap(made.goal[2] - state.ground[2])) < np.radians(3)
-    assert arrived(made, tick / 60, state.ground) and np.abs(state.velocity).max() < 1e-6, "and he stands"
+    assert arrived(made, time, state.ground) and np.abs(state.velocity).max() < 1e-6, "and he stands"
 
 
 def test_the_springs_that_take_up_wishes_are_inverted():

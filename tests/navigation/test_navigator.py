@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.body.rotations import wrap
-from gambol.controllers.contract import Goal, Intent
+from gambol.controllers.contract import Controller, Goal, Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import gap, going as led
 from gambol.controllers.scaled import Scaled
@@ -134,14 +134,19 @@ def test_a_child_gets_there_at_its_own_pace(walker):
 def test_the_walk_rests_while_somebody_else_is_on_duty(walker):
     goal = Goal((0.0, 3.0), 0.0)
     state = going(walker, goal, seconds=1.0)[-1]
-    way, intent = led(state, Intent(np.ones(3), goal=goal), walker.limits, False, 1 / 60)
-    assert way is state.going and not intent.velocity.any()
-    way, intent = led(state, Intent(np.ones(3), goal=goal), walker.limits, True, 1 / 60)
+    way, intent = led(state, Intent(np.ones(3), goal=goal), walker, False, 1 / 60)
+    assert way.time == state.going.time and way.plan is state.going.plan and intent.leap is None
+    assert 0.05 < intent.velocity[0] < 0.5, "he who has landed is told that he has to go on"
+    way, intent = led(state, Intent(np.ones(3), goal=goal), walker, True, 1 / 60)
     assert way.time > state.going.time and intent.velocity[0] > 0.5
 
 
+class Nobody(Controller):
+    """Who walks nowhere."""
+
+
 def test_who_has_no_gaits_says_so(walker):
-    way, intent = led(walker.start(), Intent(goal=Goal((0.0, 1.0))), lambda share: None, True, 1 / 60)
+    way, intent = led(walker.start(), Intent(goal=Goal((0.0, 1.0))), Nobody(), True, 1 / 60)
     assert way.status.kind == "failed" and "nobody here walks" in way.status.reason and not intent.velocity.any()
 
 

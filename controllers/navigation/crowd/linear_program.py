@@ -20,7 +20,7 @@ SLACK = 1e-9
 
 @kernel
 def half_plane(px, pz, vx, vz, apart, horizon, soon, share, right, plane):
-    """The velocities that ORCA leaves to A beside B (section 4.2), relative to A's own; plane: (4,) for them.
+    """The velocities that ORCA leaves to A beside B, relative to A's own; plane: (4,) for them.
 
     px, pz: from A to B [m]. vx, vz: A's velocity less B's [m/s]. apart: the sum of their radii [m]. horizon: for how long
     no collision may come [s]; soon: who overlap part within this [s]. share: how much of the change that it takes, or of the room
@@ -54,7 +54,7 @@ def half_plane(px, pz, vx, vz, apart, horizon, soon, share, right, plane):
 @kernel
 def nearest(planes, count, fastest, wx, wz, towards, out):
     """The velocity out: (2,) nearest to the wish (wx, wz) in the disc and the first `count` half-planes (N, 4): the incremental
-    linear program of section 5.1. towards: the wish is a direction instead, and the velocity farthest along it is sought.
+    linear program. towards: the wish is a direction instead, and the velocity farthest along it is sought.
 
     The number of half-planes that are kept: `count`, or the index of the first that can't be, with `out` the best before it.
     """
@@ -96,7 +96,7 @@ def nearest(planes, count, fastest, wx, wz, towards, out):
 
 @kernel
 def nearest_to_all(planes, hard, count, first, fastest, other, out):
-    """Where no velocity keeps all half-planes: the one that breaks those from `hard` on by the least at most, section 5.3.
+    """Where no velocity keeps all half-planes: the one that breaks those from `hard` on by the least at most.
 
     first: the one that `nearest` could not keep, out: (2,) its answer. other: (N, 4) to work in. The first `hard` are kept.
     """

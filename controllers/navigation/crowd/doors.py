@@ -1,0 +1,143 @@
+"""Queues: who comes to a door waits until those before him are through, and until nobody comes out of it.
+
+Avoidance alone knows nothing of doors: crowds press into them and jam. Here a door is a gap between two things that is about as deep as a wall
+is thick. Whoever heads for one slows down so that no more wait near it than have room there, and who comes from the side that nobody is passing from
+leaves the way out free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..routes import separation, shapes_of
+
+NARROW, WIDE = 0.5, 2.4
+"""Doors are so wide, at least and at most [m] ..."""
+DEEP = 1.0
+"""... and so deep at most [m]."""
+FAR = 12.0
+"""Nobody farther from a door minds it [m]."""
+THROUGH = 0.5
+"""Whose way leads past a door no farther than this [m] goes through it."""
+DENSE = 1.2
+"""So many people stand on a square metre before a door, and no more."""
+EASE = 0.6
+"""Over so long a way [m] people slow down behind those who wait."""
+SLIPS, FREE = 2, 1.6
+"""So many go on, however many are there; the others stay so far from the door [m], lest they press into it from all sides."""
+KEPT = 1.5
+"""Those who let others out stay so far from the door [m] ..."""
+LANE = 0.5
+"""... and so far beside its opening [m], ..."""
+LONG = 5.0
+"""... as far as so long a way before it [m]."""
+ASIDE = 0.6
+"""How fast they step aside [m/s]."""
+OUT = 1.2
+"""Who is no farther than this beyond a door [m] still comes out of it."""
+
+
+class Door(NamedTuple):
+    """A gap in a wall. middle: (2,) [m]. along: (2,) from post to post. half: of its width [m]."""
+
+    middle: np.ndarray
+    along: np.ndarray
+    half: float
+
+    def seen(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Places (..., 2) as a door has them: along it, and before (below 0) or beyond it [m]."""
+        off = np.asarray(places, float) - self.middle
+        return off @ self.along, off @ np.array([-self.along[1], self.along[0]])
+
+
+def doors_of(around: Sequence[Any]) -> tuple[Door, ...]:
+    """The doors among things."""
+    return _doors(shapes_of(around).tobytes())
+
+
+@lru_cache(maxsize=8)
+def _doors(table: bytes) -> tuple[Door, ...]:
+    shapes, found = np.frombuffer(table).reshape(-1, 6), []
+    corners = [_corners(shape) for shape in shapes]
+    for i in range(len(shapes)):
+        for j in range(i):
+            if shapes[i, 5] > 0.0 and shapes[j, 5] > 0.0:
+                continue  # between two pillars is no wall
+            one, other = _nearest(corners[i], shapes[j]), _nearest(corners[j], shapes[i])
+            (a, b), depth = (one[:2], one[2]) if one[2] <= other[2] else (other[:2][::-1], other[2])
+            width = depth - shapes[i, 5] - shapes[j, 5]
+            if not NARROW <= width <= WIDE:
+                continue
+            along = (b - a) / depth
+            across = np.array([-along[1], along[0]])
+            spans = [np.sort(corners[k] @ across)[[0, -1]] + shapes[k, 5] * np.array([-1.0, 1.0]) for k in (i, j)]
+            low, high = max(span[0] for span in spans), min(span[1] for span in spans)
+            if high - low > DEEP:
+                continue
+            middle = 0.5 * (a + shapes[i, 5] * along + b - shapes[j, 5] * along)
+            if high > low:
+                middle = middle + (0.5 * (low + high) - middle @ across) * across
+            ends = middle - 0.5 * width * along, middle + 0.5 * width * along
+            if all(separation(*ends[0], *ends[1], shape) > 0.0 for k, shape in enumerate(shapes) if k not in (i, j)):
+                found.append(Door(middle, along, 0.5 * width))
+    return tuple(found)
+
+
+def queued(places, wishes, aims, doors: Sequence[Door], going=None) -> np.ndarray:
+    """Wishes (N, 2) [m/s] of walkers at places (N, 2), slowed down and led aside where they come to doors.
+
+    aims: (N, 2) where each turns to first on his way. going: (N, 2) how they move [m/s], by which those who come out of a door are known; as
+    they wish by default.
+    """
+    places, found, aims = np.asarray(places, float), np.array(wishes, float), np.asarray(aims, float)
+    moving = found if going is None else np.asarray(going, float)
+    for door in doors:
+        along, beyond = door.seen(places)
+        w_along, w_beyond = door.seen(door.middle + found)
+        a_along, a_beyond = door.seen(aims)
+        side = np.where(beyond >= 0.0, 1.0, -1.0)
+        towards = side * w_beyond < -1e-6
+        at = along - beyond * w_along / np.where(towards, w_beyond, 1.0)
+        near = np.hypot(np.maximum(np.abs(a_along) - door.half, 0.0), a_beyond) < THROUGH + 0.2
+        aside = np.maximum(np.abs(along) - door.half + 0.3, 0.0)
+        far = np.hypot(aside, beyond)
+        comes = (far < FAR) & (near | towards & (np.abs(at) < door.half + 0.1) & (side * a_beyond < THROUGH))
+        leaving = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes & (side * door.seen(door.middle + moving)[1] > 0.1)
+        first = [min(np.min(far[comes & (side == s)], initial=np.inf), np.inf if not np.any(leaving & (side == -s)) else 0.0) for s in (-1.0, 1.0)]
+        turn = -1.0 if first[0] <= first[1] else 1.0  # whose side it is
+        mine = np.flatnonzero(comes & (side == turn))
+        rank = np.argsort(np.argsort(far[mine] + aside[mine], kind="stable"), kind="stable")
+        room = np.sqrt(FREE**2 + 2.0 * np.maximum(rank - SLIPS, 0) / (np.pi * DENSE))
+        found[mine] *= np.where(rank < SLIPS, 1.0, np.clip((far[mine] - room) / EASE, 0.0, 1.0))[:, None]
+        if not np.isfinite(min(first)):
+            continue
+        lets = comes & (side != turn)
+        if np.any(lets):
+            found[lets] *= np.clip((far[lets] - KEPT) / EASE, 0.0, 1.0)[:, None]
+            lane = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < LONG) & (side != turn) & (comes | (np.hypot(*found.T) < 0.1))
+            if np.isfinite(first[0]) and np.isfinite(first[1]):
+                away = np.where(along >= 0.0, 1.0, -1.0)[:, None] * door.along
+                found[lane] = ASIDE * away[lane]
+    return found
+
+
+def _corners(shape: np.ndarray) -> np.ndarray:
+    """The corners (4, 2) of a shape without its rounding."""
+    c, s = np.cos(shape[4]), np.sin(shape[4])
+    local = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]]) * shape[2:4]
+    return local @ np.array([[c, -s], [s, c]]) + shape[:2]
+
+
+def _nearest(corners: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Of corners (4, 2) the one nearest to the rectangle of a shape, the place there, and how far it is."""
+    c, s = np.cos(shape[4]), np.sin(shape[4])
+    off = corners - shape[:2]
+    local = np.stack([c * off[:, 0] - s * off[:, 1], s * off[:, 0] + c * off[:, 1]], 1)
+    on = np.clip(local, -shape[2:4], shape[2:4])
+    far = np.hypot(*(local - on).T)
+    k = int(far.argmin())
+    return corners[k], on[k] @ np.array([[c, -s], [s, c]]) + shape[:2], float(far[k])

@@ -1,0 +1,162 @@
+"""Ways over several levels: walks, and leaps where no walk leads on; the quickest by Dijkstra's search.
+
+Leaps go off near where one surface ends and come down near where another begins. There are many such pairs of places; whether a body can
+leap there is asked only of those that the quickest way so far has.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse.csgraph import dijkstra
+
+from ..obstacles import SHOULDER
+from .surfaces import Levels
+
+INSET = SHOULDER + 0.06
+"""Leaps begin and end so far from where a surface ends [m]: where walks lead to."""
+ROOM = 0.5
+"""Nobody leaps onto, or off, what is narrower than this [m]."""
+APART = 0.5
+"""From one place at a side to the next [m]."""
+BESIDE = 0.40
+"""Who leaps up onto a box, or down from it, stands, or lands, so far from it [m]."""
+FARTHEST, HIGHEST = 2.6, 1.2
+"""No leap from a stand is thought of that goes farther than this [m], or up higher."""
+NEAREST = 6
+"""Of the leaps from one box to another so many are thought of, the shortest."""
+SPEED = 1.2
+"""How fast one walks between them [m/s]."""
+LEAP = 1.8, 0.5
+"""What a leap takes [s]: turning, crouching and getting up; and for each metre."""
+ASKED = 60
+"""About no more leaps is asked."""
+WEAK = "too "
+"""How reasons begin by which nobody leaps farther or higher, either."""
+
+
+class Crossing(NamedTuple):
+    """A leap. ground: (3,) x, z [m], heading [rad] to leap from. place: (3,) [m] to land at. height: of the floor that it leaves [m]."""
+
+    ground: np.ndarray
+    place: np.ndarray
+    height: float
+
+    @property
+    def asks(self) -> tuple[float, float]:
+        """How far it goes, and how high up [m]."""
+        return math.dist(self.ground[:2], self.place[[0, 2]]), max(float(self.place[1]) - self.height, 0.0)
+
+
+class Journey(NamedTuple):
+    """The leaps of the way, in order, between which one walks; none where a walk leads there, or nothing could be leapt. reason: why no leaps lead
+    there, or ""."""
+
+    crossings: tuple[Crossing, ...]
+    reason: str = ""
+
+
+def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end: int, able: Callable[[Crossing], str | None],
+            barred: Iterable[tuple[float, ...]] = ()) -> Journey:
+    """The quickest way from a place (2,) on one surface to a goal (2,) on another.
+
+    able: says why nobody can leap so, "" where one can, None where nobody leaps at all. barred: leaps, as `named`, that are not to be tried again.
+    """
+    if levels.regions[start] == levels.regions[end]:
+        return Journey(())
+    barred = set(barred)
+    leaps = [leap for leap in crossings(levels, np.array([here, goal])) if named(leap[0]) not in barred]
+    times = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
+    good, faults = set(), []
+    while len(good) + len(faults) < ASKED:
+        _, before = dijkstra(times, indices=0, return_predecessors=True)
+        way, at = [], int(before[-1])
+        while at > 0:
+            way.insert(0, at - 1)
+            at = int(before[at])
+        if not way:
+            break
+        bad = next((k for k in way if k not in good and (why := able(leaps[k][0])) != ""), None)
+        good.update(way if bad is None else way[:way.index(bad)])
+        if bad is None:
+            return Journey(tuple(leaps[k][0] for k in way))
+        if why is None:
+            return Journey(())  # nobody here leaps: whoever plans the walk says what is in its way
+        faults.append(why)
+        asks = leaps[bad][0].asks
+        for k, (leap, *_) in enumerate(leaps):
+            if k == bad or why.startswith(WEAK) and k not in good and leap.asks[0] >= asks[0] - 1e-6 and leap.asks[1] >= asks[1] - 1e-6:
+                times[:, k + 1] = np.inf
+    return Journey((), "no walk leads there, and no leap: " + max(sorted(set(faults)), key=faults.count) if faults else "")
+
+
+def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray, end: int) -> np.ndarray:
+    """How long it takes (L + 2, L + 2) [s] from the start (0), or where each leap ends, over each next leap, or to the goal (the last)."""
+    off, onto = (np.array([start, *(leap[k] for leap in leaps), end]) for k in (1, 2))
+    from_, to = (np.array([end_, *(getattr(leap[0], name)[axes] for leap in leaps), goal])
+                 for end_, name, axes in ((here, "place", [0, 2]), (goal, "ground", [0, 1])))
+    spent = np.array([0.0, *(LEAP[0] + LEAP[1] * sum(leap[0].asks) for leap in leaps), 0.0])
+    times = np.linalg.norm(from_[:, None] - to[None], axis=-1) / SPEED + spent + 1e-9
+    times[onto[:, None] != off[None]] = np.inf
+    times[-1], times[:, 0] = np.inf, np.inf
+    np.fill_diagonal(times, np.inf)
+    return times
+
+
+def named(leap: Crossing) -> tuple[float, ...]:
+    """A leap by its places, to a centimetre."""
+    return tuple(round(float(value), 2) for value in (*leap.ground[:2], *leap.place))
+
+
+def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int]]:
+    """All leaps that are worth asking about, with the regions that they leave and lead to. ends: (E, 2) places that straight ways lead from and to."""
+    found: list[tuple[Crossing, int, int]] = []
+    broad = [box for box in range(levels.floor) if 2.0 * levels.halves[box, [0, 2]].min() >= ROOM and not levels.slopes[box]]
+    edges = {box: _edge(levels, box, ends) for box in broad}
+    for box, (places, normals, height) in edges.items():
+        if not len(places):
+            continue
+        without = places + (INSET + BESIDE) * normals
+        which, ground = levels.ground(without, height)  # what is higher is another box's matter
+        own, theirs = int(levels.regions[box]), levels.regions[which]
+        free = ~levels.shut(without, ground) & (theirs != own)
+        for k in np.flatnonzero(free):
+            here, there = (places[k], height), (without[k], float(ground[k]))
+            _add(found, here, there, own, int(theirs[k]))
+            _add(found, there, here, int(theirs[k]), own)
+        for other in broad:
+            if levels.regions[other] != own and len(edges[other][0]):
+                onto = _nearest_on(levels, other, places)
+                far = np.linalg.norm(onto - places, axis=1)
+                for k in np.argsort(far, kind="stable")[:NEAREST]:
+                    if far[k] > 0.1:
+                        _add(found, (places[k], height), (onto[k], edges[other][2]), own, int(levels.regions[other]))
+    return found
+
+
+def _edge(levels: Levels, box: int, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Places (S, 2) near a box's sides that can be stood on, those among them that are nearest to the ends; outward normals (S, 2); its height [m]."""
+    out = levels.outline(box, INSET, APART)
+    nearest = _nearest_on(levels, box, ends)
+    normals = out.normals[[int(np.linalg.norm(out.places - place, axis=1).argmin()) for place in nearest]]
+    places, normals = np.concatenate([out.places, nearest]), np.concatenate([out.normals, normals])
+    height = float(levels.centres[box, 1] + levels.halves[box, 1])
+    free = (levels.ground(places)[0] == box) & ~levels.shut(places, np.full(len(places), height))
+    return places[free], normals[free], height
+
+
+def _nearest_on(levels: Levels, box: int, places: np.ndarray) -> np.ndarray:
+    """The places (P, 2) on a box, an inset from its sides, that are nearest to others (P, 2)."""
+    half = np.maximum(levels.halves[box, [0, 2]] - INSET, 0.0)
+    c, s = np.cos(levels.headings[box]), np.sin(levels.headings[box])
+    return np.clip(levels.local(places)[:, box], -half, half) @ np.array([[c, -s], [s, c]]) + levels.centres[box, [0, 2]]
+
+
+def _add(found: list, here: tuple[np.ndarray, float], there: tuple[np.ndarray, float], off: int, onto: int) -> None:
+    way, up = there[0] - here[0], there[1] - here[1]
+    if np.hypot(*way) <= FARTHEST and up <= HIGHEST:
+        heading = math.atan2(way[0], way[1])
+        found.append((Crossing(np.array([*here[0], heading]), np.array([there[0][0], there[1], there[0][1]]), here[1]), off, onto))

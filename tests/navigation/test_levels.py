@@ -1,0 +1,123 @@
+"""Ground on several levels: kerbs, stairs and ramps are walked, edges are kept, gaps are leapt, and what can't be is said."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.contract import Goal, Intent
+from gambol.controllers.navigation import floor_at
+from gambol.controllers.navigation.levels import journey, levels_of, named
+from gambol.controllers.navigation.routes import distance, shapes_of
+from gambol.controllers.person import person
+from gambol.game.scene import Box, Pillar
+from gambol.game.world import STAGES
+
+STEPS = tuple(Box((0.0, 0.085 * (k + 1), 2.0 + 0.5 * (0.3 * k + 1.5)), (1.6, 0.17 * (k + 1), 1.5 - 0.3 * k)) for k in range(5))
+LANDING, WING = Box((0.0, 0.425, 4.5), (3.0, 0.85, 2.0)), Box((2.5, 0.425, 5.0), (2.0, 0.85, 1.0))
+RAMP = Box((-3.5, -0.05, 4.5), (1.4, 0.95, 4.0), np.pi / 2, slope=0.85 / 4.0)
+HOUSE = (*STEPS, LANDING, WING, RAMP)
+FAR = (Box((0.0, 0.3, 0.0), (2.0, 0.6, 2.0)), Box((0.0, 0.3, 3.0), (2.0, 0.6, 2.0)))
+
+
+@pytest.fixture(scope="module")
+def someone():
+    return person()
+
+
+def region(levels, x, z, floor):
+    return levels.regions[levels.under(np.array([x, z]), floor)]
+
+
+def crossed(things, here, goal, able, floor=0.0, barred=()):
+    levels = levels_of(things)
+    start = levels.under(np.array(here), floor)
+    return journey(levels, np.array(here), start, np.array(goal), levels.meant(np.array(goal), levels.regions[start]), able, barred)
+
+
+def test_what_one_steps_over_is_one_region():
+    assert len(set(levels_of(HOUSE).regions)) == 1, "stairs and a ramp join floor and landing"
+    kerb, table = Box((0.0, 0.075, 0.0), (2.0, 0.15, 2.0)), Box((5.0, 0.4, 0.0), (2.0, 0.8, 2.0))
+    assert list(levels_of((kerb, table)).regions == levels_of((kerb, table)).regions[2]) == [True, False, True]
+    steep = Box((0.0, 0.4, 0.0), (2.0, 0.8, 2.0)), Box((0.0, 0.25, 1.5), (2.0, 0.5, 1.0))
+    assert len(set(levels_of(steep).regions)) == 3, "steps of 0.5 and 0.3 m are too high"
+    walled = Box((0.0, 0.075, 0.0), (2.0, 0.15, 2.0)), *(Box((x, 1.0, z), (w, 2.0, d)) for x, z, w, d in (
+        (1.05, 0.0, 0.1, 2.2), (-1.05, 0.0, 0.1, 2.2), (0.0, 1.05, 2.2, 0.1), (0.0, -1.05, 2.2, 0.1)))
+    assert levels_of(walled).regions[0] != levels_of(walled).regions[-1], "walls part what a step would join"
+
+
+def test_rails_stand_where_the_ground_ends_and_nowhere_else():
+    levels, out = levels_of(HOUSE), np.empty(3)
+    shapes = shapes_of(levels.stops(levels.regions[-1]), 0.0)
+
+    def near(x, z):
+        return min(distance(x, z, shape, out) for shape in shapes)
+    for x, z in ((1.5, 4.0), (0.0, 5.5), (3.5, 5.0), (-2.0, 3.8), (0.8, 3.0), (2.5, 4.5)):  # sides of landing, wing, ramp and stairs
+        assert near(x, z) < 0.06, (x, z)
+    for x, z in ((0.0, 2.0), (0.0, 2.9), (0.0, 3.5), (-1.5, 4.5), (1.5, 5.0), (-5.5, 4.5)):  # where one goes over
+        assert near(x, z) > 0.4, (x, z)
+
+
+def test_what_stands_on_a_landing_stops_there_and_what_hangs_high_nobody():
+    post, lamp = Pillar((0.0, 0.85, 4.5), 0.2, 2.0), Box((0.0, 3.0, 4.0), (0.3, 0.2, 0.3))
+    levels = levels_of((*HOUSE, post, lamp))
+    stops = levels.stops(levels.regions[-1])
+    assert sum(hasattr(one, "radius") for one in stops) == 1 and len(stops) == len(levels_of(HOUSE).stops(levels_of(HOUSE).regions[-1])) + 1
+
+
+def test_the_quickest_leaps_that_can_be_made_lead_to_a_goal():
+    asked = []
+
+    def able(leap):
+        asked.append(leap)
+        return "too high" if leap.asks[1] > 0.4 else ""
+    way = crossed(STAGES["course"], (3.4, 1.2), (3.4, 7.2), able)
+    assert [round(leap.place[1], 2) for leap in way.crossings] == [0.3, 0.6] and not way.reason
+    assert len(asked) <= 6, "of those alike that can't be made one is asked about"
+    for leap in way.crossings:
+        assert floor_at(*leap.ground[:2], STAGES["course"]) == pytest.approx(leap.height)
+        assert floor_at(*leap.place[[0, 2]], STAGES["course"]) == pytest.approx(leap.place[1])
+        assert np.allclose((leap.place[[0, 2]] - leap.ground[:2]) @ [np.cos(leap.ground[2]), -np.sin(leap.ground[2])], 0.0, atol=1e-9), "he looks there"
+    other = crossed(STAGES["course"], (3.4, 1.2), (3.4, 7.2), able, barred=[named(way.crossings[0])])
+    assert other.crossings and named(other.crossings[0]) != named(way.crossings[0])
+
+
+def test_why_no_leaps_lead_there_is_said():
+    assert "no leap: too far" in crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: "too far", 0.6).reason
+    nobody = crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: None, 0.6)
+    assert not nobody.crossings and not nobody.reason
+    assert not crossed(FAR, (0.0, 0.0), (0.5, 0.5), lambda leap: "", 0.6).crossings, "a walk leads there"
+
+
+def going(someone, things, start, floor, goal, seconds=25.0):
+    state, states = someone.start(start, floor), []
+    for _ in range(round(60 * seconds)):
+        state, _ = someone.step(state, Intent(goal=goal, around=things), 1 / 60)
+        states.append(state)
+        if someone.status(state).kind != "running":
+            break
+    return states
+
+
+def test_he_walks_up_stairs_keeps_to_an_l_and_down_a_ramp(someone):
+    goal = Goal((3.1, 5.0))
+    up = going(someone, HOUSE, (0.0, 0.5, 0.0), 0.0, goal)
+    assert someone.status(up[-1]).kind == "done" and float(up[-1].floor) == pytest.approx(0.85) and np.hypot(*(up[-1].ground[:2] - goal.floor)) < 0.03
+    down = going(someone, HOUSE, (*up[-1].ground[:2], 0.0), 0.85, Goal((-6.2, 4.5)))
+    assert someone.status(down[-1]).kind == "done" and float(down[-1].floor) == pytest.approx(0.0, abs=0.01)
+    floors = [floor_at(*state.ground[:2], HOUSE) for state in up + down]
+    assert np.abs(np.diff(floors)).max() < 0.21, "never over an edge"
+    assert all(state.active == "locomotion" for state in up + down)
+
+
+def test_he_leaps_over_a_gap_and_walks_on(someone):
+    states = going(someone, FAR, (0.3, -0.6, 2.0), 0.6, Goal((0.5, 3.6), 0.0))
+    last = states[-1]
+    assert someone.status(last).kind == "done" and np.hypot(*(last.ground[:2] - [0.5, 3.6])) < 0.03 and float(last.floor) == pytest.approx(0.6)
+    assert {state.active for state in states} == {"locomotion", "jump"} and min(float(state.floor) for state in states) == pytest.approx(0.6)
+    assert states[0].going.crossings and not last.going.crossings and not last.going.barred
+
+
+def test_who_can_not_leap_there_says_so_and_stays(someone):
+    wide = (FAR[0], Box((0.0, 0.3, 5.0), (2.0, 0.6, 2.0)), Box((0.0, 1.5, 5.0), (2.0, 3.0, 2.0)))
+    states = going(someone, wide, (0.0, 0.0, 0.0), 0.6, Goal((0.0, 5.0)), 1.0)
+    status = someone.status(states[-1])
+    assert status.kind == "failed" and status.reason and np.hypot(*states[-1].ground[:2]) < 0.05
