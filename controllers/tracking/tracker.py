@@ -16,6 +16,7 @@ from .cameras import Lens
 from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, penalty_of, predicted, solve
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, rendered, skinned
+from .together import together
 from .twists import Configuration, posed
 
 FIRM = 3.0
@@ -86,34 +87,34 @@ class Tracker:
         penalty = None
         if chosen.penalty:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
-        evidence, believed = track.evidence, there
+        evidence, believed, found = track.evidence, there, None
         for k in range(chosen.rounds if shown.any() else 1):
-            masks, agreements = self._masks(seen, start)
+            found = self._found(seen, start, found)
+            agreements = np.array([one.agreement for one in found])
 
             def believe(overlaps: np.ndarray, first=k == 0, agreements=agreements) -> np.ndarray:
                 nonlocal evidence, believed
                 if chosen.gate and first:
                     evidence, believed = judged(evidence, np.where(shown, agreements, overlaps))
                 return believed & there
-            views = [observed(lens, mask) for lens, mask in zip(self.lenses, masks)]
+            views = together(observed, self.lenses, [one.mask for one in found])
             fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver)
             start = fit.where
         if not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
         return Track(fit.where, track.now, evidence, fit)
 
-    def _masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> tuple[list[np.ndarray], np.ndarray]:
-        """Masks (H, W) bool, those of pictures found near a pose; and how well colours agree with that (C,), 0 for masks."""
-        plates = self.plates or (None,) * len(self.lenses)
-        found, vertices = [], None
-        for lens, one, plate in zip(self.lenses, seen, plates):
+    def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None) -> list[Segmented]:
+        """Who is in each camera's picture near a pose; masks as they are. before: what an earlier turn found in the same pictures."""
+        vertices = None
+        if any(one is not None and one.dtype != bool for one in seen):
+            vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+
+        def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None) -> Segmented:
             if one is None:
-                one = np.zeros(lens.size[::-1], bool)
-            if one.dtype != bool:
-                if vertices is None:
-                    vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
-                drawn = rendered(lens, vertices, self.surface.triangles)
-                found.append(segmented(one, drawn.mask, plate, self.settings.segmentation))
-            else:
-                found.append(Segmented(one, 0.0))
-        return [one.mask for one in found], np.array([one.agreement for one in found])
+                return Segmented(np.zeros(lens.size[::-1], bool), 0.0)
+            if vertices is None or one.dtype == bool:
+                return Segmented(one, 0.0)
+            drawn = rendered(lens, vertices, self.surface.triangles)
+            return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut)
+        return together(act, self.lenses, seen, self.plates or (None,) * len(seen), before or (None,) * len(seen))
