@@ -42,7 +42,7 @@ class TrackerSettings:
     solver: SolverSettings = SETTINGS
     rounds: int = 2
     pictures: SolverSettings = replace(SETTINGS, outer=2)
-    segmentation: Segmentation = SEGMENTATION
+    segmentation: Segmentation = replace(SEGMENTATION, rounds=1)
 
 
 @dataclass(frozen=True, eq=False)
