@@ -2,6 +2,7 @@
 capture". What is known of a camera, what a body looks like in it, and the pose that fits.
 """
 
+from .controller import Tracking, Watching
 from .tracker import Track, Tracker, TrackerSettings
 
-__all__ = ["Track", "Tracker", "TrackerSettings"]
+__all__ = ["Track", "Tracker", "TrackerSettings", "Tracking", "Watching"]
