@@ -75,7 +75,8 @@ class Tracking(Controller):
         share = 0.0 if state.elapsed <= 0.0 else 1.0 / (self.tracker.rate * state.elapsed)
         chain = self.tracker.surface.chain
         if abs(share - 1.0) > 1e-6:  # the pose a frame ago, not a step
-            before = fitted(chain, *_part(*(local_turns(chain, one) for one in (now, before)), share))
+            earlier = _part(local_turns(chain, now), local_turns(chain, before), share)
+            before = fitted(chain, earlier.root, earlier.rotations)
         shown = local_turns(chain, now)
         offset = np.concatenate([np.zeros((1, 3)), log(np.swapaxes(shown.rotations, -1, -2) @ np.asarray(state.pose.rotations, float))])
         return replace(state, memory=Watching(self.tracker.start(now, before), 0.0, offset, np.zeros_like(offset)))
@@ -92,8 +93,8 @@ class Tracking(Controller):
             track, age = _shifted(self.tracker.step(_shifted(track, -there), sighting.pictures), there), 0.0
         offset, rate = settle(watching.offset, watching.rate, FADE, dt)
         before, now = (local_turns(self.tracker.surface.chain, one) for one in (track.before, track.now))
-        root, rotations = _part(before, now, min((age + dt) * self.tracker.rate, 1.0))
-        pose = Pose(root + offset[0] + self.beside, rotations @ exp(offset[1:]))
+        seen = _part(before, now, min((age + dt) * self.tracker.rate, 1.0))
+        pose = Pose(seen.root + offset[0] + self.beside, seen.rotations @ exp(offset[1:]))
         return driven(state, self.skeleton, pose, Watching(track, age, offset, rate), dt), pose
 
     def status(self, state: CharacterState) -> Status:
@@ -106,7 +107,7 @@ class Tracking(Controller):
 
 
 def _part(before: Pose, now: Pose, share: float) -> Pose:
-    """The pose `share` of the way from one to another, 1 and beyond at the other; below 0 it lies before the one."""
+    """The pose `share` of the way from one to another; beyond 1 it goes on."""
     turn = share * log(np.swapaxes(before.rotations, -1, -2) @ now.rotations)
     return Pose(before.root + share * (now.root - before.root), before.rotations @ exp(turn))
 

@@ -60,7 +60,8 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     from gambol.controllers.tracking.twists import local_turns
 
     from ..output import Take, checked, recorder, write
-    from ..studio import error_of, first_poses, followed, overlaid, person_in, read_footage, surface_of
+    from ..meshes import surface_of
+    from ..studio import error_of, first_poses, followed, overlaid, person_in, read_footage
 
     film = read_footage(footage)
     if film.frames < 2:

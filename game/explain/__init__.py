@@ -2,6 +2,7 @@
 missed by; the way to a goal; and how good a motion is, in figures.
 """
 
+from .camera_views import camera_views, with_cameras
 from .jump import broken, explained
 from .jump_preview import Preview, preview
 from .points import RADIUS, Row, pointed, rows
@@ -9,5 +10,5 @@ from .quality import Quality, quality_of
 from .way import led, on_the_way
 
 __all__ = [
-    "RADIUS", "Preview", "Quality", "Row", "broken", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows",
+    "RADIUS", "Preview", "Quality", "Row", "broken", "camera_views", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows", "with_cameras",
 ]

@@ -5,10 +5,9 @@ from .footage import Footage, FootageError, begun, read_footage
 from .lens_warp import LensWarp
 from .sensor import Sensor, read_sensor
 from .shooting import Plan, shoot
-from .skins import surface_of
 from .truth import COCO, Stage, Truth, coco_points, seen_by
 
 __all__ = [
     "COCO", "Footage", "FootageError", "LensWarp", "Plan", "Sensor", "Stage", "Truth", "begun", "coco_points", "error_of", "first_poses",
-    "followed", "overlaid", "person_in", "read_footage", "read_sensor", "seen_by", "seen_in", "shoot", "surface_of",
+    "followed", "overlaid", "person_in", "read_footage", "read_sensor", "seen_by", "seen_in", "shoot",
 ]

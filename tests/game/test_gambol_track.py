@@ -17,7 +17,7 @@ from gambol.controllers.tracking.twists import posed
 from gambol.game import cli
 from gambol.game.scenario.scenario import load
 from gambol.game.studio import (FootageError, Plan, Sensor, error_of, first_poses, followed, overlaid, person_in, read_footage,
-                                seen_in, shoot, surface_of)
+                                seen_in, shoot)
 
 SCENARIO = """
 title = "Short"
