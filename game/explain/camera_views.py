@@ -13,7 +13,9 @@ GROUND, BODY, FOUND, MODEL = (18, 20, 24), (120, 124, 132), (70, 150, 255), (255
 """Colours of what cameras see, of the contour found there, and of the model's."""
 SHEET = -15
 """The number of the picture among an ink's sheets; panels' are above 0."""
-WIDE, MARGIN, BETWEEN = 0.34, 14.0, 4
+ASIDE = 0.2
+"""So much of a picture is left out on both sides where cameras go along."""
+WIDE, MARGIN, BETWEEN = 0.24, 14.0, 4
 """How wide the pictures are together, over the whole picture's width; from its corner [px at 720 lines]; between them [pixels]."""
 
 
@@ -58,7 +60,8 @@ def camera_views(tracked: Character, world: World) -> np.ndarray | None:
             _drawn(picture, contour_of(mask).pixels, FOUND)
         if vertices is not None:
             _drawn(picture, contour_of(rendered(lens, vertices, tracking.tracker.surface.triangles).mask).pixels, MODEL)
-        made.append(picture)
+        aside = int(ASIDE * picture.shape[1]) if watches.along else 0  # nobody is far from the middle
+        made.append(picture[:, aside:picture.shape[1] - aside])
     height, width = max(one.shape[0] for one in made), max(one.shape[1] for one in made)
     across, down = (2, (len(made) + 1) // 2) if len(made) > 1 else (1, 1)
     sheet = np.zeros((down * (height + BETWEEN) - BETWEEN, across * (width + BETWEEN) - BETWEEN, 3), np.uint8)

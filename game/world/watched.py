@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # what tracks is loaded by the functions that need it: a game
     from gambol.controllers.tracking.cameras import Lens
     from gambol.controllers.tracking.silhouettes import Surface
 
-AWAY, HIGH, VIEW = 4.0, 1.5, 0.62
+AWAY, HIGH, VIEW = 4.0, 1.3, 0.56
 """How far cameras of a rig are from whom they watch, how high [m], and what they see [rad]."""
 MAJORITY = 5
 """A pixel is what most of so many by so many are, where pixels are wrong: so much a segmentation makes good."""
@@ -116,6 +116,22 @@ def tracked_of(performer: Any, watches: Watches, rate: float, penalty: bool = Tr
     tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty))
     controllers = {"locomotion": someone.parts.get("locomotion", someone), "tracking": Tracking(tracker, watches.beside)}
     return Embodied(controllers, performer.body, performer.factor) if isinstance(performer, Embodied) else Supervisor(controllers)
+
+
+def tracker_ready() -> None:
+    """Compile all that tracking takes, and load it: two frames of the mannequin at rest."""
+    from gambol.controllers.body import human
+    from gambol.controllers.tracking import Tracker
+    from gambol.controllers.tracking.twists import posed
+
+    from ..meshes import surface_of
+
+    watches = watches_of("", human())
+    tracker = Tracker(surface_of(human(), "full", level="middle"), watches.lenses)
+    pose = tracker.surface.chain.rest()
+    state = tracker.start(pose)
+    for number in range(2):
+        state = tracker.step(state, watches.sighting(*posed(tracker.surface.chain, pose)[:2], number).pictures)
 
 
 def tracking_of(tracked: Any) -> tuple[Tracking, Watching | None]:
