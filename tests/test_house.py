@@ -107,7 +107,7 @@ PLAN = {
         "supervisor": "body contract navigation",
         "jump.muscles": "compiled jump.body",
         "jump": "body contract navigation",
-        "tracking": "body contract driven",
+        "tracking": "body contract driven files",
         "tracking.twists": "compiled body",
         "tracking.cameras": "compiled files body",
         "tracking.silhouettes": "compiled body tracking.twists tracking.cameras",

@@ -104,6 +104,10 @@ class Tracker:
             fit = replace(fit, where=target)
         return Track(fit.where, track.now, evidence, fit)
 
+    def masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> list[np.ndarray]:
+        """Who is in each camera's picture, (H, W) bool, for somebody near a pose; masks as they are, empty ones of dropped frames."""
+        return [one.mask for one in self._found(seen, where, None)]
+
     def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None) -> list[Segmented]:
         """Who is in each camera's picture near a pose; masks as they are. before: what an earlier turn found in the same pictures."""
         vertices = None
