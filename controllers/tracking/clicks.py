@@ -30,22 +30,29 @@ class ClickError(ValueError):
 
 
 def read_clicks(path: str | Path, lenses: Sequence[Lens], skeleton: Skeleton | None = None) -> Clicks:
-    """A .toml file with a table for each camera, `LeftArm = [x, y]` in pixels of its pictures as calibrated. ClickError, in one line."""
+    """A .toml file with a table for each camera, `LeftArm = [x, y]` in pixels of pictures that are `width` wide, else of its own
+    size. ClickError, in one line."""
     path, skeleton = Path(path), skeleton or human()
     try:
         tables = tomllib.loads(contents(path, 1 << 20).decode("utf-8"))
     except (OSError, ValueError) as fault:
         raise ClickError(f"{path}: {reason(fault) if isinstance(fault, OSError) else printable(str(fault))}") from None
-    known = [lens.name for lens in lenses]
+    known, width = {lens.name: lens.size[0] for lens in lenses}, tables.pop("width", None)
+    if width is not None and not (type(width) is int and 16 <= width <= 16384):
+        raise ClickError(f"{path}: width: needs a whole number of pixels")
+    made: dict[str, dict[str, tuple[float, float]]] = {}
     for camera, table in tables.items():
         if camera not in known:
             raise ClickError(f"{path}: [{printable(camera)}]: there is no such camera; there are {', '.join(known)}")
+        share = 1.0 if width is None else known[camera] / width
+        made[camera] = {}
         for joint, at in table.items() if isinstance(table, dict) else ():
             if joint not in skeleton:
                 raise ClickError(f"{path}: {camera}.{printable(joint)}: there is no such joint; there are {', '.join(skeleton.names)}")
             if not (isinstance(at, list) and len(at) == 2 and all(isinstance(v, int | float) and abs(v) < 1e5 for v in at)):
                 raise ClickError(f"{path}: {camera}.{joint}: needs x and y in pixels")
-    return tables
+            made[camera][joint] = (share * at[0], share * at[1])
+    return made
 
 
 def clicked(lenses: Sequence[Lens], clicks: Clicks, freedom: str = "full") -> tuple[Chain, Configuration]:

@@ -45,10 +45,30 @@ def film(scenario: Annotated[str, typer.Argument(help="A shipped scenario (see `
 
 @app.command()
 @plainly
-def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that `gambol film` made.")],
+def footage(films: Annotated[list[Path], typer.Argument(help="A film of each camera, in their order or named after them.")],
+            cameras: Annotated[Path, typer.Option(help="Their calibration: a .toml file, or Qualisys's.")],
+            out: Annotated[Path, typer.Option("-o", "--out", help="The folder for the pictures.")],
+            width: Annotated[int | None, typer.Option(min=16, max=8192, help="Pictures so wide; as calibrated by default.")] = None,
+            name: Annotated[str, typer.Option(help="Whom they show.")] = "somebody") -> None:
+    """Make footage of real films, for `gambol track`."""
+    from gambol.controllers.tracking.cameras import read_cameras
+
+    from ..studio import imported
+
+    lenses, count = read_cameras(cameras), 0
+    with progress_bar() as bar:
+        for count in bar.track(imported(films, lenses, out, width, name), description=out.name):
+            pass
+    say(f"{out}: {len(lenses)} cameras, {count + 1} frames of {name}")
+
+
+@app.command()
+@plainly
+def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that `gambol film` or `gambol footage` made.")],
           out: Annotated[Path, typer.Option("-o", "--out", help="The motion: a .bvh or .glb file.")],
           person: Annotated[str | None, typer.Option(help="Whom to follow; the first by default.")] = None,
-          start: Annotated[Path | None, typer.Option(help="A motion file whose first two frames are the poses to begin with; the truth's by default.")] = None,
+          start: Annotated[Path | None, typer.Option(help="A motion file whose first two frames are the poses to begin with, or a .toml file of where joints are seen in the first; the truth's by default.")] = None,
+          fit: Annotated[int, typer.Option(min=0, max=60, help="Find stature and girth in so many frames first, where --start says where joints are seen.")] = 6,
           masks: Annotated[bool, typer.Option("--masks", help="Follow the true masks instead of the pictures.")] = False,
           overlay: Annotated[Path | None, typer.Option(help="A .mp4 film, or a folder, of the contours found, blue, and the model's, red.")] = None) -> None:
     """Follow somebody through what calibrated cameras filmed, without markers: the motion as a file."""
@@ -56,23 +76,36 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
 
     import numpy as np
 
-    from gambol.controllers.tracking import Tracker
+    from gambol.controllers.body import STATURE, human
+    from gambol.controllers.tracking import Tracker, fitted_shape
     from gambol.controllers.tracking.twists import local_turns
 
-    from ..output import Take, checked, recorder, write
     from ..meshes import surface_of
-    from ..studio import error_of, first_poses, followed, overlaid, person_in, read_footage
+    from ..output import Take, checked, recorder, write
+    from ..studio import clicked_pose, error_of, first_poses, followed, overlaid, person_in, read_footage, seen_in
 
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
-    who, surface = person_in(film, person), surface_of(freedom="full")
+    who, clicks = person_in(film, person), start is not None and start.suffix.lower() == ".toml"
     checked(out, [film.people[who]])
-    poses = list(first_poses(film, surface, who, start))
-    tracker = Tracker(surface, film.lenses, float(film.fps))
-    drawn = None if overlay is None else overlaid(film, surface, 1, poses[1])
+    if clicks and start is not None:
+        surface, pose = clicked_pose(film, start)
+        poses = [pose]
+        if fit:
+            say("finding how tall and how wide somebody is: a minute")
+            shape = fitted_shape(Tracker(surface, film.lenses, float(film.fps)), pose, pose,
+                                 [seen_in(film, number, who, masks) for number in range(1, min(fit + 1, film.frames))])
+            surface = shape.surface
+            say(f"{surface.chain.skeleton.offsets[0, 1] / human().offsets[0, 1] * STATURE:.2f} m tall, {shape.girth:.2f} times as wide as the "
+                f"mannequin; silhouettes overlap by {100 * shape.before:.0f} and then {100 * shape.overlap:.0f} %")
+    else:
+        surface = surface_of(freedom="full")
+        poses = list(first_poses(film, surface, who, start))
+    tracker, known = Tracker(surface, film.lenses, float(film.fps)), len(poses)
+    drawn = None if overlay is None else overlaid(film, surface, known - 1, poses[-1])
     with (nullcontext() if drawn is None or overlay is None else recorder(overlay, (drawn.shape[1], drawn.shape[0]), film.fps)) as tape, progress_bar() as bar:
-        for number, one in enumerate(bar.track(followed(film, tracker, poses, who, masks), film.frames - 2, description=film.people[who]), 2):
+        for number, one in enumerate(bar.track(followed(film, tracker, poses, who, masks), film.frames - known, description=film.people[who]), known):
             poses.append(one.now)
             if tape is not None:
                 tape.write(overlaid(film, surface, number, one.now))
