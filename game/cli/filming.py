@@ -103,7 +103,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
 
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
-    from ..studio import clicked_pose, error_of, first_poses, followed, overlaid, person_in, read_footage, seen_in
+    from ..studio import clicked_pose, error_of, first_poses, followed, overlaid, person_in, read_footage, seen_in, settled
 
     film = read_footage(footage)
     if film.frames < 2:
@@ -112,14 +112,14 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     checked(out, [film.people[who]])
     if clicks and start is not None:
         surface, pose = clicked_pose(film, start)
-        poses = [pose]
         if fit:
             say("finding how tall and how wide somebody is: a minute")
             shape = fitted_shape(Tracker(surface, film.lenses, float(film.fps)), pose, pose,
-                                 [seen_in(film, number, who, masks) for number in range(1, min(fit + 1, film.frames))])
+                                 [seen_in(film, number, who, masks) for number in range(min(fit, film.frames))])
             surface = shape.surface
             say(f"{surface.chain.skeleton.offsets[0, 1] / human().offsets[0, 1] * STATURE:.2f} m tall, {shape.girth:.2f} times as wide as the "
                 f"mannequin; silhouettes overlap by {100 * shape.before:.0f} and then {100 * shape.overlap:.0f} %")
+        poses = [settled(film, Tracker(surface, film.lenses, float(film.fps)), pose, who, masks)]
     else:
         surface = surface_of(freedom="full")
         poses = list(first_poses(film, surface, who, start))

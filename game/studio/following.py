@@ -17,6 +17,8 @@ from gambol.controllers.tracking.twists import Configuration, fitted, posed
 from ..meshes import surface_of
 from .footage import Footage, FootageError
 
+AGAIN = 4
+"""So often a rough first pose is fitted to the first frame."""
 FOUND, MODEL = (60, 140, 255), (255, 40, 40)
 """Colours of the contour that the segmentation finds, and of the model's."""
 
@@ -67,6 +69,14 @@ def clicked_pose(footage: Footage, clicks: Path, level: str = "middle") -> tuple
     """A body and its pose in the first frame, by a .toml file of joints in pictures. ClickError for one that says nothing sound."""
     chain, pose = clicked(footage.lenses, read_clicks(clicks, footage.lenses))
     return surface_of(chain.skeleton, "full", level=level), pose
+
+
+def settled(footage: Footage, tracker: Tracker, pose: Configuration, person: int = 0, masks: bool = False) -> Configuration:
+    """A first pose that was given roughly, as the first frame has it: fitted to it again and again."""
+    seen = seen_in(footage, 0, person, masks)
+    for _ in range(AGAIN):
+        pose = tracker.step(tracker.start(pose), seen).now
+    return pose
 
 
 def seen_in(footage: Footage, number: int, person: int = 0, masks: bool = False) -> list[np.ndarray | None]:
