@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, penalty_of, predicted, solve
+from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, overlap, penalty_of, predicted, solve
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, rendered, skinned
 from .together import together
@@ -25,6 +25,8 @@ ROUGH = 0.6
 """So far off are contours [pixels] on average under the paper's noise: cleaner ones count for more, rougher ones for less."""
 CLEANEST, ROUGHEST = 0.03, 1.5
 """Nobody is believed to be better than that [pixels], or worse."""
+EXPLAINED = 0.88
+"""A pose that covers so much of the usual in every picture explains them."""
 
 
 @dataclass(frozen=True)
@@ -100,9 +102,32 @@ class Tracker:
             views = together(observed, self.lenses, [one.mask for one in found])
             fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver)
             start = fit.where
-        if not fit.believed.any():  # nothing speaks against going on
+        doubted = there & ~fit.believed
+        if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, target, evidence)) is not None:
+            fit, evidence = second
+        elif not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
         return Track(fit.where, track.now, evidence, fit)
+
+    def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, target: Configuration,
+                     evidence: Evidence) -> tuple[Fit, Evidence] | None:
+        """The fit to all pictures, doubted ones too, if it explains them nearly as well as usual: then it was the prediction that was wrong.
+
+        Pictures of something else are explained by no pose nearby.
+        """
+        found, where, fit = None, target, None
+        for _ in range(2):
+            found = self._found(seen, where, found)
+            views = together(observed, self.lenses, [one.mask for one in found])
+            fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver)
+            where = fit.where
+        found = self._found(seen, where, found)
+        vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+        overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
+                             for lens, one, colours in zip(self.lenses, found, shown)])
+        if fit is None or not there.any() or (overlaps[there] < EXPLAINED * evidence.usual[there]).any():
+            return None
+        return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
 
     def masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> list[np.ndarray]:
         """Who is in each camera's picture, (H, W) bool, for somebody near a pose; masks as they are, empty ones of dropped frames."""
