@@ -79,7 +79,7 @@ class Tracking(Controller):
             before = fitted(chain, earlier.root, earlier.rotations)
         shown = local_turns(chain, now)
         offset = np.concatenate([np.zeros((1, 3)), log(np.swapaxes(shown.rotations, -1, -2) @ np.asarray(state.pose.rotations, float))])
-        return replace(state, memory=Watching(self.tracker.start(now, before), 0.0, offset, np.zeros_like(offset)))
+        return replace(state, memory=Watching(self.tracker.start(now, before), 1.0 / self.tracker.rate, offset, np.zeros_like(offset)))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, for a state that was not entered, and as of `Tracker.step`)."""

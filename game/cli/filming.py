@@ -76,11 +76,10 @@ def footage(films: Annotated[list[Path], typer.Argument(help="A film of each cam
 
     from ..studio import imported
 
-    lenses, count = read_cameras(cameras), 0
+    lenses = read_cameras(cameras)
     with progress_bar() as bar:
-        for count in bar.track(imported(films, lenses, out, width, name), description=out.name):
-            pass
-    say(f"{out}: {len(lenses)} cameras, {count + 1} frames of {name}")
+        count = sum(1 for _ in bar.track(imported(films, lenses, out, width, name), description=out.name))
+    say(f"{out}: {len(lenses)} cameras, {count} frames of {name}")
 
 
 @app.command()

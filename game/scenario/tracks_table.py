@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -10,7 +10,7 @@ from pydantic import Field
 from gambol.controllers.body import Skeleton
 
 from ..world import RATE, Watches, watches_of
-from .fields import Point3, Table, one_of
+from .fields import Point3, Table
 
 Share = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
@@ -26,7 +26,7 @@ class TracksTable(Table):
     actor: str
     cameras: Annotated[int, Field(ge=1, le=16)] = 4
     width: Annotated[int, Field(ge=64, le=1280)] = 320
-    fps: Annotated[int, one_of(tuple(RATE // k for k in (1, 2, 3, 4)))] = 30
+    fps: Literal[15, 20, 30, 60] = 30
     along: bool = True
     penalty: bool = True
     wrong: Annotated[float, Field(ge=0.0, le=0.4, allow_inf_nan=False)] = 0.0

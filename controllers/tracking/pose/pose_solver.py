@@ -81,7 +81,7 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
         positions, orientations, _ = posed(chain, Configuration(world, angles))
         vertices = skinned(surface, positions, orientations)
 
-        def draw(k: int, vertices=vertices, first=outer == 0) -> _Drawn | None:
+        def draw(k: int, vertices=vertices, first=outer == 0, believed=believed) -> _Drawn | None:
             if not believed[k]:
                 return None
             view = views[k]
@@ -179,7 +179,7 @@ def _sums(surface: Surface, views: Sequence[Observed], drawn: Sequence[_Drawn | 
     parts = together(act, views, drawn)
     total, used = sum(part[2] for part in parts), sum(part[3] for part in parts)
     scale = min(settings.effective / max(used, 1), 1.0)
-    return sum(part[0] for part in parts) * scale, sum(part[1] for part in parts) * scale, total / max(used, 1)
+    return np.sum([part[0] for part in parts], 0) * scale, np.sum([part[1] for part in parts], 0) * scale, total / max(used, 1)
 
 
 def _shift(one: _Drawn, lens: Lens, surface: Surface, columns: np.ndarray | None, step: np.ndarray, centre: np.ndarray) -> None:
