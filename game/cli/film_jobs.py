@@ -9,6 +9,7 @@ import itertools
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from functools import lru_cache
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -47,24 +48,32 @@ def jobs_of(scenarios: Sequence[str], out: Path, seeds: int, characters: Sequenc
 
 def frames(job: Job) -> Iterator[int]:
     """Make a job's film: how many pictures were drawn for each frame, as it is done."""
-    from gambol.controllers.locomotion import Locomotion
-    from gambol.controllers.person import person
     from gambol.controllers.tracking.cameras import read_cameras
 
     from ..hosts import Offscreen
     from ..scenario import load
     from ..studio import Plan, read_sensor, shoot
-    from .base import body_of, in_body
 
     lenses, sensor = read_cameras(job.cameras), read_sensor(job.cameras)
     lenses = lenses if job.width is None else tuple(lens.scaled(job.width) for lens in lenses)
     sensor = sensor if job.seed is None else sensor.model_copy(update={"seed": job.seed})
     run = load(job.scenario)
     run = run if job.fps is None else run.at_fps(job.fps)
-    controller = in_body(person(Locomotion.load(job.library)), body_of(None if job.character is None else Path(job.character)))
+    controller = somebody(job.library, job.character)
     with Offscreen((16, 16), job.preset) as stage:
         yield from shoot(Plan(run, lenses, sensor, job.preset, f"{controller.kind} {'' if job.character is None else Path(job.character).name}"),
                          job.folder, controller, stage)
+
+
+@lru_cache(4)
+def somebody(library: str | None, character: str | None) -> Any:
+    """Who moves, with a gait library, in a character's body: loaded once for many films."""
+    from gambol.controllers.locomotion import Locomotion
+    from gambol.controllers.person import person
+
+    from .base import body_of, in_body
+
+    return in_body(person(Locomotion.load(library)), body_of(None if character is None else Path(character)))
 
 
 def count_of(job: Job) -> int:

@@ -13,6 +13,7 @@ from gambol.controllers.body import forward_kinematics, human
 from gambol.controllers.mocap import load as load_motion
 from gambol.controllers.tracking.cameras import looking_at, read_cameras
 from gambol.game import cli, hosts
+from gambol.game.cli import film_jobs, filming
 from gambol.game.scenario.scenario import load
 from gambol.game.scene import Box, Figure, Pillar, Scene
 from gambol.game.studio import (COCO, FootageError, LensWarp, Plan, Sensor, Stage, coco_points, read_footage, read_sensor, seen_by,
@@ -288,17 +289,7 @@ def test_coco_has_its_points():
 
 
 def test_the_command_films(tmp_path, monkeypatch):
-    class Made(Drawing):
-        def __init__(self, size, preset):
-            super().__init__()
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *error):
-            pass
-    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
-    monkeypatch.setattr(hosts, "Offscreen", Made, raising=False)
+    filmed(monkeypatch)
     file, cameras = written(tmp_path, SCENARIO), tmp_path / "c.toml"
     cameras.write_text(CAMERAS)
 
@@ -324,7 +315,8 @@ def filmed(monkeypatch):
 
         def __exit__(self, *error):
             pass
-    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
+    monkeypatch.setattr(film_jobs, "somebody", lambda *_: Glide())
+    monkeypatch.setattr(filming, "person_of", lambda *_: None)
     monkeypatch.setattr(hosts, "Offscreen", Made, raising=False)
 
 
