@@ -58,6 +58,7 @@ def imported(films: Sequence[Path], lenses: Sequence[Lens], folder: str | Path, 
 def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
     """Frames a second, then each picture (H, W, 3) uint8 in the camera's size."""
     import av
+    from av.error import FFmpegError
 
     try:
         with av.open(str(film)) as file:
@@ -72,7 +73,7 @@ def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
                     raise FootageError(f"{film}: {picture.shape[1]} × {picture.shape[0]} pixels, but {lens.name} was calibrated with "
                                        f"{lens.size[0]} × {lens.size[1]}")
                 yield np.pad(picture, ((0, more[0]), (0, more[1]), (0, 0)))
-    except (av.error.FFmpegError, OSError) as fault:
+    except (FFmpegError, OSError) as fault:
         raise FootageError(f"{film}: {reason(fault) if isinstance(fault, OSError) else fault}") from None
 
 
