@@ -62,6 +62,18 @@ class Goal:
 
 
 @dataclass(frozen=True, eq=False)
+class Sighting:
+    """What cameras see of somebody in one frame.
+
+    pictures: of each camera a mask (H, W) bool, a picture (H, W, 3) or (H, W) uint8, or None of one whose frame is missing.
+    place: (3,) [m] how far all of them are from where they were calibrated, as they may go along.
+    """
+
+    pictures: Sequence[np.ndarray | None]
+    place: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
 class Intent:
     """What somebody wants of a character, in the character's own ground frame.
 
@@ -72,6 +84,7 @@ class Intent:
     the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish.
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
     goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way.
+    sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -80,6 +93,7 @@ class Intent:
     points: np.ndarray | None = None
     look: np.ndarray | None = None
     goal: Goal | None = None
+    sighting: Sighting | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

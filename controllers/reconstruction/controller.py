@@ -13,9 +13,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..body import (HEIGHT_GATE, RELEASE, STATURE, WALK_SPEEDS, Pose, contact_height, contact_points, damp,
-                    forward_kinematics, heading_of, human, settle, wrap)
+from ..body import STATURE, Pose, human, settle
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
+from ..driven import driven
 from .control_points import ControlPoints
 from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved, spread
 from .pose_vector import SKELETON, decode
@@ -36,7 +36,6 @@ LEAP = 0.2
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
 _CALMED = 0.5
-_SMOOTH = 0.1  # s, half-life of the ground frame's heading and of its velocity
 
 
 class Reconstructor(Protocol):
@@ -90,7 +89,6 @@ class Reconstruction(Controller):
                  starts: Starts | None = None):
         self.method, self.controls, self.starts, self.dt = method, controls, starts, dt
         self.factor, self.skeleton = height / STATURE, human(height)
-        self._sole = contact_height(self.skeleton)
 
     @property
     def kind(self) -> str:
@@ -185,7 +183,7 @@ class Reconstruction(Controller):
         shown = moved(shown, offset)
         floor = (float(state.floor) - following.level) / self.factor
         pose = self._grown(above(SKELETON, shown, *joints_of(shown), floor), following.level)
-        return self._after(state, pose, following, dt), pose
+        return driven(state, self.skeleton, pose, following, dt), pose
 
     def status(self, state: CharacterState) -> Status:
         """Running as long as points are seen now and then."""
@@ -223,24 +221,6 @@ class Reconstruction(Controller):
         offset = np.zeros_like(following.offset) if far else difference(ahead, begun.pose)
         return replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, offset=offset,
                        rate=np.zeros_like(offset) if far else following.rate, lost=0.0)
-
-    def _after(self, state: CharacterState, pose: Pose, following: Following, dt: float) -> CharacterState:
-        """The state with a new pose: its ground frame, velocity and contacts are told from the body."""
-        positions, orientations = forward_kinematics(self.skeleton, pose.root, pose.rotations)
-        arms = positions[[self.skeleton.index("LeftArm"), self.skeleton.index("RightArm")]]
-        middle, heading = arms.mean(0), float(state.ground[2])
-        heading += float(damp(0.0, wrap(heading_of(orientations[0] @ [0.0, 0.0, 1.0]) - heading), _SMOOTH, dt))
-        c, s = np.cos(heading), np.sin(heading)
-        x, _, z = (pose.root - state.pose.root) / dt
-        now = np.array([s * x + c * z, (heading - float(state.ground[2])) / dt, c * x - s * z])
-        before = contact_points(self.skeleton, *forward_kinematics(
-            self.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
-        points = contact_points(self.skeleton, positions, orientations)
-        slack = np.where(state.contacts, RELEASE, 1.0)
-        stands = (points[:, 1] - state.floor - self._sole < HEIGHT_GATE * slack) & (
-            np.linalg.norm(points - before, axis=-1) / dt < WALK_SPEEDS * slack)
-        return replace(state, ground=np.array([middle[0], middle[2], heading]), pose=pose, contacts=stands,
-                       velocity=damp(np.asarray(state.velocity, float), now, _SMOOTH, dt), memory=following)
 
     def _seen(self, intent: Intent, level: float) -> np.ndarray:
         """The points that are wanted (n, 3) as of a standard body on a floor there. Unable for another number of them."""

@@ -13,9 +13,10 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, penalty_of, predicted, solve
+from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, overlap, penalty_of, predicted, solve
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, rendered, skinned
+from .together import together
 from .twists import Configuration, posed
 
 FIRM = 3.0
@@ -24,6 +25,8 @@ ROUGH = 0.6
 """So far off are contours [pixels] on average under the paper's noise: cleaner ones count for more, rougher ones for less."""
 CLEANEST, ROUGHEST = 0.03, 1.5
 """Nobody is believed to be better than that [pixels], or worse."""
+EXPLAINED = 0.88
+"""A pose that covers so much of the usual in every picture explains them."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class TrackerSettings:
     solver: SolverSettings = SETTINGS
     rounds: int = 2
     pictures: SolverSettings = replace(SETTINGS, outer=2)
-    segmentation: Segmentation = SEGMENTATION
+    segmentation: Segmentation = replace(SEGMENTATION, rounds=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,34 +89,61 @@ class Tracker:
         penalty = None
         if chosen.penalty:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
-        evidence, believed = track.evidence, there
+        evidence, believed, found = track.evidence, there, None
         for k in range(chosen.rounds if shown.any() else 1):
-            masks, agreements = self._masks(seen, start)
+            found = self._found(seen, start, found)
+            agreements = np.array([one.agreement for one in found])
 
             def believe(overlaps: np.ndarray, first=k == 0, agreements=agreements) -> np.ndarray:
                 nonlocal evidence, believed
                 if chosen.gate and first:
                     evidence, believed = judged(evidence, np.where(shown, agreements, overlaps))
                 return believed & there
-            views = [observed(lens, mask) for lens, mask in zip(self.lenses, masks)]
+            views = together(observed, self.lenses, [one.mask for one in found])
             fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver)
             start = fit.where
-        if not fit.believed.any():  # nothing speaks against going on
+        doubted = there & ~fit.believed
+        if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, target, evidence)) is not None:
+            fit, evidence = second
+        elif not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
         return Track(fit.where, track.now, evidence, fit)
 
-    def _masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> tuple[list[np.ndarray], np.ndarray]:
-        """Masks (H, W) bool, those of pictures found near a pose; and how well colours agree with that (C,), 0 for masks."""
-        plates = self.plates or (None,) * len(self.lenses)
-        found, vertices = [], None
-        for lens, one, plate in zip(self.lenses, seen, plates):
+    def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, target: Configuration,
+                     evidence: Evidence) -> tuple[Fit, Evidence] | None:
+        """The fit to all pictures, doubted ones too, if it explains them nearly as well as usual: then it was the prediction that was wrong.
+
+        Pictures of something else are explained by no pose nearby.
+        """
+        found, where, fit = None, target, None
+        for _ in range(2):
+            found = self._found(seen, where, found)
+            views = together(observed, self.lenses, [one.mask for one in found])
+            fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver)
+            where = fit.where
+        found = self._found(seen, where, found)
+        vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+        overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
+                             for lens, one, colours in zip(self.lenses, found, shown)])
+        if fit is None or not there.any() or (overlaps[there] < EXPLAINED * evidence.usual[there]).any():
+            return None
+        return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
+
+    def masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> list[np.ndarray]:
+        """Who is in each camera's picture, (H, W) bool, for somebody near a pose; masks as they are, empty ones of dropped frames."""
+        return [one.mask for one in self._found(seen, where, None)]
+
+    def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None) -> list[Segmented]:
+        """Who is in each camera's picture near a pose; masks as they are. before: what an earlier turn found in the same pictures."""
+        vertices = None
+        if any(one is not None and one.dtype != bool for one in seen):
+            vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+
+        def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None) -> Segmented:
             if one is None:
-                one = np.zeros(lens.size[::-1], bool)
-            if one.dtype != bool:
-                if vertices is None:
-                    vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
-                drawn = rendered(lens, vertices, self.surface.triangles)
-                found.append(segmented(one, drawn.mask, plate, self.settings.segmentation))
-            else:
-                found.append(Segmented(one, 0.0))
-        return [one.mask for one in found], np.array([one.agreement for one in found])
+                return Segmented(np.zeros(lens.size[::-1], bool), 0.0)
+            if vertices is None or one.dtype == bool:
+                return Segmented(one, 0.0)
+            drawn = rendered(lens, vertices, self.surface.triangles)
+            return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut)
+        return together(act, self.lenses, seen, self.plates or (None,) * len(seen), before or (None,) * len(seen))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..explain import broken, on_the_way, rows
+from ..explain import broken, on_the_way, rows, with_cameras
 from ..hosts import Event, KeyEvent, MouseMove, Scroll
 from ..input import DEFAULT, Bindings, Wish, help_sheet
 from ..scene import Scene
@@ -295,6 +295,8 @@ class Play:
             views = (first, *views[1:])
         elif self.showing.overlays.errors and not self.helping and (lines := rows(moment.after)):
             views = (replace(views[0], ink=self.held_points.legend(lines, size, moment.comparison)), *views[1:])
+        if self.showing.overlays.cameras and not self.helping:
+            views = (replace(views[0], ink=with_cameras(views[0].ink, moment.after, size)), *views[1:])
         return views[0] if len(views) == 1 else views
 
     @property

@@ -25,7 +25,7 @@ class Showing:
     drawn."""
 
     def __init__(self):
-        self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True), frozenset()
+        self.overlays, self.panels = Overlays(path=True, jump=True, points=True, errors=True, cameras=True), frozenset()
         self.hud: Hud | None = None
         self.undrawn = 0.0
 

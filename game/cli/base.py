@@ -194,6 +194,11 @@ def overlays_of(text: str) -> list[str]:
     return names if "mesh" in names or "skeleton" in names else ["mesh", *names]
 
 
+def cores() -> int:
+    """How many cores this program may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def progress_bar() -> Any:
     """A bar for work that takes a while."""
     from rich.console import Console

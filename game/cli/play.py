@@ -23,6 +23,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          players: Annotated[int, typer.Option(min=1, max=2, help="How many play; a second one may also join later.")] = 1,
          record: Annotated[Path | None, typer.Option(help="Keep the input log in this new .gambol file; by default in out/.")] = None,
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
+         cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from ..input import load as load_bindings
@@ -49,9 +50,18 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
                           for text in (option, str(value))])
     beside = Preparing(walker, programs)
 
+    if cameras:
+        from ..world import tracker_ready
+
+        say("making the tracker ready: a minute, the first time")
+        tracker_ready()
+
     def begun() -> Play:
-        return Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
+        game = Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
                     preparing=beside, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)))
+        if cameras and tape is None:
+            game.do("track")
+        return game
     show(Opening(begun, beside), pixels, preset, log, capture)
 
 

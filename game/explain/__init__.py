@@ -2,6 +2,7 @@
 missed by; the way to a goal; coming footholds; and how good a motion is, in figures.
 """
 
+from .camera_views import camera_views, with_cameras
 from .footholds import stepping
 from .jump import broken, explained
 from .jump_preview import Preview, preview
@@ -10,5 +11,6 @@ from .quality import Quality, quality_of
 from .way import led, on_the_way
 
 __all__ = [
-    "RADIUS", "Preview", "Quality", "Row", "broken", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows", "stepping",
+    "RADIUS", "Preview", "Quality", "Row", "broken", "camera_views", "explained", "led", "on_the_way", "pointed", "preview", "quality_of", "rows",
+    "stepping", "with_cameras",
 ]

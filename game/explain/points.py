@@ -100,4 +100,4 @@ class Row:
 def rows(world: World) -> tuple[Row, ...]:
     """The legend of a world: a row for each follower, its mean errors [m] of the last seconds with it."""
     return tuple(Row(one.name, one.tint, one.opacity < 1.0, lately(one.told), tuple(one.told[:, 0].tolist()))
-                 for one in world.characters if one.follows is not None)
+                 for one in world.characters if one.follows is not None or one.watches is not None)

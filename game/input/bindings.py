@@ -148,6 +148,8 @@ DEFAULT = Bindings((
         Binding("study_hands", "hold the points: drag them", ("B",)),
         Binding("study_grab", "hold the points: drag them", ("LEFT_BUTTON",), held=True, mode=HOLDING),
         Binding("study_hide", "one under the pointer: unseen", ("U",)),
+        Binding("penalty", "tracked: jitter penalty; pictures", ("Z",)),
+        Binding("cameras", "tracked: jitter penalty; pictures", ("9",)),
     )),
     ("Show and keep", (
         Binding("mesh", _SHOW, ("1",)),

@@ -16,7 +16,11 @@ from ..scene import TINT, Prop
 from ..world import TINTS
 from .fields import Colour, Degrees, FileName, Flexibility, Gravity, Mass, Metres, Moment, Seconds, Stature, Strength, Table
 from .follows_table import FollowsTable
+from .tracks_table import TracksTable
 from .move_table import MoveTable
+
+TRACKED = (0.16, 0.30, 0.62)
+"""The colour of who tracks, linear RGB."""
 
 
 class BodyTable(Table):
@@ -41,15 +45,16 @@ class ActorTable(Table):
     """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
 
     body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
-    points it follows instead of moves of its own. ghost: one sees through it. enters, leaves: when it is there [s], from
-    the beginning to the end by default; its moves begin as it enters. group: those of the same name walk together,
-    side by side, where actors avoid each other. Who follows an actor comes and goes with it.
+    points it follows instead of moves of its own. tracks: whom cameras see, whose motion is tracked. ghost: one sees through it.
+    enters, leaves: when it is there [s], from the beginning to the end by default; its moves begin as it enters. group: those of
+    the same name walk together, side by side, where actors avoid each other. Who follows an actor comes and goes with it.
     """
 
     name: FileName = "A"
     tint: Colour = TINT
     ghost: bool = False
     follows: FollowsTable | None = None
+    tracks: TracksTable | None = None
     start: tuple[Metres, Metres, Degrees] = (0.0, 0.0, 0.0)
     body: BodyTable | None = None
     gravity: Gravity | None = None
@@ -60,10 +65,13 @@ class ActorTable(Table):
 
     @model_validator(mode="after")
     def _own_will_or_points(self):
-        if self.follows is not None:
+        if self.follows is not None and self.tracks is not None:
+            raise ValueError("somebody either follows points or tracks; name one of them")
+        if self.follows is not None or self.tracks is not None:
             for name in ("start", "body", "gravity", "enters", "leaves", "moves"):
                 if name in self.model_fields_set:
-                    raise ValueError(f"who follows points has no {name}: that is the performer's")
+                    who = "who follows points" if self.tracks is None else "who tracks"
+                    raise ValueError(f"{who} has no {name}: that is the performer's")
         if self.leaves is not None and self.leaves <= self.enters:
             raise ValueError(f"`enters` comes before `leaves`; got {self.enters:g} and {self.leaves:g}")
         return self
@@ -76,7 +84,9 @@ class ActorTable(Table):
     @property
     def colour(self) -> tuple[float, float, float]:
         """Its tint; that of its method where none is given."""
-        return self.tint if self.follows is None or "tint" in self.model_fields_set else TINTS[self.follows.method]
+        if "tint" in self.model_fields_set or self.follows is None and self.tracks is None:
+            return self.tint
+        return TRACKED if self.follows is None else TINTS[self.follows.method]
 
     def jumper(self, gravity: float) -> JumpController:
         """Its jumps, where the scenario has that gravity."""

@@ -19,11 +19,11 @@ from gambol.controllers.person import built
 from gambol.controllers.supervisor import Supervisor
 
 from ..camera import between
-from ..explain import broken, explained, led, pointed, rows, stepping
+from ..explain import broken, explained, led, pointed, rows, stepping, with_cameras
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
-from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods
+from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods, tracked_of
 from .actor_table import ActorTable
 from .avoiding import avoiding
 from .camera_operator import Operator
@@ -66,7 +66,7 @@ def opening(scenario: Scenario, controller: Any) -> World:
     """
     props, cast = scenario.stage(), {}
     for actor in scenario.actors:
-        if actor.follows is None:
+        if actor.follows is None and actor.tracks is None:
             someone, jumper = controller, actor.jumper(scenario.gravity)
             if actor.body is not None or jumper.gravity[1] != EARTH:
                 someone = built(controller, jumper.physique, jumper.gravity)
@@ -76,6 +76,13 @@ def opening(scenario: Scenario, controller: Any) -> World:
             state = someone.start(ground=(x, z, math.radians(heading)), floor=floor_at(x, z, props))
             cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor),
                                          enters=actor.enters, leaves=actor.gone)
+    for actor in scenario.actors:
+        if actor.tracks is not None:
+            performer = cast[actor.tracks.actor]
+            watches = actor.tracks.watches(performer.controller.skeleton)
+            someone = tracked_of(performer.controller, watches, RATE, actor.tracks.penalty)
+            cast[actor.name] = Character(actor.name, someone, tint=actor.colour, opacity=_opacity(actor), watches=watches,
+                                         state=beginning(someone, performer.state, watches.beside), enters=performer.enters, leaves=performer.leaves)
     clips = {table.performer: table.clip for _, table in scenario.followers if table.clip is not None}
     for name, clip in clips.items():
         someone = Recorded.load(clip, controller)
@@ -173,6 +180,8 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
                 filmed = Filmed(scenario.size)
             about = old.crew[0].watched[0]
             made[0] = replace(made[0], ink=filmed.ink(old.shot.panels, lately, about, lines, 1.0 / scenario.fps))
+        if made[0].overlays.cameras:
+            made[0] = replace(made[0], ink=with_cameras(made[0].ink, before, scenario.size))
         yield frame, tuple(made)
     if filmed is not None:
         filmed.release()

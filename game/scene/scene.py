@@ -174,6 +174,7 @@ class Overlays:
     forces: bool = False
     points: bool = False
     errors: bool = False
+    cameras: bool = False
 
 
 OVERLAYS = tuple(part.name for part in fields(Overlays))

@@ -11,13 +11,13 @@ from gambol.controllers.contract import Goal
 from ..camera import Follow, cycled
 from ..input import Aim, Pilot
 from ..world import Character, World
-from . import comparison, settings
+from . import comparison, settings, tracking
 from .comparison import Comparison
 from .state import TINTS, SessionState, Player, newcomer, owners
 
 SLOWER = (1, 2, 4, 10)
 """Slow motion: how many ticks one step of the world takes."""
-ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode"))
+ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode", "track", "penalty"))
 """What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", where to go, `goal_of`, and `comparison.ACTIONS`."""
 
 
@@ -40,6 +40,10 @@ def done(moment: SessionState, who: int, action: str) -> SessionState:
         return _reset(moment)
     if name == "join":
         return _joined(moment)
+    if name == "track":
+        return tracking.tracked(moment)
+    if name == "penalty":
+        return tracking.otherwise(moment)
     if name == "strafe_lock":
         return _with(moment, who, replace(player, pilot=player.pilot.toggled()))
     character = moment.after.characters[who]

@@ -9,13 +9,16 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import load, retarget
-from gambol.controllers.tracking import Track, Tracker
+from gambol.controllers.tracking import Track, Tracker, clicked, read_clicks
 from gambol.controllers.tracking.segmentation import segmented
 from gambol.controllers.tracking.silhouettes import Surface, contour_of, rendered, skinned
 from gambol.controllers.tracking.twists import Configuration, fitted, posed
 
+from ..meshes import surface_of
 from .footage import Footage, FootageError
 
+AGAIN = 4
+"""So often a rough first pose is fitted to the first frame."""
 FOUND, MODEL = (60, 140, 255), (255, 40, 40)
 """Colours of the contour that the segmentation finds, and of the model's."""
 
@@ -62,6 +65,20 @@ def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Pat
     return Configuration(track.root[0], track.angles[0]), Configuration(track.root[1], track.angles[1])
 
 
+def clicked_pose(footage: Footage, clicks: Path, level: str = "middle") -> tuple[Surface, Configuration]:
+    """A body and its pose in the first frame, by a .toml file of joints in pictures. ClickError for one that says nothing sound."""
+    chain, pose = clicked(footage.lenses, read_clicks(clicks, footage.lenses))
+    return surface_of(chain.skeleton, "full", level=level), pose
+
+
+def settled(footage: Footage, tracker: Tracker, pose: Configuration, person: int = 0, masks: bool = False) -> Configuration:
+    """A first pose that was given roughly, as the first frame has it: fitted to it again and again."""
+    seen = seen_in(footage, 0, person, masks)
+    for _ in range(AGAIN):
+        pose = tracker.step(tracker.start(pose), seen).now
+    return pose
+
+
 def seen_in(footage: Footage, number: int, person: int = 0, masks: bool = False) -> list[np.ndarray | None]:
     """What each camera saw in a frame: pictures (H, W, 3) uint8, or masks (H, W) bool of a person; None of what was dropped."""
     out: list[np.ndarray | None] = []
@@ -78,9 +95,9 @@ def seen_in(footage: Footage, number: int, person: int = 0, masks: bool = False)
 
 
 def followed(footage: Footage, tracker: Tracker, start: Sequence[Configuration], person: int = 0, masks: bool = False) -> Iterator[Track]:
-    """The track after each frame from the third on; start: the poses of the first two."""
-    track = tracker.start(start[1], start[0])
-    for number in range(2, footage.frames):
+    """The track after each frame from the third on; start: the poses of the first two. From the second where one alone is known."""
+    track = tracker.start(start[-1], start[0])
+    for number in range(len(start), footage.frames):
         track = tracker.step(track, seen_in(footage, number, person, masks))
         yield track
 

@@ -101,6 +101,13 @@ def begun(folder: str | Path, lenses: Sequence[Lens], about: dict[str, Any]) -> 
     return folder
 
 
+def complete(path: Path, people: Sequence[str], **more: Any) -> None:
+    """Say that all of some footage is there, and whom it shows. more: facts that were not known when it was begun."""
+    told = json.loads((path / ABOUT).read_text("utf-8"))
+    with whole(path / ABOUT) as part:
+        part.write_text(json.dumps({**told, **more, "people": list(people), "complete": True}, indent=1), "utf-8")
+
+
 def read_footage(folder: str | Path) -> Footage:
     """The footage in a folder. FootageError, in one line, for anything else."""
     folder = Path(folder)

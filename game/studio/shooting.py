@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,7 @@ from ..output import takes, write
 from ..scenario import Scenario, run
 from ..scene import Scene
 from ..world import figures
-from .footage import ABOUT, FootageError, begun, file_of, fingerprint
+from .footage import FootageError, begun, complete, file_of, fingerprint
 from .lens_warp import LensWarp
 from .sensor import Sensor
 from .truth import Stage, Truth, seen_by
@@ -78,9 +77,7 @@ def shoot(plan: Plan, folder: str | Path, controller: Any, stage: Any) -> Iterat
         yield drawn
     truth.write(path, film.fps)
     write(path / "motion.bvh", takes(moments), film.fps)
-    with whole(path / ABOUT) as part:
-        told = json.loads((path / ABOUT).read_text("utf-8"))
-        part.write_text(json.dumps({**told, "people": list(truth.people), "complete": True}, indent=1), "utf-8")
+    complete(path, truth.people)
 
 
 def _there(path: Path, lens: Lens, number: int, fate: str) -> bool:

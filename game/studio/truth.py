@@ -16,7 +16,7 @@ from gambol.controllers.tracking.silhouettes import View, rendered
 
 from ..files import whole
 from ..scene import Figure, Prop
-from .skins import posed_meshes, solid_meshes
+from ..meshes import posed_meshes, solid_meshes
 
 COCO: tuple[tuple[str, str | None], ...] = (
     ("nose", None), ("left_eye", None), ("right_eye", None), ("left_ear", None), ("right_ear", None), ("left_shoulder", "LeftArm"),

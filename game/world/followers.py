@@ -99,18 +99,22 @@ def errors(follows: Follows, found: tuple[np.ndarray, np.ndarray], truth: np.nda
     found: positions (J, 3) and orientations (J, 3, 3) of the follower. truth: (J, 3) of the performer; None where
     there is none. seen: (n, 3) the points that are followed, NaN where unseen. The mean is `metrics.position_error`.
     """
-    from gambol.controllers.reconstruction import JOINTS
-    from gambol.controllers.reconstruction.evaluation import position_error
-
     away = np.linalg.norm(follows.controls.on(*found) - seen, axis=-1)
     away = away[np.isfinite(away)]
     residual = float(away.mean()) if len(away) else math.nan
     if truth is None:
         return np.array([math.nan, math.nan, -1.0, residual])
-    shifted = truth + follows.beside
-    apart = np.linalg.norm(found[0][JOINTS] - shifted[JOINTS], axis=-1)
+    return np.append(joint_errors(found[0], truth + follows.beside)[:3], residual)
+
+
+def joint_errors(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """The errors of one moment (4,), as `errors` has them, of joints (J, 3) [m] that should be at `truth`; of no points."""
+    from gambol.controllers.reconstruction import JOINTS
+    from gambol.controllers.reconstruction.evaluation import position_error
+
+    apart = np.linalg.norm(found[JOINTS] - truth[JOINTS], axis=-1)
     worst = int(np.argmax(apart))
-    return np.array([float(position_error(found[0][None], shifted[None])[0]), apart[worst], float(JOINTS[worst]), residual])
+    return np.array([float(position_error(found[None], truth[None])[0]), apart[worst], float(JOINTS[worst]), math.nan])
 
 
 def carried(follows: Follows, state: CharacterState, truth: np.ndarray, around: Sequence[Any]) -> CharacterState:

@@ -21,7 +21,8 @@ from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
-from .followers import KEPT, Follows, carried, errors
+from .followers import KEPT, Follows, carried, errors, joint_errors
+from .watched import Watches
 
 RATE = 60
 """Simulation steps a second, whatever the display does."""
@@ -42,7 +43,8 @@ class Character:
     controller: keeps `gambol.controllers.contract.Controller` and has the `skeleton` that it moves; one with a
     `body` (`gambol.game.render.mesh.Body`) is drawn in it.
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
-    follows: whose points it follows, None for somebody with a will. told: (N, 4) its `follow.errors`, oldest first.
+    follows: whose points it follows, watches: which cameras see whom it is to be like; None of both for somebody with a will.
+    told: (N, 4) its `follow.errors`, oldest first.
     opacity: 1 for a body, less for a ghost. centre_of_mass: how its centre of mass is borne; None before its first step.
     enters, leaves: when it is there [s]; before and afterwards it stays as it is, and nobody sees it.
     """
@@ -59,6 +61,7 @@ class Character:
     centre_of_mass: CentreOfMass | None = None
     enters: float = 0.0
     leaves: float = math.inf
+    watches: Watches | None = None
 
     def there(self, number: int) -> bool:
         """Whether it is there after so many steps of the world."""
@@ -88,6 +91,20 @@ class Character:
         centre = centre_of(made.controller, made.joints)
         centre_of_mass = self.centre_of_mass or CentreOfMass.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
         return replace(made, centre_of_mass=centre_of_mass.step(centre, DT))
+
+    def tracked(self, performers: Mapping[str, Character], number: int) -> Character:
+        """One step on of somebody whom cameras make out of a performer. performers: who has made that step, by name."""
+        watches = self.watches
+        assert watches is not None  # all others have made their step
+        performer, sighting = performers.get(watches.performer), None
+        if performer is None:
+            return self.step(Intent(), number)
+        there = performer.joints
+        if watches.due(number):
+            sighting = watches.sighting(*there, number)
+        made = self.step(Intent(sighting=sighting), number)
+        told = joint_errors(made.joints[0], there[0] + watches.beside)
+        return replace(made, intent=Intent(), told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
 
     def after(self, performers: Mapping[str, Character], intent: Intent, number: int) -> Character:
         """One step on of a follower. performers: who has made that step, by name."""
@@ -123,14 +140,16 @@ class World:
     def step(self, intents: Sequence[Intent]) -> World:
         """The world one sixtieth of a second later; one intent for each character, in order.
 
-        Followers come last: they see where their performer is now.
+        Who is tracked comes after whom cameras see, and followers last: they see where their performer is now.
         """
         if len(intents) != len(self.characters):
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
         intents = [replace(intent, around=self.props) for intent in intents]
-        made = [one if not one.there(self.number) else None if one.follows else one.step(intent, number)
+        made = [one if not one.there(self.number) else None if one.follows or one.watches else one.step(intent, number)
                 for one, intent in zip(self.characters, intents)]
+        performers = {one.name: one for one in made if one is not None}
+        made = [old.tracked(performers, number) if new is None and old.watches else new for new, old in zip(made, self.characters)]
         performers = {one.name: one for one in made if one is not None}
         return replace(self, number=number, characters=tuple(
             new or old.after(performers, intent, number)

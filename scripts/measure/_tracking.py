@@ -14,7 +14,7 @@ from gambol.controllers.mocap import load, retarget
 from gambol.controllers.tracking.cameras import Lens, ring
 from gambol.controllers.tracking.silhouettes import Surface, contour_of, rendered, skinned
 from gambol.controllers.tracking.twists import Chain, Configuration, fitted, local_turns, posed
-from gambol.game.studio import surface_of
+from gambol.game.meshes import surface_of
 
 RATE = 60.0
 CLIPS = {"run 16_35": ("cmu/16/16_35.amc", "all"), "run 16_55": ("cmu/16/16_55.amc", "all"), "squats 14_06": ("cmu/14/14_06.amc", "deepest"),

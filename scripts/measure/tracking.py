@@ -14,57 +14,24 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from _plots import pictures
-from _tracking import RATE, Errors, Film, errors, films, noisy, overlay, silhouette
+from _tracking import RATE, Film, errors, films, overlay, silhouette
+from _tracking_ways import BARE, OURS, WAYS, lied, told, track, with_lies, with_noise
 
-from gambol.controllers.tracking import Track, Tracker, TrackerSettings
+from gambol.controllers.tracking import Tracker
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
 from gambol.controllers.tracking.segmentation import segmented
-from gambol.controllers.tracking.twists import Configuration
-
-BARE = TrackerSettings(penalty=False, gate=False)
-PAPER = TrackerSettings(pace=1.0, gate=False)
-OURS = TrackerSettings(gate=False)
-WAYS = {"no penalty": BARE, "the paper's penalty": PAPER, "ours, joints at rest": OURS, "ours, gate": TrackerSettings(),
-        "no penalty, from the last pose": replace(BARE, start="last")}
-
-
-
-def track(film: Film, masks: Sequence[Sequence[np.ndarray | None]], settings: TrackerSettings, plates: Sequence[np.ndarray] | None = None
-          ) -> tuple[list[Configuration], list[Track]]:
-    """Poses of all frames, the first two given."""
-    tracker = Tracker(film.surface, film.lenses, RATE, settings, None if plates is None else tuple(plates))
-    state, tracks = tracker.start(film.truth[1], film.truth[0]), []
-    for seen in masks:
-        state = tracker.step(state, seen)
-        tracks.append(state)
-    return [*film.truth[:2], *(one.now for one in tracks)], tracks
-
-
-def told(name: str, made: Sequence[Errors]) -> None:
-    """One line for several tracks: joined, and the mean error of each."""
-    joined = Errors(*(np.concatenate([getattr(one, part) for one in made]) for part in ("angles", "swings", "twists", "metres")),
-                    float(np.mean([one.jitter for one in made])), float(np.mean([one.lag for one in made])))
-    each = "" if len(made) == 1 else "; by seed " + " ".join(f"{one.angles.mean():.1f}" for one in made)
-    print(f"    {name:32} {joined.told()}{each}", flush=True)
-
 
 def clean(film: Film, _seeds: int, _plots: Path | None) -> None:
     """Perfect silhouettes."""
     masks = [film.masks(t) for t in range(2, len(film.truth))]
     for name, settings in WAYS.items():
         told(name, [errors(film.chain, track(film, masks, settings)[0], film.truth)])
-
-
-def with_noise(film: Film, seed: int) -> list[list[np.ndarray]]:
-    rng = np.random.default_rng(seed)
-    return [[noisy(mask, rng) for mask in film.masks(t)] for t in range(2, len(film.truth))]
 
 
 def noise(film: Film, seeds: int, plots: Path | None) -> None:
@@ -83,23 +50,9 @@ def noise(film: Film, seeds: int, plots: Path | None) -> None:
 def corrupted(film: Film, seeds: int, _plots: Path | None) -> None:
     """Two frames in 22 in which every camera stored something else: the silhouette of another moment, mirrored and elsewhere."""
     for kind in ("clean", "noisy"):
-        made = [_with_lies(film, seed, kind) for seed in range(seeds)]
+        made = [with_lies(film, seed, kind) for seed in range(seeds)]
         for name in ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate"):
             told(f"{kind}: {name}", [errors(film.chain, track(film, masks, WAYS[name])[0], film.truth) for masks in made])
-
-
-def _with_lies(film: Film, seed: int, kind: str) -> list[list[np.ndarray]]:
-    return _lied([film.masks(t) for t in range(2, len(film.truth))] if kind == "clean" else with_noise(film, seed), seed)
-
-
-def _lied(seen: Sequence[list[np.ndarray]], seed: int) -> list[list[np.ndarray]]:
-    """Masks or pictures, two frames in 22 of another moment's, mirrored and elsewhere."""
-    rng, out = np.random.default_rng(100 + seed), list(seen)
-    for start in range(int(rng.integers(8, 22)), len(out) - 2, 22):
-        for t in (start, start + 1):
-            other = out[int(rng.integers(0, len(out)))]
-            out[t] = [np.roll(one[:, ::-1], rng.integers(-40, 41, 2) * one.shape[1] // 640, (0, 1)) for one in other]
-    return out
 
 
 def images(film: Film, seeds: int, plots: Path | None) -> None:
@@ -108,7 +61,7 @@ def images(film: Film, seeds: int, plots: Path | None) -> None:
 
     made = shots(film)
     kinds = {"clean": [made.pictures], "noisy": [spoilt(made.pictures, seed) for seed in range(seeds)]}
-    kinds |= {f"{kind}, corrupted": [_lied(one, seed) for seed, one in enumerate(kinds[kind])] for kind in ("clean", "noisy")}
+    kinds |= {f"{kind}, corrupted": [lied(one, seed) for seed, one in enumerate(kinds[kind])] for kind in ("clean", "noisy")}
     for kind, films_ in kinds.items():
         for name in ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate", "ours, gate, empty pictures known"):
             plates = made.plates if "empty" in name else None

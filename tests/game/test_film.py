@@ -13,6 +13,7 @@ from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load, shipped
 from gambol.game.scenario.shot_table import parts
 from gambol.game.scene.scene import Overlays
+from gambol.game.world import Watches
 from scenarios import written
 from stand_in import Glide
 
@@ -207,6 +208,9 @@ def test_shipped_films_show_whom_they_are_about(name, walker, monkeypatch):
     Who follows points walks after them: what makes a body of them plays no part, and costs a hundred times as much.
     """
     monkeypatch.setattr(film, "follower_of", lambda performer, *_: walker)
+    monkeypatch.setattr(film, "tracked_of", lambda *_: walker)
+    monkeypatch.setattr(film, "with_cameras", lambda ink, *_: ink)
+    monkeypatch.setattr(Watches, "sighting", lambda *_: None)
     scenario = load(name).at_fps(4)
     lost = seen = 0
     for frame, scenes in film.scenes(scenario, walker):

@@ -15,9 +15,10 @@ from gambol.controllers.tracking import Tracker
 from gambol.controllers.tracking.cameras import read_cameras
 from gambol.controllers.tracking.twists import posed
 from gambol.game import cli
+from gambol.game.meshes import surface_of
 from gambol.game.scenario.scenario import load
 from gambol.game.studio import (FootageError, Plan, Sensor, error_of, first_poses, followed, overlaid, person_in, read_footage,
-                                seen_in, shoot, surface_of)
+                                seen_in, shoot)
 
 SCENARIO = """
 title = "Short"
@@ -143,3 +144,52 @@ def test_dropped_frames_are_none(footage, tmp_path):
     about = json.loads((broken / "footage.json").read_text())
     (broken / "footage.json").write_text(json.dumps(about | {"dropped": {"cam2": [2]}}))
     assert [one is None for one in seen_in(read_footage(broken), 2)] == [False, False, True]
+
+
+def mp4(path, pictures, fps=30):
+    import av
+
+    with av.open(str(path), "w") as file:
+        stream = file.add_stream("libx264", rate=fps)
+        stream.width, stream.height, stream.pix_fmt = pictures[0].shape[1], pictures[0].shape[0], "yuv420p"
+        for picture in pictures:
+            file.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+        file.mux(stream.encode())
+
+
+def test_real_films_become_footage_and_clicks_begin_a_track(footage, tmp_path):
+    """The pictures as films, the first frame's joints as clicks: a body is followed whose truth nobody tells."""
+    for lens in footage.lenses:
+        mp4(tmp_path / f"{lens.name}.mp4", [footage.picture(lens.name, "frame", number) for number in range(4)])
+    films = [tmp_path / f"cam{k}.mp4" for k in (2, 0, 1)]  # named after their cameras
+    done = CliRunner().invoke(cli.app, ["footage", *map(str, films), "--cameras", str(footage.path / "cameras.toml"), "-o", str(tmp_path / "real"),
+                                        "--name", "Bob"])
+    assert done.exit_code == 0 and "3 cameras, 4 frames of Bob" in done.output, done.output
+    real = read_footage(tmp_path / "real")
+    assert real.people == ("Bob",) and real.fps == 30 and real.frames == 4
+    away = np.abs(real.picture("cam0", "frame", 2).astype(int) - footage.picture("cam0", "frame", 2))
+    assert away.mean() < 6
+    pixels, names = footage.truth()["pixels"][0, :, 0], [str(name) for name in footage.truth()["names"]]
+    clicks = "".join(f"[{lens.name}]\n" + "".join(f"{names[j]} = [{x:.1f}, {y:.1f}]\n" for j, (x, y, _) in enumerate(of) if names[j] in CLICKED)
+                     for lens, of in zip(footage.lenses, pixels))
+    (tmp_path / "clicks.toml").write_text(clicks)
+    done = run(tmp_path / "real", "-o", tmp_path / "b.bvh", "--start", tmp_path / "clicks.toml", "--fit", 0)
+    assert done.exit_code == 0 and "4 frames of Bob" in done.output, done.output
+    clip = load_motion(tmp_path / "b.bvh")
+    np.testing.assert_allclose(clip.root[-1], footage.truth()["joints"][3, 0, 0], atol=0.06)
+    (tmp_path / "clicks.toml").write_text("[cam0]\nLeftArm = [1, 2]\n")
+    one_line(run(tmp_path / "real", "-o", tmp_path / "b.bvh", "--start", tmp_path / "clicks.toml"), "clicks", "two cameras")
+
+
+CLICKED = {f"{side}{part}" for side in ("Left", "Right") for part in ("Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot")} | {"Neck"}
+
+
+def test_films_that_cannot_be_footage_are_told_in_a_line(footage, tmp_path):
+    def make(*films):
+        return CliRunner().invoke(cli.app, ["footage", *map(str, films), "--cameras", str(footage.path / "cameras.toml"), "-o", str(tmp_path / "real")])
+    (tmp_path / "no.mp4").write_bytes(b"nothing")
+    mp4(tmp_path / "small.mp4", [np.zeros((32, 32, 3), np.uint8)] * 2)
+    one_line(make(tmp_path / "no.mp4"), "1 films, but 3 cameras")
+    one_line(make(*[tmp_path / "no.mp4"] * 3), "no.mp4")
+    one_line(make(*[tmp_path / "gone.mp4"] * 3), "gone.mp4")
+    one_line(make(*[tmp_path / "small.mp4"] * 3), "small.mp4", "32 × 32", "96 × 96")

@@ -13,6 +13,7 @@ from gambol.controllers.body import forward_kinematics, human
 from gambol.controllers.mocap import load as load_motion
 from gambol.controllers.tracking.cameras import looking_at, read_cameras
 from gambol.game import cli, hosts
+from gambol.game.cli import film_jobs, filming
 from gambol.game.scenario.scenario import load
 from gambol.game.scene import Box, Figure, Pillar, Scene
 from gambol.game.studio import (COCO, FootageError, LensWarp, Plan, Sensor, Stage, coco_points, read_footage, read_sensor, seen_by,
@@ -288,17 +289,7 @@ def test_coco_has_its_points():
 
 
 def test_the_command_films(tmp_path, monkeypatch):
-    class Made(Drawing):
-        def __init__(self, size, preset):
-            super().__init__()
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *error):
-            pass
-    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
-    monkeypatch.setattr(hosts, "Offscreen", Made, raising=False)
+    filmed(monkeypatch)
     file, cameras = written(tmp_path, SCENARIO), tmp_path / "c.toml"
     cameras.write_text(CAMERAS)
 
@@ -311,3 +302,70 @@ def test_the_command_films(tmp_path, monkeypatch):
     cameras.write_text("[front]\n")
     broken = run()
     assert broken.exit_code == 2 and "front: is no camera" in broken.output and "Traceback" not in broken.output
+
+
+def filmed(monkeypatch):
+    """Whoever films draws nothing, and steps lightly."""
+    class Made(Drawing):
+        def __init__(self, size, preset):
+            super().__init__()
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            pass
+    monkeypatch.setattr(film_jobs, "somebody", lambda *_: Glide())
+    monkeypatch.setattr(filming, "person_of", lambda *_: None)
+    monkeypatch.setattr(hosts, "Offscreen", Made, raising=False)
+
+
+def contents_of(folder):
+    return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.rglob("*")) if file.is_file() and file.suffix != ".npz"}
+
+
+def test_many_films_are_jobs_and_a_cluster_makes_the_same(tmp_path, monkeypatch):
+    """Two scenarios and two seeds, here and by two workers of a local cluster: the same files to the byte."""
+    from distributed import LocalCluster
+
+    filmed(monkeypatch)
+    one, cameras = written(tmp_path, SCENARIO), tmp_path / "c.toml"
+    other = tmp_path / "other.toml"
+    other.write_text(one.read_text())
+    cameras.write_text(CAMERAS + "[sensor]\nreplaced = 0.1\n")
+
+    def run(out, *more):
+        return CliRunner().invoke(cli.app, ["film", str(one), str(other), "--seeds", "2", "-o", str(tmp_path / out), "--cameras", str(cameras), *more])
+    done = run("here", "--workers", "1")
+    assert done.exit_code == 0 and "4 films, 2 cameras, 16 frames" in done.output
+    made = contents_of(tmp_path / "here")
+    assert {name.split("/")[0] for name in made} == {f"{file.stem}_seed{k}" for file in (one, other) for k in (0, 1)}
+    pictures = [[made[f"{one.stem}_seed{k}/front/{what}_00002.png"] for k in (0, 1)] for what in ("frame", "mask")]
+    assert pictures[0][0] != pictures[0][1] and pictures[1][0] == pictures[1][1], "another seed is other noise"
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+        done = run("there", "--cluster", cluster.scheduler_address)
+    assert done.exit_code == 0, done.output
+    assert contents_of(tmp_path / "there") == made
+    assert "32 pictures were there already" in run("there", "--workers", "1").output
+
+
+def test_jobs_that_cannot_be_are_told_in_a_line(tmp_path, monkeypatch):
+    filmed(monkeypatch)
+    file = written(tmp_path, SCENARIO)
+    (tmp_path / "sub").mkdir()
+    twin = tmp_path / "sub" / file.name
+    twin.write_text(file.read_text())
+    done = CliRunner().invoke(cli.app, ["film", str(file), str(twin), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 2 and "two films would be called so" in done.output and "Traceback" not in done.output
+    done = CliRunner().invoke(cli.app, ["film", "corridr", "-o", str(tmp_path / "out")])
+    assert done.exit_code == 2 and "did you mean" in done.output
+
+
+def test_the_shipped_cameras_are_sound():
+    from gambol.assets import path
+
+    lenses = read_cameras(path("cameras", "four.toml"))
+    assert len(lenses) == 4 and read_sensor(path("cameras", "four.toml")) == Sensor()
+    for lens in lenses:
+        at, deep = lens.project(np.array([[0.0, 0.05, 0.0], [0.0, 1.8, 0.0]]))
+        assert (deep > 3).all() and ((at > 20) & (at < np.array(lens.size) - 20)).all(), "whoever stands at the origin is seen"

@@ -13,7 +13,7 @@ from gambol.controllers.tracking.cameras import looking_at
 from gambol.controllers.tracking.silhouettes import contour_of, rendered, skinned
 from gambol.controllers.tracking.twists import Configuration, posed
 from gambol.game.render import skin
-from gambol.game.studio import surface_of
+from gambol.game.meshes import surface_of
 
 
 def edges(mask):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,6 +24,11 @@ class Observed:
     directions: np.ndarray
     across: np.ndarray
     pixel: np.ndarray
+
+    @cached_property
+    def edge(self) -> np.ndarray:
+        """The contour's pixels and normals (N, 4)."""
+        return np.concatenate([self.contour.pixels, self.contour.normals], 1)
 
     def within(self, box: tuple[float, float, float, float]) -> Observed:
         """What of it lies within left, top, right, bottom pixels: nobody is elsewhere."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..twists import Chain, Configuration, exp, inverse, local_turns, log, retract_kernel, rigid, turn_log_kernel
+from ..twists import Chain, Configuration, inverse, local_turns, retract_kernel, rigid, turn_log_kernel, twist_log_kernel
 from ...body import log as vector
 
 JOINT_ACCELERATION = 250.0
@@ -69,10 +69,8 @@ def penalty_rows(chain: Chain, penalty: Penalty, where: Configuration, centre: n
 
     About the world's origin a turn of the root would count as a shift, and the more the farther off it is.
     """
-    shift = np.zeros(6)
-    shift[:3] = -centre
-    there = exp(shift)
-    out = np.empty(6 + len(chain))
-    out[:6] = log(there @ penalty.target.root @ inverse(where.root) @ inverse(there))
+    out, motion = np.empty(6 + len(chain)), penalty.target.root @ inverse(where.root)
+    motion[:3, 3] += motion[:3, :3] @ centre - centre
+    twist_log_kernel(motion, out[:6])
     turn_log_kernel(chain.first, chain.count, where.angles, penalty.target.angles, out[6:])
     return out

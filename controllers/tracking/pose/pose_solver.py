@@ -9,7 +9,8 @@ import numpy as np
 from scipy.linalg import solve as solved
 
 from ..cameras import Lens, direction_kernel, project_kernel
-from ..silhouettes import Contour, Surface, View, contour_of, rendered, skinned
+from ..silhouettes import Surface, View, contour_of, rendered, skinned
+from ..together import together
 from ..twists import Configuration, posed, retract_kernel
 from .evidence import overlap
 from .matching import closest_kernel, model_points_kernel, shift_kernel, sums_kernel
@@ -37,6 +38,8 @@ class SolverSettings:
 
 
 SETTINGS = SolverSettings()
+AROUND = 4
+"""So many pixels round a model say where its contour faces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +55,11 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class _Drawn:
-    """A model's contour in one view: its points about the centre (N, 3) [m], the vertices about them, pixels and normals."""
+    """A model's contour in one view: its points about the centre (N, 3) [m], the vertices about them, pixels and normals (N, 4)."""
 
     points: np.ndarray
     corners: np.ndarray
-    contour: Contour
+    edge: np.ndarray
 
 
 def solve(surface: Surface, views: Sequence[Observed], start: Configuration, penalty: Penalty | None = None,
@@ -73,27 +76,30 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
     buffers: list[View | None] = [None] * len(views)
     views = list(views)
     for outer in range(settings.outer):
-        drawn, columns = [], None
         world = root.copy()
         world[:3, 3] += centre
         positions, orientations, _ = posed(chain, Configuration(world, angles))
         vertices = skinned(surface, positions, orientations)
-        for k, view in enumerate(views):
+
+        def draw(k: int, vertices=vertices, first=outer == 0, believed=believed) -> _Drawn | None:
             if not believed[k]:
-                drawn.append(None)
-                continue
+                return None
+            view = views[k]
             buffers[k] = made = _render(view.lens, vertices, surface, buffers[k])
-            if outer == 0:
+            if first:
                 box = _around(made.box, settings.reach)
                 overlaps[k] = _overlap(view.mask, made, box)
                 views[k] = view.within(box)
-            drawn.append(_points(view.lens, made, surface, centre))
+            return _points(view.lens, made, surface, centre)
+        drawn = together(draw, range(len(views)))
         if outer == 0 and believe is not None:
             believed = believe(overlaps)
             drawn = [one if sure else None for one, sure in zip(drawn, believed)]
-        for inner in range(settings.inner):
+        step, columns = None, None
+        for _ in range(settings.inner):
+            moved_by, turned_about = step, columns
             _, _, columns = posed(chain, Configuration(root, angles))
-            matrix, vector, residual = _sums(surface, views, drawn, columns, centre, settings)
+            matrix, vector, residual = _sums(surface, views, drawn, columns, centre, settings, moved_by, turned_about)
             here = Configuration(root, angles)
             regular = settings.damping * max(float(np.trace(matrix)) / size, 1e-9)
             full = matrix + np.triu(matrix, 1).T
@@ -105,10 +111,6 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
                 vector = vector + penalty.weights * penalty_rows(chain, Penalty(moved, penalty.weights), here, np.zeros(3))
             step = solved(full, vector, assume_a="pos", check_finite=False)
             step *= min(1.0, 0.5 / max(float(np.abs(step[3:]).max()), 1e-12))
-            if inner + 1 < settings.inner:
-                for view, one in zip(views, drawn):
-                    if one is not None:
-                        _shift(one, view.lens, surface, columns, step, centre)
             retract_kernel(chain.first, chain.count, step, root, angles, chain.lower, chain.upper)
     root[:3, 3] += centre
     return Fit(Configuration(root, angles), residual, overlaps, believed)
@@ -139,42 +141,53 @@ def _overlap(mask: np.ndarray, made: View, box: tuple[int, int, int, int]) -> fl
 
 def _points(lens: Lens, made: View, surface: Surface, centre: np.ndarray) -> _Drawn:
     left, top, right, bottom = made.box
-    contour = contour_of(made.mask, (left - 1, top - 1, right + 1, bottom + 1))
+    left, top = max(left - AROUND, 0), max(top - AROUND, 0)
+    part = np.s_[top:bottom + AROUND, left:right + AROUND]
+    contour = contour_of(made.triangles[part] >= 0)
+    pixels = contour.pixels + (left, top)
     count = len(contour)
     directions, points, corners = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3), np.int64)
-    direction_kernel(contour.pixels, lens.numbers, directions)
-    model_points_kernel(contour.pixels, made.depth, made.triangles, surface.triangles, directions, lens.eye - centre,
+    direction_kernel(pixels, lens.numbers, directions)
+    model_points_kernel(pixels, made.depth, made.triangles, surface.triangles, directions, lens.eye - centre,
                         np.ascontiguousarray(lens.rotation[2]), points, corners)
-    return _Drawn(points, corners, contour)
+    return _Drawn(points, corners, np.concatenate([pixels, contour.normals], 1))
 
 
 def _sums(surface: Surface, views: Sequence[Observed], drawn: Sequence[_Drawn | None], columns: np.ndarray, centre: np.ndarray,
-          settings: SolverSettings) -> tuple[np.ndarray, np.ndarray, float]:
-    """The normal equations' matrix (its upper half), their vector, and the mean residual [pixels]."""
+          settings: SolverSettings, step: np.ndarray | None, turned_about: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, float]:
+    """The normal equations' matrix (its upper half), their vector, and the mean residual [pixels].
+
+    step: by which drawn contours are moved before, in place, about columns (D, 6).
+    """
     size = 6 + len(columns)
-    matrix, vector, row, total, used = np.zeros((size, size)), np.zeros(size), np.zeros(size), 0.0, 0
-    for view, one in zip(views, drawn):
-        if one is None or not len(one.contour) or not len(view.contour):
-            continue
-        ours, theirs = (np.concatenate([c.pixels, c.normals], 1) for c in (one.contour, view.contour))
+
+    def act(view: Observed, one: _Drawn | None) -> tuple[np.ndarray, np.ndarray, float, int]:
+        matrix, vector = np.zeros((size, size)), np.zeros(size)
+        if one is None or not len(one.edge) or not len(view.edge):
+            return matrix, vector, 0.0, 0
+        if step is not None:
+            _shift(one, view.lens, surface, turned_about, step, centre)
+        ours, theirs = one.edge, view.edge
         pairs, squares = np.empty((2 * settings.points + 8, 2), np.int64), np.empty(2 * settings.points + 8)
         count = closest_kernel(ours, theirs, settings.facing, -(-len(ours) // settings.points), pairs, squares, False, 0)
         if settings.both:
             count = closest_kernel(theirs, ours, settings.facing, -(-len(theirs) // settings.points), pairs, squares, True, count)
         gate = settings.reach * float(np.ptp(ours[:, :2], axis=0).max()) + 2.0
-        more, many = sums_kernel(one.points, one.corners, surface.shares, columns, pairs, squares, count, view.lens.eye - centre,
-                                 view.directions, view.across, view.pixel, gate, settings.bend, row, matrix, vector)
-        total, used = total + more, used + many
+        return matrix, vector, *sums_kernel(
+            one.points, one.corners, surface.shares, columns, pairs, squares, count, view.lens.eye - centre, view.directions,
+            view.across, view.pixel, gate, settings.bend, np.zeros(size), matrix, vector)
+    parts = together(act, views, drawn)
+    total, used = sum(part[2] for part in parts), sum(part[3] for part in parts)
     scale = min(settings.effective / max(used, 1), 1.0)
-    return matrix * scale, vector * scale, total / max(used, 1)
+    return np.sum([part[0] for part in parts], 0) * scale, np.sum([part[1] for part in parts], 0) * scale, total / max(used, 1)
 
 
-def _shift(one: _Drawn, lens: Lens, surface: Surface, columns: np.ndarray, step: np.ndarray, centre: np.ndarray) -> None:
+def _shift(one: _Drawn, lens: Lens, surface: Surface, columns: np.ndarray | None, step: np.ndarray, centre: np.ndarray) -> None:
     """Move a drawn contour along with a step, in place, so that it need not be drawn anew."""
     shift_kernel(one.points, one.corners, surface.shares, columns, step)
     seen = np.empty_like(one.points)
     project_kernel(one.points + centre, lens.numbers, seen)
     order = np.argsort(seen[:, 1], kind="stable")
-    one.contour.pixels[:] = seen[order, :2]
-    for array in (one.contour.normals, one.points, one.corners):
+    one.edge[:, :2] = seen[:, :2]
+    for array in (one.edge, one.points, one.corners):
         array[:] = array[order]

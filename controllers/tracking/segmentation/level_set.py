@@ -37,31 +37,46 @@ class Segmentation:
 
 
 SEGMENTATION = Segmentation()
+SPARE = 8
+"""So many pixels more than one turn needs are cut out for the next."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cutting:
+    """The part of a picture where somebody is. box: left, top, right, bottom pixels. features, empty: (C, h, w) of it and of the
+    picture with nobody in it, if there is one. heard: (h, w) which pixels say something; None for all."""
+
+    box: tuple[int, int, int, int]
+    features: np.ndarray
+    empty: np.ndarray | None
+    heard: np.ndarray | None
 
 
 @dataclass(frozen=True, eq=False)
 class Segmented:
-    """mask: (H, W) bool. agreement: 0 … 1, how much of the prior's and of the colours' silhouette is both's; 0 for no prior."""
+    """mask: (H, W) bool. agreement: 0 … 1, how much of the prior's and of the colours' silhouette is both's; 0 for no prior.
+    cut: what was looked at, for another turn with the same picture."""
 
     mask: np.ndarray
     agreement: float
+    cut: Cutting | None = None
 
 
-def segmented(picture: np.ndarray, prior: np.ndarray, plate: np.ndarray | None = None, chosen: Segmentation = SEGMENTATION) -> Segmented:
+def segmented(picture: np.ndarray, prior: np.ndarray, plate: np.ndarray | None = None, chosen: Segmentation = SEGMENTATION,
+              cut: Cutting | None = None) -> Segmented:
     """Who is in a picture (H, W, 3) or (H, W) uint8 where the model is nearly, prior (H, W) bool.
 
-    plate: the picture with nobody in it. ValueError for pictures of other sizes or kinds than each other's.
+    plate: the picture with nobody in it. cut: of the same picture, from an earlier turn; what of it still fits is not made
+    anew. ValueError for pictures of other sizes or kinds than each other's.
     """
     _checked(picture, prior, plate)
     rows, columns = np.flatnonzero(prior.any(1)), np.flatnonzero(prior.any(0))
     out = np.zeros(prior.shape, bool)
     if not len(rows):
-        return Segmented(out, 0.0)
-    more = int(chosen.reach) + 1
-    part = np.s_[max(rows[0] - more, 0):rows[-1] + more + 1, max(columns[0] - more, 0):columns[-1] + more + 1]
-    features = features_of(picture[part])
-    empty = None if plate is None else features_of(plate[part])
-    heard = None if chosen.lonely else in_company(picture[part])
+        return Segmented(out, 0.0, cut)
+    cut = _cut(picture, plate, (int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1), chosen, cut)
+    left, top, right, bottom = cut.box
+    part, features, empty, heard = np.s_[top:bottom, left:right], cut.features, cut.empty, cut.heard
     levels = signed_distance(prior[part], chosen.reach)
     region, agreement = prior[part].astype(np.float32), 0.0
     for k in range(chosen.rounds):
@@ -73,7 +88,19 @@ def segmented(picture: np.ndarray, prior: np.ndarray, plate: np.ndarray | None =
             agreement = _agreement(ratio, prior[part])
         region, _ = cheapest(costs_of(ratio, levels, chosen), chosen.length, chosen.steps, region)
     out[part] = region > 0.5
-    return Segmented(out, agreement)
+    return Segmented(out, agreement, cut)
+
+
+def _cut(picture: np.ndarray, plate: np.ndarray | None, box: tuple[int, int, int, int], chosen: Segmentation, cut: Cutting | None) -> Cutting:
+    """The cutting round a body's box, with some room for the next turn; the given one where it has that already."""
+    (height, width), more = picture.shape[:2], int(chosen.reach) + 1
+    left, top, right, bottom = max(box[0] - more, 0), max(box[1] - more, 0), min(box[2] + more, width), min(box[3] + more, height)
+    if cut is not None and cut.box[0] <= left and cut.box[1] <= top and cut.box[2] >= right and cut.box[3] >= bottom:
+        return cut
+    left, top, right, bottom = max(left - SPARE, 0), max(top - SPARE, 0), min(right + SPARE, width), min(bottom + SPARE, height)
+    part = np.s_[top:bottom, left:right]
+    return Cutting((left, top, right, bottom), features_of(picture[part]), None if plate is None else features_of(plate[part]),
+                   None if chosen.lonely else in_company(picture[part]))
 
 
 def costs_of(ratio: np.ndarray, levels: np.ndarray, chosen: Segmentation = SEGMENTATION) -> np.ndarray:

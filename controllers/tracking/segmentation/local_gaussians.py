@@ -71,15 +71,18 @@ def company_kernel(picture, channels, apart, out):
     height, width = out.shape
     for y in range(height):
         for x in range(width):
-            alike = 0
-            for v in range(max(y - 1, 0), min(y + 2, height)):
-                for u in range(max(x - 1, 0), min(x + 2, width)):
-                    away = np.int32(0)
-                    for c in range(channels):
-                        away += abs(np.int32(picture[y, x * channels + c]) - np.int32(picture[v, u * channels + c]))
-                    if away <= apart:
-                        alike += 1
-            out[y, x] = 1.0 if alike > 2 else 0.0  # it is like itself
+            alike, left = 0, max(x - 1, 0)
+            v, u = max(y - 1, 0), left
+            while v < min(y + 2, height) and alike < 3:  # it is like itself
+                away = np.int32(0)
+                for c in range(channels):
+                    away += abs(np.int32(picture[y, x * channels + c]) - np.int32(picture[v, u * channels + c]))
+                if away <= apart:
+                    alike += 1
+                u += 1
+                if u == min(x + 2, width):
+                    v, u = v + 1, left
+            out[y, x] = 1.0 if alike > 2 else 0.0
 
 
 @kernel(nogil=True, fastmath=True)

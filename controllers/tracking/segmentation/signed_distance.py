@@ -29,12 +29,20 @@ def distance_kernel(mask, most, out):
         for y in range(height - 2, -1, -1):
             for x in range(width):
                 column[kind, y, x] = min(column[kind, y, x], column[kind, y + 1, x] + 1)
+    first = np.empty((2, width), np.int32)  # how far along a row the next column is that has anything near
     for y in range(height):
+        for kind in range(2):
+            first[kind, 0] = 0 if column[kind, y, 0] < far else far
+            for x in range(1, width):
+                first[kind, x] = 0 if column[kind, y, x] < far else min(first[kind, x - 1] + 1, far)
+            for x in range(width - 2, -1, -1):
+                first[kind, x] = min(first[kind, x], first[kind, x + 1] + 1)
         for x in range(width):
             inside = mask[y, x] != 0
-            row = column[0 if inside else 1, y]
+            kind = 0 if inside else 1
+            row = column[kind, y]
             best = row[x] * row[x]
-            d = 1
+            d = max(first[kind, x], 1)
             while d * d < best and d < far:
                 if x >= d:
                     best = min(best, row[x - d] * row[x - d] + d * d)

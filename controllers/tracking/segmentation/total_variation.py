@@ -17,11 +17,14 @@ PRIMAL, DUAL = 0.2, 0.6
 def cheapest(costs: np.ndarray, length: float, rounds: int, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The u (H, W), 0 … 1, that costs least, and the field (2, H, W) that shows it (Chambolle and Pock 2011).
 
-    costs: (H, W) of each pixel. length: ν. start: (H, W) where u begins.
+    costs: (H, W) of each pixel. length: ν. start: (H, W) where u begins. What costs more than the contour round a single pixel
+    is in no best region, and rows are searched from the first pixel that costs less to the last.
     """
     region = np.ascontiguousarray(start, np.float32).copy()
-    field = np.zeros((2, *region.shape), np.float32)
-    variation_kernel(np.ascontiguousarray(costs, np.float32), length, rounds, PRIMAL, DUAL, region, field)
+    field, costs = np.zeros((2, *region.shape), np.float32), np.ascontiguousarray(costs, np.float32)
+    spans = np.empty((len(region), 2), np.int64)
+    span_kernel(costs, 4.0 * length, spans, region)
+    variation_kernel(costs, spans, length, rounds, PRIMAL, DUAL, region, field)
     return region, field
 
 
@@ -34,9 +37,32 @@ def gap(costs: np.ndarray, length: float, region: np.ndarray, field: np.ndarray)
     return paid - float(np.minimum(costs - back, 0.0).sum())
 
 
+@kernel(nogil=True)
+def span_kernel(costs, most, spans, region):
+    """Write from where to where (H, 2) rows, or those next to them, cost (H, W) no more than `most`; the region is emptied elsewhere."""
+    height, width = costs.shape
+    own = np.empty((height, 2), np.int64)
+    for y in range(height):
+        left, right = 0, width
+        while left < right and costs[y, left] > most:
+            left += 1
+        while right > left and costs[y, right - 1] > most:
+            right -= 1
+        for x in range(left):
+            region[y, x] = 0.0
+        for x in range(right, width):
+            region[y, x] = 0.0
+        own[y, 0], own[y, 1] = (left, right) if left < right else (width, 0)
+    for y in range(height):
+        left, right = width, 0
+        for v in range(max(y - 1, 0), min(y + 2, height)):
+            left, right = min(left, own[v, 0]), max(right, own[v, 1])
+        spans[y, 0], spans[y, 1] = (max(left - 1, 0), min(right + 1, width)) if left < right else (0, 0)
+
+
 @kernel(nogil=True, fastmath=True)
-def variation_kernel(costs, length, rounds, primal, dual, region, field):
-    """Go so many steps of both, in place. region: (H, W). field: (2, H, W), 0 at the last column and row."""
+def variation_kernel(costs, spans, length, rounds, primal, dual, region, field):
+    """Go so many steps of both, in place, where rows' spans (H, 2) are. region: (H, W). field: (2, H, W), 0 at the last column and row."""
     height, width = costs.shape
     limit, up, down = np.float32(length), np.float32(dual), np.float32(primal)
     ahead = region.copy()
@@ -45,21 +71,25 @@ def variation_kernel(costs, length, rounds, primal, dual, region, field):
     for _ in range(rounds):
         for y in range(height):
             below = min(y + 1, height - 1)
-            for x in range(width - 1):
+            left, right = spans[y, 0], spans[y, 1]
+            for x in range(left, min(right, width - 1)):
                 a = px[y, x] + up * (ahead[y, x + 1] - ahead[y, x])
                 b = py[y, x] + up * (ahead[below, x] - ahead[y, x])
                 scale = limit / max(limit, np.sqrt(a * a + b * b))
                 px[y, x], py[y, x] = a * scale, b * scale
-            x = width - 1
-            b = py[y, x] + up * (ahead[below, x] - ahead[y, x])
-            py[y, x] = min(max(b, -limit), limit)
+            if right == width and left < right:
+                x = width - 1
+                b = py[y, x] + up * (ahead[below, x] - ahead[y, x])
+                py[y, x] = min(max(b, -limit), limit)
         for y in range(height):
             above = max(y - 1, 0)
             keep = one if y > 0 else zero
-            old = region[y, 0]
-            new = min(max(old + down * (px[y, 0] + py[y, 0] - keep * py[above, 0] - costs[y, 0]), zero), one)
-            region[y, 0], ahead[y, 0] = new, new + new - old
-            for x in range(1, width):
+            left, right = spans[y, 0], spans[y, 1]
+            if left == 0 and right > 0:
+                old = region[y, 0]
+                new = min(max(old + down * (px[y, 0] + py[y, 0] - keep * py[above, 0] - costs[y, 0]), zero), one)
+                region[y, 0], ahead[y, 0] = new, new + new - old
+            for x in range(max(left, 1), right):
                 old = region[y, x]
                 new = old + down * (px[y, x] - px[y, x - 1] + py[y, x] - keep * py[above, x] - costs[y, x])
                 new = min(max(new, zero), one)

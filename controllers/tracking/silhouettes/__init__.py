@@ -2,6 +2,7 @@
 
 from .contours import Contour, contour_kernel, contour_of
 from .rasteriser import View, raster_kernel, rendered
+from .shape import shaped
 from .surface import Surface, skin_kernel, skinned
 
-__all__ = ["Contour", "Surface", "View", "contour_kernel", "contour_of", "raster_kernel", "rendered", "skin_kernel", "skinned"]
+__all__ = ["Contour", "Surface", "View", "contour_kernel", "contour_of", "raster_kernel", "rendered", "shaped", "skin_kernel", "skinned"]

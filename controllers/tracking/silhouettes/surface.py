@@ -66,7 +66,7 @@ def skinned(surface: Surface, positions: np.ndarray, orientations: np.ndarray) -
     return out
 
 
-@kernel
+@kernel(nogil=True)
 def _quaternion(m, q):
     """Write the unit quaternion (x, y, z, w) of a rotation (3, 3)."""
     quaternion_kernel(m, q)
@@ -75,7 +75,7 @@ def _quaternion(m, q):
         q[i] /= size
 
 
-@kernel
+@kernel(nogil=True)
 def _times(a, b, out):
     """Write the quaternion product: first b, then a. `out` is neither of them."""
     out[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1]
@@ -84,14 +84,14 @@ def _times(a, b, out):
     out[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]
 
 
-@kernel
+@kernel(nogil=True)
 def _relative(a, b, out):
     """Write a⁻¹ b of unit quaternions."""
     c = np.array([-a[0], -a[1], -a[2], a[3]])
     _times(c, b, out)
 
 
-@kernel
+@kernel(nogil=True)
 def _twist(q, axis, out):
     """Write the part of a unit quaternion that turns about an axis; half a turn of pure swing has none."""
     along = q[0] * axis[0] + q[1] * axis[1] + q[2] * axis[2]
@@ -101,7 +101,7 @@ def _twist(q, axis, out):
     out[3] = q[3] / size if size > 1e-6 else 1.0
 
 
-@kernel
+@kernel(nogil=True)
 def motion_kernel(parents, rest, carriers, hands, twists, positions, orientations, out):
     """Write the dual quaternions (J + H, 8), real part then dual, that carry the skin from T-pose."""
     joints = len(parents)

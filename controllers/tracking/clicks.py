@@ -1,0 +1,111 @@
+"""A first pose by hand: where joints are seen in a frame of each camera, and the body, its stature with it, that has them there."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from ..body import STATURE, Skeleton, human
+from ..files import contents, printable, reason
+from .cameras import Lens
+from .twists import Chain, Configuration, chain_of, posed, retract_kernel
+
+Clicks = Mapping[str, Mapping[str, tuple[float, float]]]
+"""Camera → joint → pixel."""
+FEWEST = 6
+"""So many joints have to be seen by two cameras."""
+CARELESS, LOOSE = 0.01, 0.8
+"""How far off a click is, over the picture's height, and how far joints are from rest [rad], where nothing else is known."""
+SHORTEST, TALLEST = 1.0, 2.4
+"""Of bodies [m]."""
+
+
+class ClickError(ValueError):
+    """Clicks that say nothing sound: the file and the field."""
+
+
+def read_clicks(path: str | Path, lenses: Sequence[Lens], skeleton: Skeleton | None = None) -> Clicks:
+    """A .toml file with a table for each camera, `LeftArm = [x, y]` in pixels of pictures that are `width` wide, else of its own
+    size. ClickError, in one line."""
+    path, skeleton = Path(path), skeleton or human()
+    try:
+        tables = tomllib.loads(contents(path, 1 << 20).decode("utf-8"))
+    except (OSError, ValueError) as fault:
+        raise ClickError(f"{path}: {reason(fault) if isinstance(fault, OSError) else printable(str(fault))}") from None
+    known, width = {lens.name: lens.size[0] for lens in lenses}, tables.pop("width", None)
+    if width is not None and not (type(width) is int and 16 <= width <= 16384):
+        raise ClickError(f"{path}: width: needs a whole number of pixels")
+    made: dict[str, dict[str, tuple[float, float]]] = {}
+    for camera, table in tables.items():
+        if camera not in known:
+            raise ClickError(f"{path}: [{printable(camera)}]: there is no such camera; there are {', '.join(known)}")
+        share = 1.0 if width is None else known[camera] / width
+        made[camera] = {}
+        for joint, at in table.items() if isinstance(table, dict) else ():
+            if joint not in skeleton:
+                raise ClickError(f"{path}: {camera}.{printable(joint)}: there is no such joint; there are {', '.join(skeleton.names)}")
+            if not (isinstance(at, list) and len(at) == 2 and all(isinstance(v, int | float) and abs(v) < 1e5 for v in at)):
+                raise ClickError(f"{path}: {camera}.{joint}: needs x and y in pixels")
+            made[camera][joint] = (share * at[0], share * at[1])
+    return made
+
+
+def clicked(lenses: Sequence[Lens], clicks: Clicks, freedom: str = "full") -> tuple[Chain, Configuration]:
+    """The chain of a body of its stature and its pose that have joints where they were clicked.
+
+    ClickError where fewer than `FEWEST` joints were seen by two cameras, hips and shoulders among them.
+    """
+    skeleton = human()
+    seen = [(lens, skeleton.index(joint), np.array(at, float)) for lens in lenses for joint, at in clicks.get(lens.name, {}).items()]
+    places = {j: place for j in {j for _, j, _ in seen} if (place := _crossing([(lens, at) for lens, k, at in seen if k == j])) is not None}
+    four = [skeleton.index(name) for name in ("LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm")]
+    if len(places) < FEWEST or not set(four) <= set(places):
+        raise ClickError(f"clicks: {len(places)} joints are seen by two cameras; it needs {FEWEST}, hips and shoulders among them")
+    left, right, one, other = (places[j] for j in four)
+    up = 0.5 * (one + other) - 0.5 * (left + right)
+    across = left - right
+    across -= up * (across @ up) / (up @ up)
+    x, y = across / np.linalg.norm(across), up / np.linalg.norm(up)
+    start = np.eye(4)
+    start[:3, :3] = np.stack([x, y, np.cross(x, y)], 1)
+    start[:3, 3] = 0.5 * (left + right)
+    chain = chain_of(skeleton, freedom)  # type: ignore[arg-type]
+    lower, upper = chain.lower, chain.upper
+    rest = np.clip(np.zeros(len(chain)), lower, upper)
+
+    def unpacked(x: np.ndarray) -> tuple[Configuration, float]:
+        root, angles = start.copy(), rest.copy()
+        root[:3, :3] = Rotation.from_rotvec(x[3:6]).as_matrix() @ start[:3, :3]
+        root[:3, 3] += x[:3]
+        step = np.concatenate([np.zeros(6), x[6:-1]])
+        retract_kernel(chain.first, chain.count, step, np.eye(4), angles, lower, upper)
+        return Configuration(root, angles), float(np.exp(x[-1]))
+
+    def residuals(x: np.ndarray) -> np.ndarray:
+        pose, size = unpacked(x)
+        positions = posed(chain, pose)[0]
+        positions = positions[0] + size * (positions - positions[0])
+        away = [(lens.project(positions[j])[0] - at) / (CARELESS * lens.size[1]) for lens, j, at in seen]
+        return np.concatenate([np.ravel(away), x[6:-1] / LOOSE, [x[-1] / 0.1]])
+    found = least_squares(residuals, np.zeros(7 + len(chain)), loss="soft_l1", max_nfev=60)
+    pose, size = unpacked(found.x)
+    body = chain_of(human(float(np.clip(STATURE * size, SHORTEST, TALLEST))), freedom)  # type: ignore[arg-type]
+    return body, pose
+
+
+def _crossing(rays: Sequence[tuple[Lens, np.ndarray]]) -> np.ndarray | None:
+    """The place (3,) [m] that is nearest to pixels' rays; None of a single one."""
+    if len(rays) < 2:
+        return None
+    matrix, vector = np.zeros((3, 3)), np.zeros(3)
+    for lens, at in rays:
+        along = lens.directions(at)
+        across = np.eye(3) - np.outer(along, along)
+        matrix += across
+        vector += across @ lens.eye
+    return np.linalg.solve(matrix + 1e-9 * np.eye(3), vector)
