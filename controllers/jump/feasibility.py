@@ -13,6 +13,7 @@ from ..navigation import gap
 from .body import FLAT, Physique, along, measures, carriage, turns
 from .motion import Path, Push
 from .muscles import strongest
+from .prior import BETWEEN, LEGS
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
@@ -48,7 +49,8 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
         return "there is no such arc"
     if not way.strong:
         return _weak(physique, way, floor)
-    assert way.push is not None  # falls have none, and are not asked for
+    if way.push is None:
+        return f"no push leaves the floor for {way.airtime:.2f} s in the air"
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
     if way.running and force > RUNNER * 9.81 * physique.strength:
         return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
@@ -114,8 +116,7 @@ def blocked(physique: Physique, way: Path, around: Sequence[Any]) -> str:
 def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the head's middle (N, 3) and fingers, wrists and elbows (6, N, 3) are from the centre of mass, as it is carried."""
     skeleton = physique.skeleton
-    keys = carriage.shapes(0.0, 1.0, way.lean, way.fold, way.running, way.low_arms)[2:6]
-    angles = carriage.keyed(carriage.flying(way.airtime), keys)(time)
+    angles = carriage.keyed(way.airtime * np.linspace(0.0, 1.0, BETWEEN + 1), way.keys[2 * BETWEEN:3 * BETWEEN + 1, :LEGS])(time)
     local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
     for one, posed in zip(angles, local):
         carriage.carry_kernel(one, carriage.joints_of(skeleton), posed)
