@@ -15,6 +15,7 @@ from .body import FLAT, GRAVITY, Physique, Start, along, landing_feet, soles, ve
 from .feasibility import HANDS, Refused, fault
 from .motion import Path, Plan, fall, over_nothing, path, struck
 from .planner import plan
+from .prior import Prior
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -58,15 +59,16 @@ class Jumping:
 class Jump(Controller):
     """Jumps to where `intent.leap` says, from rest, a walk or a run.
 
-    physique: whose body. gravity: (3,) [m/s²], see PULLS. ValueError for another.
+    physique: whose body. gravity: (3,) [m/s²], see PULLS. ValueError for another. prior: how people carry themselves, the shipped
+    one by default.
     Pre-condition: both feet stand, or one of a runner has just struck; the target is within reach
     (path, strength, room). Post-condition: it stands on both feet over the target, or still moves
     forward over them with the velocity that the state says. Expected performance: nothing comes in
     its way in the air.
     """
 
-    def __init__(self, physique: Physique = Physique(), gravity=GRAVITY):
-        self.physique = physique
+    def __init__(self, physique: Physique = Physique(), gravity=GRAVITY, prior: Prior | None = None):
+        self.physique, self.prior = physique, prior or Prior.load()
         self.gravity = np.asarray(gravity, float)
         if self.gravity.shape != (3,) or not np.isfinite(self.gravity).all() or not PULLS[0] <= -self.gravity[1] <= PULLS[1] \
                 or np.hypot(self.gravity[0], self.gravity[2]) > 1e-9:
@@ -197,7 +199,7 @@ class Jump(Controller):
         feet = start.planted(floor, body)
         pushing = feet if start.single is None else feet[start.single:start.single + 1]
         return path(self.physique, start, pushing, landing_feet(place, start.heading, body), floor,
-                    self.gravity, airtime, low_arms)
+                    self.gravity, airtime, low_arms, self.prior)
 
     def start_of(self, state: CharacterState) -> Start:
         """What a jump needs to know of a state."""

@@ -67,13 +67,14 @@ class Path:
 
 
 def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray, floor: float,
-         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False) -> Path:
+         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False, prior: Prior | None = None) -> Path:
     """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
 
-    airtime: [s], or None for the least effort. low_arms: with the arms down. The crouch is as deep as the muscles need it (`windup`).
+    airtime: [s], or None for the least effort. low_arms: with the arms down. prior: how people carry
+    themselves, the shipped one by default. The crouch is as deep as the muscles need it (`windup`).
     """
     body, upright = physique.tables, measures(physique)
-    size, g, prior = body.size, -float(gravity[1]), Prior.load()
+    size, g, prior = body.size, -float(gravity[1]), prior or Prior.load()
     ground = soles(feet, body)
     middle, goal = ground.mean(0), soles(landing, body).mean(0)
     flat = (goal - middle) * FLAT
