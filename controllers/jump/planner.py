@@ -20,8 +20,8 @@ HEELS_RISE = (0.45, 0.90)
 """When in the push a heel starts to rise, at the earliest and at the latest."""
 RUNNERS_HEEL = 0.2, 1.15
 """When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
-GATHERS = 0.7
-"""In such a share of the time until take-off a runner's free leg comes to how recorded ones are."""
+GATHERS = 0.2
+"""Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
 STRAIGHTEST = 0.06
@@ -128,11 +128,11 @@ class _Draft(Airborne):
         ids = self.legs[4 * side:4 * side + 4]
         start, rows = vectors(self.start.rotations[ids]), np.zeros((2 * BETWEEN + 1, 4, 3))
         rows[:, :EACH, 0] = self.way.keys[:2 * BETWEEN + 1, LEGS + side * EACH:LEGS + (side + 1) * EACH]
-        left = np.clip(1.0 - self.due[:2 * BETWEEN + 1] / max(GATHERS * self.leave, 1e-6), 0.0, 1.0) ** 2
-        rows += left[:, None, None] * (start - rows[0])
-        slopes = monotone(self.due[:2 * BETWEEN + 1], rows)
-        slopes[0] = self.start.rates[ids]
-        return turns(hermite(self.due[:2 * BETWEEN + 1], rows, slopes, self.times))
+        due = self.due[:2 * BETWEEN + 1]
+        slopes = monotone(due, rows)
+        swung = hermite(due, rows, slopes, self.times) + faded(start - rows[0], self.start.rates[ids] - slopes[0], GATHERS * self.leave, self.times)
+        swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)
+        return turns(swung)
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""

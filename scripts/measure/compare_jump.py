@@ -30,6 +30,8 @@ from gambol.controllers.mocap import calibrate, load, retarget
 from _plots import pictures, pyplot
 
 MOCAP = Path(__file__).resolve().parents[3] / "shared" / "mocap"
+JUDGED = (*TAKES, "woody2/wd2_Physics_Jump02.bvh")
+"""Ours are judged by these: there are scissors, too, which nothing was fitted to."""
 STANDS = 0.055
 """Points of feet lower than this over the floor stand [m]."""
 ANGLES = ("knee", "hip", "trunk", "arm")
@@ -62,7 +64,7 @@ def curves(jump: Jump, roots: np.ndarray, local: np.ndarray) -> Curves:
     return Curves(knee, hip, trunk, arms, centre_of_mass(jump.physique.anatomy, positions, turned))
 
 
-def recorded(jump: Jump, takes: Sequence[str] = TAKES) -> Iterator[tuple[Clip, list[Recorded]]]:
+def recorded(jump: Jump, takes: Sequence[str] = JUDGED) -> Iterator[tuple[Clip, list[Recorded]]]:
     """Takes of ../shared/mocap on our skeleton, with their jumps; none where there is no such folder."""
     for take in takes if MOCAP.is_dir() else ():
         try:
@@ -156,8 +158,9 @@ def strip(path: Path, title: str, jump: Jump, clip: Clip, one: Recorded, made) -
 
 def beside(takes: Sequence[str], plots: Path | None) -> None:
     """Every recorded jump beside ours."""
-    found = list(recorded(Jump(), takes))
-    everything, rows = [one for _, some in found for one in some], []
+    found, fitted = list(recorded(Jump(), takes)), {Path(take).stem for take in TAKES}
+    everything, rows = [one for clip, some in found if clip.name in fitted for one in some], []
+
     for clip, some in found:
         if not some:
             print(f"  {clip.name}: no jump found")
@@ -187,7 +190,7 @@ def main() -> int:
     given = parser.parse_args()
     pictures(parser, given.plots)
     if MOCAP.is_dir():
-        beside(given.takes or TAKES, given.plots)
+        beside(given.takes or JUDGED, given.plots)
     else:
         print("no ../shared/mocap beside the project: recorded jumps are not to be had here; nothing compared")
     if not given.recorded:

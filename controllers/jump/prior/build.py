@@ -18,9 +18,8 @@ from .recorded import Recorded, jumps
 
 TAKES = ("cmu/02/02_04.amc", *(f"cmu/16/16_{n:02d}.amc" for n in (1, 2, 3, 5, 6, 9)), "cmu/49/49_02.amc", "cmu/49/49_03.amc",
          "cmu/49/49_05.amc", *(f"cmu/127/127_{n}.amc" for n in (21, 25, 26, 27)),
-         *(f"woody2/wd2_{name}.bvh" for name in ("Physics_Jump00", "Physics_Jump02", "Physics_Jump03", "fast_2foot_hop",
-                                                 "long_broad_jump", "slow_2foot_hop")))
-"""Takes of people who jump somewhere, or for the sake of it: no jumping jacks, nobody who reaches for something overhead."""
+         *(f"woody2/wd2_{name}.bvh" for name in ("Physics_Jump00", "Physics_Jump03", "fast_2foot_hop", "long_broad_jump", "slow_2foot_hop")))
+"""Takes of people who jump somewhere, or for the sake of it: no jumping jacks, no scissors, nobody who reaches for something overhead."""
 SCALES = np.array([0.1, 0.3, 0.5])
 """What counts as much of airtime [s], distance [m] and pace [m/s]."""
 RIDGE = 1.0

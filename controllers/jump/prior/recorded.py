@@ -18,6 +18,8 @@ LASTS, FALLS = (0.2, 0.75), (7.5, 13.5)
 """How long flights of jumps last [s], and how fast their mass centres fall [m/s²]; strides are shorter, climbing does not fall."""
 STANDS = 0.1
 """Both feet stand so long [s] before or after a flight off two feet, or onto two."""
+STRIKES = 0.25
+"""A runner's foot stands so long before take-off at most [s]."""
 CROUCHES, BEFORE, RISES, AFTER = 0.6, 0.9, 0.5, 1.0
 """The lowest point is so long before take-off at most, the start before that; as long after touch-down and after that [s]."""
 
@@ -109,13 +111,16 @@ def jumps(skeleton: Skeleton, anatomy: Anatomy, clip: Clip) -> Iterator[Recorded
             continue
         if single is None:
             lowest = max(first - frames(CROUCHES), 0) + int(height[max(first - frames(CROUCHES), 0):first].argmin())
-            begins = max(lowest - frames(BEFORE), 0) + int(height[max(lowest - frames(BEFORE), 0):lowest + 1].argmax())
+            begins = max(lowest - frames(BEFORE), 0)
+            flew = np.flatnonzero(feet[begins:lowest].min(-1) - floor > ALOFT)
+            begins += int(flew[-1]) + 1 if len(flew) else 0
+            begins += int(height[begins:lowest + 1].argmax())
         else:  # from its last foot-strike on
             begins = first - 1
-            while begins > 0 and feet[begins - 1, single] - floor < 0.06 and begins > first - frames(0.4):
+            while begins > 0 and feet[begins - 1, single] - floor < 0.06 and begins > first - frames(STRIKES):
                 begins -= 1
             lowest = begins + int(height[begins:first].argmin())
-            lowest = min(max(lowest, begins + 2), first - 2)
+            lowest = min(max(lowest, begins + (first - begins) // 4), first - 2)
         landed = last + int(height[last:last + frames(RISES)].argmin())
         upright = landed + int(height[landed:landed + frames(AFTER)].argmax())
         events = np.array([begins, lowest, first, last, landed, upright])
