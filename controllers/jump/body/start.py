@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...body import HALF_SOLE, yaw
 from . import carriage
@@ -123,23 +122,31 @@ def airtime_up(physique: Physique, height: float, gravity: np.ndarray) -> float:
 
 def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray, ahead: float = 0.0) -> float:
     """The centre of mass's height over two feet, `ahead` [m] of the origin, the legs `share` of their length."""
+    body = physique.tables
+    return stretched(physique, angles, feet, pitch, share, 0.0, np.array([0.0, body.sole + 1.1 * (body.thigh + body.shank), ahead]))
+
+
+def stretched(physique: Physique, angles: np.ndarray, feet: np.ndarray, pitch: float, share: float, heading: float,
+              guess: np.ndarray) -> float:
+    """How high [m] the centre of mass is over `guess`'s (3,) place on the floor, where the leg of two feet (2, 5) that is
+    stretched more is `share` of its length, the feet `pitch` [rad] down, the body carried by `angles` (11,) and heading as told."""
     body, skeleton = physique.tables, physique.skeleton
     local = np.tile(np.eye(3), (len(skeleton), 1, 1))
     positions, turned = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3))
-    carriage.carry_kernel(angles, carriage.joints_of(skeleton), local)
-    local[0] = Rotation.from_rotvec([angles[0], 0.0, 0.0]).as_matrix()
+    carriage.carry_kernel(np.ascontiguousarray(angles, float), carriage.joints_of(skeleton), local)
+    local[0] = yaw(heading) @ turns(np.array([angles[0], 0.0, 0.0]))
     free = np.column_stack([feet[:, :4], [pitch, pitch], [0.0, 0.0]])
-    tilt = np.stack([yaw(f[3]) @ Rotation.from_rotvec([f[4], 0.0, 0.0]).as_matrix() for f in free])
+    tilt = np.stack([yaw(f[3]) @ turns(np.array([f[4], 0.0, 0.0])) for f in free])
     ankles = free[:, :3] - tilt @ body.toe
-    leg = body.thigh + body.shank
-    centre = np.array([0.0, body.sole + 1.1 * leg, ahead])
-    root = centre.copy()
+    centre, root = guess.copy(), guess.copy()
+    leg = share * (body.thigh + body.shank)
     for _ in range(40):
         stand_kernel(body, centre, free.copy(), 1.0, root, local, positions, turned)
         line = positions[body.hip] - ankles
-        short = (np.sqrt(np.maximum((share * leg) ** 2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min()
+        short = float((np.sqrt(np.maximum(leg**2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min())
         centre[1] += short
-        if abs(short) < 1e-7:
+        root[1] += short
+        if abs(short) < 1e-6:
             break
     return float(centre[1])
 

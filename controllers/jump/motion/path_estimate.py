@@ -100,11 +100,11 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.single is not None)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
-        heights = upright.of(*(carried(physique, _low(prior.row(number * BETWEEN, some, start.single), low_arms)[:LEGS])
-                               for number, some in zip((2, 3), features)))
+        angles = [_low(prior.row(number * BETWEEN, some, start.single), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
+        heights = upright.of(*(carried(physique, some) for some in angles))
         if start.single is None:
             crouch = size * prior.crouch(features[0])
-            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, crouch)
+            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet, angles[0], crouch)
         else:
             pushing = Running(physique, start, heights, balls, floor, gravity)
         found = pushing.take_off(leave, land, velocity, flight)

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...body import yaw
 from ...compiled import kernel
-from ..body import FLAT, Measures, Physique, Start, over
+from ..body import FLAT, HEEL_UP, TAKE_OFF_REACH, Measures, Physique, Start, over, stretched
 from ..muscles import crouch_depth, strength
 from .thrust import MOMENTS, risen, upward
 
@@ -70,7 +70,8 @@ class TakeOff(NamedTuple):
 class Standing:
     """A body that pushes off both feet: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
     the soles can press [m]. floor [m], gravity (3,) [m/s²]. crouch: how deep [m] people go down for it, whatever the muscles
-    need."""
+    need. feet: (2, 5) that push. angles: (11,) as they leave the floor, see `carriage`.
+    """
 
     physique: Physique
     start: Start
@@ -80,6 +81,8 @@ class Standing:
     reach: float
     floor: float
     gravity: np.ndarray
+    feet: np.ndarray
+    angles: np.ndarray
     crouch: float = 0.0
 
     @cached_property
@@ -118,9 +121,9 @@ class Standing:
         low, ahead, passing, _ = found
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
-        forward, aside = float(lead @ facing), abs(float(lead[2] * facing[0] - lead[0] * facing[2]))
-        height = self.heights.leave(forward, aside)
-        leave = self.balls * FLAT + lead + [0.0, self.floor + height, 0.0]
+        ahead = self.balls * FLAT + lead + [0.0, leave[1], 0.0]
+        ahead[1] = stretched(self.physique, self.angles, self.feet, HEEL_UP, TAKE_OFF_REACH, start.heading, ahead)
+        leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf
         if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
