@@ -11,7 +11,7 @@ from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..contract import Unable
 from ..navigation import gap
 from .body import FLAT, Physique, along, measures, carriage, turns
-from .motion import Path, Push
+from .motion import Path, Plan, Push
 from .muscles import strongest
 from .prior import BETWEEN, LEGS
 
@@ -27,8 +27,8 @@ STOPS = 6.0, 0.5
 standard height."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
-HANDS = "its hands would hit something"
-"""How the reason begins that lower arms help against."""
+TILT = 75.0
+"""No body is tilted farther from upright in the air, or comes down half as far [°]."""
 
 
 class Refused(Unable):
@@ -66,6 +66,17 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if down > stops:
         return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s"
     return blocked(physique, way, around)
+
+
+def wrong(physique: Physique, made: Plan) -> str:
+    """Why a finished plan is none that a body could play, or nothing: one that tumbles, or is no motion at all."""
+    if not all(np.isfinite(part).all() for part in (made.roots, made.local, made.centres)):
+        return "there is no such jump"
+    air = (made.times >= made.take_off) & (made.times <= made.touch_down)
+    tilt = np.degrees(np.arccos(np.clip(made.local[air, 0, 1, 1], -1.0, 1.0)))
+    if tilt.max() > TILT or tilt[-1] > 0.5 * TILT:
+        return "it would tumble: turn towards the place first"
+    return ""
 
 
 def _grips(physique: Physique, way: Path, push: Push, floor: float) -> bool:

@@ -105,7 +105,7 @@ class _Draft(Airborne):
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
         self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])
-        risen = HEEL_UP * late**2 * (3.0 - 2.0 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
+        risen = HEEL_UP * late**2 * (1.5 - 0.5 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))

@@ -11,7 +11,7 @@ import numpy as np
 from ...body import yaw
 from ..body import (FLAT, TRAIL, Physique, Start, apex_airtime, carriage, carried, least_effort, measures, soles,
                     take_off_velocity)
-from ..prior import BETWEEN, LEGS, Prior
+from ..prior import BETWEEN, EACH, LEGS, Prior
 from .take_off import Running, Standing
 from .thrust import Push, push
 
@@ -24,6 +24,9 @@ LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 FOLDED = 0.64
 """How low a body touches down at most, as a share of how high it stands."""
+TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
+"""How far hips and knees are bent [rad] of legs that are drawn up over something, by which share of the way at each row of the flight, and
+how long a flight needs for all of it [s]."""
 LEAST_PUSH = 0.01
 """A push that rises less [m], at standard height, is none."""
 ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
@@ -67,10 +70,10 @@ class Path:
 
 
 def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray, floor: float,
-         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False, prior: Prior | None = None) -> Path:
+         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False, prior: Prior | None = None, tucked: bool = False) -> Path:
     """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
 
-    airtime: [s], or None for the least effort. low_arms: with the arms down. prior: how people carry
+    airtime: [s], or None for the least effort. low_arms: with the arms down. tucked: with the legs drawn up. prior: how people carry
     themselves, the shipped one by default. The crouch is as deep as the muscles need it (`windup`).
     """
     body, upright = physique.tables, measures(physique)
@@ -122,7 +125,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity) if rises else None, middle, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, _low(prior.keys(*features, start.single), low_arms))
+                start.heading, start.single is not None, low_arms, _tuck(_low(prior.keys(*features, start.single), low_arms), flight, tucked))
 
 
 def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:
@@ -130,6 +133,18 @@ def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:
     if low_arms:
         keys = keys.copy()
         keys[..., 3:LEGS] = carriage.LOW_ARMS
+    return keys
+
+
+def _tuck(keys: np.ndarray, flight: float, tucked: bool) -> np.ndarray:
+    """The same keys (ROWS, COLUMNS), or with legs that are drawn up in the air as far as there is time [s]."""
+    if tucked:
+        keys = keys.copy()
+        share = TUCKS * min(flight / TUCK_TIME, 1.0)
+        rows = slice(2 * BETWEEN + 1, 3 * BETWEEN)
+        for hip in (LEGS, LEGS + EACH):
+            keys[rows, hip] += share * np.minimum(TUCK[0] - keys[rows, hip], 0.0)
+            keys[rows, hip + 1] += share * np.maximum(TUCK[1] - keys[rows, hip + 1], 0.0)
     return keys
 
 
