@@ -125,10 +125,10 @@ class Jump(Controller):
         if made is not None:
             return made
         if leap.airtime is not None:
-            other, why = self.survey(start, place, floor, None, intent.around)
-            if not why and abs(other.airtime - leap.airtime) > 0.01:
-                raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.airtime else 'short'} for this "
-                              f"body; the jump there takes {other.airtime:.2f} s")
+            other = self._made(start, place, floor, None, intent.around)[0]
+            if other is not None and abs(other.path.airtime - leap.airtime) > 0.01:
+                raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.path.airtime else 'short'} for this "
+                              f"body there; the jump takes {other.path.airtime:.2f} s")
         raise Refused(reason, self.nearest(start, place, floor, leap.airtime, intent.around), here)
 
     def _made(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,

@@ -14,7 +14,7 @@ from .body import Physique
 from .motion import Plan
 
 RATE = 72.0
-"""So many poses a second are looked at."""
+"""So many poses a second are looked at, and half-way between them."""
 NEAR = 1.3
 """What is farther from the centre of mass [m], at standard height, is out of reach."""
 SPACED = 0.07
@@ -60,10 +60,11 @@ def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
         parts.append((part, begin[:, None] + np.linspace(0.0, 1.0, count)[:, None] * (stop - begin)[:, None], radius * size))
     widths = [places.shape[1] for _, places, _ in parts]
     every = np.concatenate([places for _, places, _ in parts], 1)
+    every = np.concatenate([every[:1], np.stack([0.5 * (every[:-1] + every[1:]), every[1:]], 1).reshape(-1, *every.shape[1:])])
     thick = np.repeat([radius - GRAZE for _, _, radius in parts], widths)
     thick[:widths[0]] = -GRAZE * size
     for thing in things:
-        deep = thick - gap(every.reshape(-1, 3), thing).reshape(len(chosen), -1)
+        deep = thick - gap(every.reshape(-1, 3), thing).reshape(len(every), -1)
         deep -= np.maximum(deep[0], 0.0)
         if deep.max() > 0.0:
             moment, place = np.unravel_index(int(deep.argmax()), deep.shape)

@@ -18,7 +18,7 @@ FLAT = np.array([1.0, 0.0, 1.0])
 """What is left of a vector along the floor."""
 HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
-TAKE_OFF_REACH, TOUCH_REACH = 0.982, 0.955
+TAKE_OFF_REACH, TOUCH_REACH = 0.982, 0.93
 """How straight legs are, as shares of their length, as they take off and touch down."""
 FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
