@@ -45,7 +45,7 @@ def test_beyond_what_was_recorded_it_is_as_at_its_rim(speed, far, pace, size):
     keys = PRIOR.keys(features, features)
     knees, elbows = keys[:, [LEGS + 1, LEGS + 4]], keys[:, [6, 10]]
     assert knees.min() > 0.0 and knees.max() < 2.6 and elbows.min() > 0.0 and elbows.max() < 2.4
-    assert np.abs(keys[:, :2]).max() < 1.3
+    assert np.abs(keys[:, :2]).max() < 1.4
     assert 0.05 < PRIOR.crouch(features) < 0.5
 
 
@@ -75,7 +75,7 @@ def test_takes_left_out_are_near_what_the_others_say(shared):
             off = np.degrees(prior.keys(features, features) - one.keys)[air]
             errors.append([np.sqrt(np.mean(off[:, columns] ** 2)) for columns in ([LEGS + 1, LEGS + 4], [LEGS, LEGS + 3], [0])])
         knee, hip, lean = np.median(errors, 0)
-        assert knee < 15.0 and hip < 25.0 and lean < 15.0
+        assert knee < 20.0 and hip < 25.0 and lean < 15.0  # by four other takes; by all, compare_jump.py prints
 
 
 def test_a_prior_takes_jumps_of_both_kinds(tmp_path):
