@@ -175,7 +175,7 @@ def report_counter_movement(locomotion: Locomotion) -> None:
 
 def report_arms(locomotion: Locomotion) -> None:
     """What swinging arms do to the centre of mass of an adult: its place about the shoulders, times the arms' share of the
-    mass, over the push of a jump of 0.35 m and at take-off; and what the same arc takes with the arms down."""
+    mass, over the push of a jump of 0.35 m and at take-off."""
     jump = Jump()
     anatomy, skeleton = jump.physique.anatomy, jump.skeleton
     state = replace(locomotion.step(locomotion.start(), Intent(), 1 / FPS)[0], elapsed=0.0)
@@ -189,10 +189,8 @@ def report_arms(locomotion: Locomotion) -> None:
         height += ((places[:, arm, 1] - shoulder[:, None]) * anatomy.masses[arm]).sum(1) / anatomy.masses.sum()
     speed = np.gradient(height, seen.times)
     push = seen.times >= made.push_off
-    free, low = (measures(jump.physique, low_arms=down).leave(0.0) for down in (False, True))
     print(f"Arms, in a jump of 0.35 m: they raise the centre of mass by {100.0 * (height[-1] - height[push][0]):.1f} cm over the push, by "
-          f"{speed[push].max():.2f} m/s at the fastest and {speed[-1]:.2f} m/s at take-off, of {made.path.velocity[1]:.2f}; with them down "
-          f"it leaves the floor {100.0 * (free - low):.1f} cm lower")
+          f"{speed[push].max():.2f} m/s at the fastest and {speed[-1]:.2f} m/s at take-off, of {made.path.velocity[1]:.2f}")
 
 
 def uniform(values: np.ndarray, width: int = 5) -> np.ndarray:
