@@ -19,7 +19,7 @@ NEAR = 1.3
 """What is farther from the centre of mass [m], at standard height, is out of reach."""
 SPACED = 0.07
 """From one place on a bone to the next [m], at standard height."""
-GRAZE = 0.015
+GRAZE, SOLES = 0.015, 0.006
 """So much of its flesh, and of its soles, a body may graze things with [m]."""
 CAPSULES = (("legs", "UpLeg", "Leg", 0.06), ("legs", "Leg", "Foot", 0.045), ("hands", "Arm", "ForeArm", 0.04), ("hands", "ForeArm", "Hand", 0.035),
             ("hands", "Hand", "", 0.03), ("trunk", "Hips", "Spine2", 0.11), ("trunk", "Spine2", "Neck", 0.09), ("head", "Head", "", 0.09))
@@ -62,7 +62,7 @@ def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
     every = np.concatenate([places for _, places, _ in parts], 1)
     every = np.concatenate([every[:1], np.stack([0.5 * (every[:-1] + every[1:]), every[1:]], 1).reshape(-1, *every.shape[1:])])
     thick = np.repeat([radius - GRAZE for _, _, radius in parts], widths)
-    thick[:widths[0]] = -GRAZE * size
+    thick[:widths[0]] = -SOLES * size
     for thing in things:
         deep = thick - gap(every.reshape(-1, 3), thing).reshape(len(every), -1)
         deep -= np.maximum(deep[0], 0.0)

@@ -11,8 +11,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: threads cost
 from . import play, films, filming, motion, library, jump, database, reconstruct, navigate  # noqa: E402, in the order of the help
 from .base import app, learn, pixels_of, unswept  # noqa: E402
 
-__all__ = ["app", "database", "filming", "films", "learn", "library", "main", "motion", "navigate", "pixels_of", "play", "reconstruct",
-           "unswept"]
+__all__ = ["app", "database", "filming", "films", "jump", "learn", "library", "main", "motion", "navigate", "pixels_of", "play",
+           "reconstruct", "unswept"]
 
 
 def main() -> None:

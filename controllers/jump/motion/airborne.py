@@ -145,7 +145,7 @@ class Airborne:
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
         velocity and acceleration; whether the heels (M, 2) stand; when it walks on."""
-        way, body = self.way, self.body
+        body = self.body
         after, landing, (c, v, a) = self.after, self.absorbs, self.sunk
         angles = self.carriage(self.down + after)
         feet = np.ones((len(after), 2, 6))

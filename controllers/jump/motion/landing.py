@@ -27,7 +27,7 @@ ADULT = 0.975
 """How high the centre of mass of a standard body stands [m]."""
 TIMES = np.linspace(0.0, 1.2, 121)
 """When a landing is looked at [s]."""
-DEEPEST, STIFFEST = 0.41, 20.0
+DEEPEST, STIFFEST = 0.45, 20.0
 """How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
