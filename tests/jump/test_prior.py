@@ -75,7 +75,7 @@ def test_takes_left_out_are_near_what_the_others_say(shared):
             off = np.degrees(prior.keys(features, features) - one.keys)[air]
             errors.append([np.sqrt(np.mean(off[:, columns] ** 2)) for columns in ([LEGS + 1, LEGS + 4], [LEGS, LEGS + 3], [0])])
         knee, hip, lean = np.median(errors, 0)
-        assert knee < 20.0 and hip < 25.0 and lean < 15.0  # by four other takes; by all, compare_jump.py prints
+        assert knee < 20.0 and hip < 25.0 and lean < 20.0  # by four other takes; by all, compare_jump.py prints
 
 
 def test_a_prior_takes_jumps_of_both_kinds(tmp_path):

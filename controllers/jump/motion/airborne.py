@@ -32,6 +32,8 @@ LOWEST = 0.06, 0.45
 """From touch-down to the lowest point of the landing it takes at least and at most so long [s]."""
 SETTLES = np.array([0.85, 0.6, 0.35, 0.15, 0.05])
 """How much is left, from row to row, of what a body's carriage differed by as it touched down."""
+LEANS, LEANT = (1.8, 0.2), np.array([0.2, 0.5, 0.8, 1.0, 1.0, 0.8, 0.55, 0.3, 0.1, 0.0])
+"""Who sinks deeper than the second [m] leans farther forward by the first [rad/m], lest the heels rise; and which share of that, from row to row."""
 UP = 0.98
 """Trunk and arms are as in standing once the body has come up so much of the way."""
 SAME = 1e-3
@@ -62,6 +64,8 @@ class Airborne:
         self.lowest = float(landed[BETWEEN - 1])
         rows = way.keys[3 * BETWEEN + 1:, :LEGS].copy()  # whoever comes down otherwise carried comes to them by and by
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
+        sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
+        rows[:, 0] += LEANS[0] * max(sunk - LEANS[1], 0.0) * LEANT
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]))
 
