@@ -104,7 +104,8 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
-        self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])
+        heels = np.sin(np.maximum(-self.feet[..., 4], 0.0)) * (self.body.toe[2] - self.body.heel[2])  # lower than balls by this
+        self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1] + heels)
         risen = HEEL_UP * late**2 * (1.5 - 0.5 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()

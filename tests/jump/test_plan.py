@@ -110,8 +110,9 @@ def test_it_lands_on_both_soles_about_the_place_that_was_asked(plans, places, na
     who, _, made = plans[name]
     positions, turned, *_ = poses(who, made, [made.touch_down + 0.1])
     corners = sole_corners(who.skeleton, positions, turned)[0].reshape(2, 6, 3)[:, [0, 1, 4, 5]]
-    assert np.linalg.norm(corners.mean((0, 1)) - places[name]) < 0.02
-    assert np.ptp(corners[..., 1]) < 0.02
+    rises = 0.05 if np.isfinite(made.through) else 0.02  # who walks on is past his feet by then, and his heels rise
+    assert np.linalg.norm((corners.mean((0, 1)) - places[name])[[0, 2]]) < 0.02
+    assert np.ptp(corners[..., 1]) < rises and abs(corners[..., 1].min() - places[name][1]) < 0.01
 
 
 @two_feet
