@@ -167,7 +167,7 @@ def test_two_plans_of_one_jump_are_the_same_to_the_bit(plans):
     assert again.roots.tobytes() == made.roots.tobytes() and again.local.tobytes() == made.local.tobytes()
 
 
-@pytest.mark.parametrize("strength", [0.9, 1.0, 1.15])
+@pytest.mark.parametrize("strength", [0.9, 0.95, 1.0])
 def test_a_high_jump_goes_as_deep_as_the_spring_muscles_need(jump, standing, strength):
     """The thesis's control loop, muscles and balance and all, ends where the played crouch does; other springs, another depth."""
     from gambol.controllers.contract import Intent, Leap
