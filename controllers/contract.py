@@ -150,13 +150,15 @@ class Duty:
     """The memory of a supervisor: who is on duty. active: a controller's name. memory: its own. why: why it was
     chosen, in words.
 
-    refused: why what was asked last can't be done, or goes wrong; empty if it can.
+    refused: why what was asked last can't be done, or goes wrong; empty if it can. asked: what was refused and from where, so that it
+    is not tried again until something changes.
     """
 
     active: str
     memory: Any
     why: str
     refused: str = ""
+    asked: Any = None
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,34 @@ import numpy as np
 from .body import Pose, Skeleton
 from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, seconds
 from .navigation import going
+
+
+MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
+"""A leap that was refused is tried again from elsewhere: so far away [m], farther by so much for each m/s, turned by so much [rad], or
+on other feet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What a controller refused. name: whose. intent: what was asked. state: from where."""
+
+    name: str
+    intent: Intent
+    state: CharacterState
+
+    def still(self, state: CharacterState, intent: Intent) -> bool:
+        """Whether the same is asked from the same place: of the same stance, where somebody moves."""
+        was, leap, before = self.intent.leap, intent.leap, self.state
+        if was is None or leap is None or was.airtime != leap.airtime or (was.place is None) != (leap.place is None):
+            return False
+        if was.place is not None and leap.place is not None and not np.array_equal(was.place, leap.place):
+            return False
+        if intent.around is not self.intent.around and list(intent.around) != list(self.intent.around):
+            return False
+        far = state.ground - before.ground
+        pace = float(np.hypot(before.velocity[0], before.velocity[2]))
+        return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < MOVED + PASSED * pace
+                    and abs(far[2]) < TURNED and state.floor == before.floor)
 
 
 class Supervisor(Controller):
@@ -94,18 +122,22 @@ class Supervisor(Controller):
                 for name, other in self.parts.items() if name != duty.active}
         gone_wrong = "" if status.kind == "done" else status.reason
         refused = "" if intent.leap is None else duty.refused
+        asked = None if intent.leap is None else duty.asked
         for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break
+            if asked is not None and asked.name == name and asked.still(own, intent):
+                continue
             try:
                 entered = self.parts[name].enter(own, intent)
             except Unable as reason:
                 refused = str(reason)
+                asked = None if intent.leap is None else Asked(name, intent, own)
                 continue
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"
             return Duty(name, entered.memory, why, gone_wrong), entered
-        return replace(duty, refused=gone_wrong or refused), own
+        return replace(duty, refused=gone_wrong or refused, asked=asked), own
 
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""

@@ -200,3 +200,25 @@ def test_what_can_t_be_jumped_is_told_while_walking_goes_on(person):
     state = person.start()
     state, pose = person.step(state, Intent(np.array([1.0, 0.0, 0.0]), Leap(np.array([0.0, 0.0, 9.0]))), 1 / FPS)
     assert state.memory.active == "locomotion" and "too far" in state.memory.refused and np.isfinite(pose.root).all()
+
+
+def test_a_refused_leap_is_planned_once_until_something_changes():
+    """Held on, by one who stands and by one who runs: once a stance at most."""
+    from gambol.controllers.contract import Unable
+    from gambol.controllers.supervisor import Asked
+    calls = []
+
+    class Never(Jump):
+        def enter(self, state, intent):
+            calls.append(state)
+            raise Unable("not from here")
+    person = Supervisor({"locomotion": Locomotion.load(), "jump": Never()})
+    state, leap = person.start(), Leap(np.array([0.0, 0.0, 9.0]))
+    for _ in range(30):
+        state, _ = person.step(state, Intent(leap=leap), 1 / 60)
+    assert len(calls) == 1 and state.refused == "not from here" and isinstance(state.memory.asked, Asked)
+    state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0]))), 1 / 60)
+    assert len(calls) == 2, "another place"
+    state, _ = person.step(state, Intent(), 1 / 60)
+    state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0]))), 1 / 60)
+    assert len(calls) == 3 and state.refused, "asked anew"

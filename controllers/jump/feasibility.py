@@ -11,8 +11,9 @@ from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..contract import Unable
 from ..navigation import gap
 from .body import FLAT, Physique, along, measures, carriage, turns
-from .motion import Path, Push
+from .motion import Path, Plan, Push
 from .muscles import strongest
+from .prior import BETWEEN, LEGS
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
@@ -26,8 +27,8 @@ STOPS = 6.0, 0.5
 standard height."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
-HANDS = "its hands would hit something"
-"""How the reason begins that lower arms help against."""
+TILT = 75.0
+"""No body is tilted farther from upright in the air, or comes down half as far [°]."""
 
 
 class Refused(Unable):
@@ -48,7 +49,8 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
         return "there is no such arc"
     if not way.strong:
         return _weak(physique, way, floor)
-    assert way.push is not None  # falls have none, and are not asked for
+    if way.push is None:
+        return f"no push leaves the floor for {way.airtime:.2f} s in the air"
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
     if way.running and force > RUNNER * 9.81 * physique.strength:
         return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
@@ -64,6 +66,17 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if down > stops:
         return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s"
     return blocked(physique, way, around)
+
+
+def wrong(physique: Physique, made: Plan) -> str:
+    """Why a finished plan is none that a body could play, or nothing: one that tumbles, or is no motion at all."""
+    if not all(np.isfinite(part).all() for part in (made.roots, made.local, made.centres)):
+        return "there is no such jump"
+    air = (made.times >= made.take_off) & (made.times <= made.touch_down)
+    tilt = np.degrees(np.arccos(np.clip(made.local[air, 0, 1, 1], -1.0, 1.0)))
+    if tilt.max() > TILT or tilt[-1] > 0.5 * TILT:
+        return "it would tumble: turn towards the place first"
+    return ""
 
 
 def _grips(physique: Physique, way: Path, push: Push, floor: float) -> bool:
@@ -114,8 +127,7 @@ def blocked(physique: Physique, way: Path, around: Sequence[Any]) -> str:
 def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where the head's middle (N, 3) and fingers, wrists and elbows (6, N, 3) are from the centre of mass, as it is carried."""
     skeleton = physique.skeleton
-    keys = carriage.shapes(0.0, 1.0, way.lean, way.fold, way.running, way.low_arms)[2:6]
-    angles = carriage.keyed(carriage.flying(way.airtime), keys)(time)
+    angles = carriage.keyed(way.airtime * np.linspace(0.0, 1.0, BETWEEN + 1), way.keys[2 * BETWEEN:3 * BETWEEN + 1, :LEGS])(time)
     local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
     for one, posed in zip(angles, local):
         carriage.carry_kernel(one, carriage.joints_of(skeleton), posed)

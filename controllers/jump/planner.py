@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..body import yaw
-from .body import (DEEP, FOOT_FADE, HEEL_UP, Physique, Start, hermite, landing_feet, measures, momentum_kernel, monotone,
-                   carriage, turns, vectors)
-from .motion import (FADE, GROUND_RATE, HEEL, LOWEST, SAME, Airborne, Path, Plan, descent, faded, flight_kernel,
+from .body import FOOT_FADE, HEEL_UP, Physique, Start, hermite, landing_feet, momentum_kernel, monotone, turns, vectors
+from .motion import (FADE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, descent, faded, flight_kernel,
                      ground_kernel)
+from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
@@ -20,12 +20,19 @@ HEELS_RISE = (0.45, 0.90)
 """When in the push a heel starts to rise, at the earliest and at the latest."""
 RUNNERS_HEEL = 0.2, 1.15
 """When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
-HALF_WAY = 0.6
-"""How far legs are from straight to landing in the middle of a flight that is too short to tuck them."""
+GATHERS = 0.2
+"""Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
+LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
+"""How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
+STRAIGHTEST = 0.06
+"""Knees in the air are bent by this at least [rad]."""
 FREE = -1.0
 """A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
-ROUNDS, CLOSE = 5, 0.02
+ROUNDS, CLOSE = 8, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
+MOST_TURN, MOST_GAIN = 0.7, 2.5
+"""From one to the next the body comes down turned otherwise by so much at most [rad]; so many times the momentum of a stiff body
+that turns so may bring it about."""
 BEYOND = 1.7
 """How far the legs reach beyond how a body just came down, at first: it turns about half as far back."""
 COARSE = 3
@@ -49,14 +56,9 @@ class _Draft(Airborne):
         assert way.push is not None  # a fall has none, and is no `_Draft`
         self.planted, self.off, self.push = planted, way.wind_up, way.push
         leave = self.off + self.push.duration
-        deep = (measures(physique).stand + planted[0, 1] - physique.tables.sole - way.low[1]) / (DEEP * physique.size)
-        times = np.array([0.0, self.off, *(leave + carriage.flying(way.airtime)[:3])])
-        keys = carriage.shapes(min(max(deep, 0.0), 1.15), self.absorbing(physique, way, landing), way.lean, way.fold, way.running, way.low_arms)
-        first = min(max(carriage.SWING - self.push.duration, 0.0), 0.3 * self.off)
-        if way.running:
-            keys = carriage.unhurried(times, keys, min(carriage.UNHURRIED * physique.size**0.5, leave + 0.9 * way.airtime))
-            first = 0.0
-        super().__init__(physique, start, way, landing, leave, times, keys, first)
+        self.events = np.array([0.0, self.off, leave, leave + way.airtime])
+        self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
+        super().__init__(physique, start, way, landing, leave, self.due, way.keys[:3 * BETWEEN + 1, :LEGS])
 
     def plan(self) -> Plan:
         """Everything, in order."""
@@ -79,7 +81,7 @@ class _Draft(Airborne):
             np.concatenate([self.centres, self.arc[1:], landed[2]]),
             np.concatenate([self.velocities, way.velocity + g * flying[:, None], landed[3]]),
             mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
-            contacts, self.off, self.leave, self.down, self.down + LOWEST, self.down + through, self.landing, self.momentum.copy(), way)
+            contacts, self.off, self.leave, self.down, self.down + self.lowest, self.down + through, self.landing, self.momentum.copy(), way)
 
     def _prepare_ground(self) -> None:
         """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
@@ -102,8 +104,9 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
-        self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1])
-        risen = HEEL_UP * late**2 * (3.0 - 2.0 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
+        heels = np.sin(np.maximum(-self.feet[..., 4], 0.0)) * (self.body.toe[2] - self.body.heel[2])  # lower than balls by this
+        self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1] + heels)
+        risen = HEEL_UP * late**2 * (1.5 - 0.5 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))
@@ -122,17 +125,15 @@ class _Draft(Airborne):
         return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
 
     def _knee_drive(self, side: int) -> np.ndarray:
-        """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: forward and up."""
+        """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: as recorded, from how it is."""
         ids = self.legs[4 * side:4 * side + 4]
-        start = vectors(self.start.rotations[ids])
-        high = np.zeros((4, 3))
-        high[0, 0], high[1, 0], high[2, 0] = -1.05, 1.25, -0.1
-        passing = 0.5 * (start + high)
-        sinks = max(self.start.centre[1] - self.way.low[1], 0.0)
-        passing[1, 0] = max(start[1, 0], high[1, 0]) + 0.45 + 2.0 * sinks / self.body.shank  # the toes pass over the floor
-        times = np.array([0.0, 0.5 * self.leave, self.leave])
-        slopes = np.stack([self.start.rates[ids], (high - start) / self.leave, np.zeros((4, 3))])
-        return turns(hermite(times, np.stack([start, passing, high]), slopes, self.times))
+        start, rows = vectors(self.start.rotations[ids]), np.zeros((2 * BETWEEN + 1, 4, 3))
+        rows[:, :EACH, 0] = self.way.keys[:2 * BETWEEN + 1, LEGS + side * EACH:LEGS + (side + 1) * EACH]
+        due = self.due[:2 * BETWEEN + 1]
+        slopes = monotone(due, rows)
+        swung = hermite(due, rows, slopes, self.times) + faded(start - rows[0], self.start.rates[ids] - slopes[0], GATHERS * self.leave, self.times)
+        swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)
+        return turns(swung)
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""
@@ -145,25 +146,40 @@ class _Draft(Airborne):
     def _fly(self) -> np.ndarray:
         """Find the spin (3,) at take-off with which the body lands upright, and fly with it.
 
-        A spin turns the body by about itself times the airtime; Broyden's method learns the rest.
+        Without angular momentum a body only turns against its limbs, by less than half a turn. From there on the momentum is
+        found by Broyden's method, in steps that turn it a little: none leads round by a somersault.
         """
         self.roots[-3:] = self.centres[-3:]  # a guess
         wanted = self._upright(self.air_angles[-1:, 0])[0]
-        gain = 0.57 * self.way.airtime * np.eye(3)
-        spin = np.array([-1.0 / self.way.airtime, 0.0, 0.0])
+        time = self.way.airtime
+        spin, spun = np.zeros(3), np.zeros((3, 3))
+        self._leave(spin)
+        still = self.momentum.copy()
+        for k in range(3):  # what a spin gives is nearly linear
+            self._leave(np.eye(3)[k])
+            spun[:, k] = self.momentum - still
+        gain = spun / time
+        self.momentum[:] = 0.0
         change = before = np.zeros(3)
         for _ in range(ROUNDS):
-            self._leave(spin)
             flown = self._flight(wanted, 1e-4, COARSE)
-            miss = self._miss(wanted, flown)
-            if change.any():
-                gain += np.outer(before - miss - gain @ change, change) / (change @ change)
+            miss = vectors(wanted @ flown[-1, 0].T)
             if np.abs(miss).max() < CLOSE:
                 break
-            change, before = np.clip(np.linalg.solve(gain, miss), -5.0, 5.0), miss
-            spin = spin + change
+            if change.any():
+                turned = before - miss
+                if turned @ turned > 1e-6:
+                    gain += np.outer(change - gain @ turned, turned) / (turned @ turned)
+            step = miss * min(1.0, MOST_TURN / float(np.linalg.norm(miss)))
+            change, before = gain @ step, miss
+            bound = MOST_GAIN * float(np.linalg.norm(spun @ step)) / time
+            change *= min(1.0, bound / max(float(np.linalg.norm(change)), 1e-12))
+            self.momentum += change
+        spin = np.linalg.solve(spun, self.momentum - still)
+        self._leave(spin)
         # the legs reach for where this very body comes down, which changes a little how it turns
         landed, beyond, off = wanted, BEYOND, None
+        flown = self._flight(landed, 1e-4, COARSE)
         for _ in range(ROUNDS):
             before, off = off, vectors(landed.T @ flown[-1, 0])
             if before is not None:
@@ -194,22 +210,20 @@ class _Draft(Airborne):
         return air
 
     def _legs_in_flight(self, step: float, end: np.ndarray, bending: np.ndarray, times: np.ndarray) -> np.ndarray:
-        """The legs' local rotations (N, 8, 3, 3) at times (N,) [s] in the air: out of the push straight, then tucked, then
-        reaching; they touch down with `bending` (8, 3) [rad/s]."""
-        airtime, ids = self.way.airtime, self.legs
+        """The legs' local rotations (N, 8, 3, 3) at times (N,) [s] in the air: as recorded, out of the push and to how they
+        touch down, with `bending` (8, 3) [rad/s]."""
+        ids, rows = self.legs, self.way.keys[2 * BETWEEN:3 * BETWEEN + 1, LEGS:]
         before, last, reach = vectors(self.local[-2, ids]), vectors(self.local[-1, ids]), vectors(end[ids])
-        tuck = np.clip((airtime - 0.25) / 0.35, 0.0, 1.0)
-        straight = last.copy()
-        for side, hip in enumerate((0, 4)):
-            if self.feet[-1, side, 5] != FREE:
-                straight[hip, 0], straight[hip + 1, 0], straight[hip + 2, 0] = last[hip, 0] + 0.10, 0.12, last[hip + 2, 0] + 0.08
-        share = HALF_WAY + (1.0 - HALF_WAY) * tuck  # there is no time to tuck in a short flight
-        folded = straight + share * (reach - straight)
-        folded[[0, 4], 0] -= 0.45 * tuck
-        folded[[1, 5], 0] += 0.85 * tuck
-        folded[[2, 6], 0] += share * (0.25 - folded[[2, 6], 0])
-        keys = np.array([0.0, min(0.08, 0.25 * airtime), 0.55 * airtime, airtime])
-        values = np.stack([last, straight, folded, reach])
+        keys = self.due[2 * BETWEEN:3 * BETWEEN + 1] - self.leave
+        share = np.linspace(0.0, 1.0, BETWEEN + 1)[:, None, None]
+        values = (1.0 - share) * last + share * reach  # what was not recorded goes straight
+        bent = np.array([[4 * side + n for n in range(EACH)] for side in (0, 1)]).ravel()
+        values[:, bent, 0] = rows + LEAVES[:, None] * (last[bent, 0] - rows[0]) + LEAVES[::-1, None] * (reach[bent, 0] - rows[-1])
+        values[:, [1, 5], 0] = np.maximum(values[:, [1, 5], 0], STRAIGHTEST)
+        values[0], values[-1] = last, reach
         slopes = monotone(keys, values)
-        slopes[0], slopes[3] = (last - before) / step, bending
+        slopes[0], slopes[-1] = (last - before) / step, bending
+        for knee in (1, 5):  # that does not bend back
+            slopes[0, knee, 0] = max(slopes[0, knee, 0], -3.0 * (last[knee, 0] - 0.5 * STRAIGHTEST) / keys[1])
+            slopes[-1, knee, 0] = min(slopes[-1, knee, 0], 3.0 * (reach[knee, 0] - 0.5 * STRAIGHTEST) / keys[1])
         return turns(hermite(keys, values, slopes, times))

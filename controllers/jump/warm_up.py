@@ -17,5 +17,5 @@ def rehearse(jump: Jump) -> None:
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
     intent = Intent(leap=Leap(np.array([0.0, 0.0, 0.5])))
     jump.step(jump.enter(state, intent), intent, 1.0 / 60.0)
-    measures(jump.physique, low_arms=True)  # found once a body
+    measures(jump.physique)  # found once a body
 

@@ -138,7 +138,7 @@ def main(part: str, library: str = "") -> None:
     sys.stdin.readline()  # the other program has the feet, or has ended
     place(walker)
     _note("walk", walker)
-    measures(jump.physique, low_arms=True)
+    measures(jump.physique)
     sys.stdin.readline()  # and the strength
     rehearse(jump)
     goals()

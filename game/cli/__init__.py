@@ -8,11 +8,11 @@ import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: threads cost small matrices far more than they save
 
-from . import play, films, filming, motion, library, database, reconstruct, navigate  # noqa: E402, in the order of the help
+from . import play, films, filming, motion, library, jumps, database, reconstruct, navigate  # noqa: E402, in the order of the help
 from .base import app, learn, pixels_of, unswept  # noqa: E402
 
-__all__ = ["app", "database", "filming", "films", "learn", "library", "main", "motion", "navigate", "pixels_of", "play", "reconstruct",
-           "unswept"]
+__all__ = ["app", "database", "filming", "films", "jumps", "learn", "library", "main", "motion", "navigate", "pixels_of", "play",
+           "reconstruct", "unswept"]
 
 
 def main() -> None:

@@ -1,12 +1,12 @@
-"""Compare our jumps with recorded ones: knee, hip and centre of mass, side by side.
+"""Set our jumps beside recorded ones, and print what is wrong with plans.
 
-    python scripts/measure/compare_jump.py [--plots DIR] [CLIP ...]
+    python scripts/measure/compare_jump.py [--plots DIR] [--quick] [--recorded] [--seed 0]
 
-Jumps are found in the clips of ../shared/mocap: both feet in the air, the centre of mass falling
-freely. Each is planned anew from the very pose and motion in which the recorded one began, with its
-distance, height and airtime, and aligned at take-off. Printed are the RMS differences of knee and
-hip bend [°] and of the centre of mass's height [cm], from 0.5 s before take-off to 0.3 s after
-touch-down; drawn, with --plots, are the curves.
+Jumps are found in the takes of ../shared/mocap that the prior is fitted to. Each is planned anew from the very pose and
+motion in which the recorded one began, with its distance, height and airtime, by a prior to which no jump of its take was
+fitted. Printed are the RMS differences in the air of knee, hip and trunk [°] and of where the upper arms point [°]; of the
+whole, how deep they crouch and how they land. Then comes the table of `jump_faults.py`. With --plots, strips of
+both are drawn.
 """
 
 from __future__ import annotations
@@ -19,159 +19,182 @@ from pathlib import Path
 
 import numpy as np
 
+import jump_faults
 from gambol.controllers.body import Clip, Pose, centre_of_mass, contact_points, forward_kinematics, heading_of, log
-from gambol.controllers.contract import CharacterState, Intent, Leap
-from gambol.controllers.jump import Jump, Refused
+from gambol.controllers.contract import CharacterState, Intent, Leap, Unable
+from gambol.controllers.jump import Jump
+from gambol.controllers.jump.prior import TAKES, Prior, Recorded, fit, jumps
+from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import calibrate, load, retarget
 
 from _plots import pictures, pyplot
 
 MOCAP = Path(__file__).resolve().parents[3] / "shared" / "mocap"
-CLIPS = ("woody2/wd2_Physics_Jump00.bvh", "woody2/wd2_Physics_Jump02.bvh", "woody2/wd2_Physics_Jump03.bvh",
-         "woody2/wd2_long_broad_jump.bvh", *(f"cmu/16/16_{n:02d}.amc" for n in (1, 2, 3, 5, 6, 9)),
-         *(f"cmu/127/127_{n}.amc" for n in (21, 25, 26, 27)))
-ALOFT = 0.035
-"""Higher above its place in stance than this [m] is a foot's lowest point in the air."""
-SHORTEST, LONGEST = 0.18, 0.9
-"""Flights that count as jumps [s]; runners' strides are shorter, climbing is longer."""
-BEFORE, AFTER = 0.5, 0.3
+JUDGED = (*TAKES, "woody2/wd2_Physics_Jump02.bvh")
+"""Ours are judged by these: there are scissors, too, which nothing was fitted to."""
+STANDS = 0.055
+"""Points of feet lower than this over the floor stand [m]."""
+ANGLES = ("knee", "hip", "trunk", "arm")
 
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Knee and hip bend [°], mean of both legs, and centre of mass (T, 3) [m] of a motion at its own rate."""
+    """Knee and hip bend [°], mean of both legs, the trunk's lean forward [°], where the upper arms point (T, 2, 3) seen from the
+    chest, and centre of mass (T, 3) [m]."""
 
     knee: np.ndarray
     hip: np.ndarray
+    trunk: np.ndarray
+    arms: np.ndarray
     centre: np.ndarray
 
 
 def curves(jump: Jump, roots: np.ndarray, local: np.ndarray) -> Curves:
     """The curves of poses (T, ...)."""
     skeleton = jump.skeleton
+    positions, turned = forward_kinematics(skeleton, roots, local)
     knee, hip = (np.degrees(np.mean([np.linalg.norm(log(local[:, skeleton.index(side + name)]), axis=-1)
                                      for side in ("Left", "Right")], 0)) for name in ("Leg", "UpLeg"))
-    return Curves(knee, hip, centre_of_mass(jump.physique.anatomy, *forward_kinematics(skeleton, roots, local)))
+    ahead = heading_of(turned[:, 0, :, 2])
+    line = positions[:, skeleton.index("Neck")] - positions[:, 0]
+    trunk = np.degrees(np.arctan2(line[:, 0] * np.sin(ahead) + line[:, 2] * np.cos(ahead), line[:, 1]))
+    chest = turned[:, skeleton.index("Spine2")]
+    arms = np.stack([positions[:, skeleton.index(side + "ForeArm")] - positions[:, skeleton.index(side + "Arm")] for side in ("Left", "Right")], 1)
+    arms = np.einsum("tji,tsj->tsi", chest, arms / np.linalg.norm(arms, axis=-1, keepdims=True))
+    return Curves(knee, hip, trunk, arms, centre_of_mass(jump.physique.anatomy, positions, turned))
 
 
-def flights(jump: Jump, clip: Clip) -> Iterator[tuple[int, int]]:
-    """First and last frame in the air of every jump of a clip."""
-    points = contact_points(jump.skeleton, *clip.kinematics())
-    air = points[..., 1].min(-1) - np.percentile(points[..., 1].min(-1), 5) > ALOFT
-    edges = np.flatnonzero(np.diff(np.pad(air.astype(int), 1)))
-    for first, last in edges.reshape(-1, 2):
-        if SHORTEST < (last - first) * clip.frame_time < LONGEST and first * clip.frame_time > BEFORE \
-                and (len(clip) - last) * clip.frame_time > AFTER:
-            yield int(first), int(last)
-
-
-def recorded(jump: Jump, names: Sequence[str] = CLIPS) -> Iterator[tuple[Clip, list[tuple[int, int]]]]:
-    """Clips of ../shared/mocap on our skeleton, with their jumps; none where there is no such folder."""
-    for name in names if MOCAP.is_dir() else ():
+def recorded(jump: Jump, takes: Sequence[str] = JUDGED) -> Iterator[tuple[Clip, list[Recorded]]]:
+    """Takes of ../shared/mocap on our skeleton, with their jumps; none where there is no such folder."""
+    for take in takes if MOCAP.is_dir() else ():
         try:
-            source = load(MOCAP / name)
-            clip = replace(retarget(source, calibration=calibrate([source])), name=Path(name).stem)
+            source = load(MOCAP / take)
+            clip = replace(retarget(source, calibration=calibrate([source])), name=Path(take).stem)
         except (OSError, ValueError) as error:
-            print(f"  {name}: {error}")
+            print(f"  {take}: {error}")
             continue
-        yield clip, list(flights(jump, clip))
-
-
-def begins(theirs: Curves, first: int, rate: float, speed: float) -> int:
-    """The frame in which a jump begins: standing before the crouch; of a runner, its last foot-strike or so."""
-    if speed > 1.5:
-        return max(first - round(0.22 * rate), 1)
-    height = theirs.centre[max(first - round(1.0 * rate), 1):first, 1]
-    low = int(height[-max(round(0.5 * rate), 1):].argmin()) + max(len(height) - round(0.5 * rate), 0)
-    return first - len(height) + int(height[:low + 1].argmax())
+        yield clip, list(jumps(jump.skeleton, jump.physique.anatomy, clip))
 
 
 def state_at(jump: Jump, clip: Clip, frame: int) -> CharacterState:
     """The recorded body at a frame, as a state that something else moved."""
+    frame = max(frame, 1)
     roots, local = clip.root, clip.rotations
     positions, turned = forward_kinematics(jump.skeleton, roots[frame - 1:frame + 1], local[frame - 1:frame + 1])
     heading = float(heading_of(turned[1, 0][:, 2]))
     flow = (positions[1, 0] - positions[0, 0]) / clip.frame_time
     s, c = np.sin(heading), np.cos(heading)
     points = contact_points(jump.skeleton, positions[1], turned[1])
-    standing = points[:, 1] < 0.02 + ALOFT
+    floor = np.percentile(contact_points(jump.skeleton, *clip.kinematics())[..., 1], 3) - 0.02
     return CharacterState(np.array([positions[1, 0, 0], positions[1, 0, 2], heading]),
                           np.array([s * flow[0] + c * flow[2], 0.0, c * flow[0] - s * flow[2]]),
-                          Pose(roots[frame], local[frame]), standing, None, 0.0, Pose(roots[frame - 1], local[frame - 1]),
-                          clip.frame_time)
+                          Pose(roots[frame], local[frame]), points[:, 1] < floor + STANDS, None, float(floor),
+                          Pose(roots[frame - 1], local[frame - 1]), clip.frame_time)
 
 
-def compare(jump: Jump, clip: Clip, first: int, last: int, plots: Path | None, number: int) -> dict[str, float] | None:
-    """One recorded jump beside ours: prints a line, draws a picture, returns the RMS differences."""
-    rate = 1.0 / clip.frame_time
+def compare(clip: Clip, one: Recorded, prior: Prior, plots: Path | None, number: int) -> dict[str, float] | None:
+    """One recorded jump beside ours: prints a line, draws a picture, returns the differences."""
+    jump = Jump(prior=prior)
     theirs = curves(jump, clip.root, clip.rotations)
-    flow = np.gradient(theirs.centre, clip.frame_time, axis=0)
-    start = begins(theirs, first, rate, float(np.hypot(*flow[max(first - round(0.3 * rate), 0), [0, 2]])))
-    landed = contact_points(jump.skeleton, *(a[last:last + 1] for a in clip.kinematics()))[0]
-    place = landed.mean(0) * [1.0, 0.0, 1.0]
-    place[1] = 0.0
-    air = (last - first) * clip.frame_time
-    name = f"{clip.name} {first * clip.frame_time:6.2f} s"
+    start, _, first, last, landed, upright = one.events
     state = state_at(jump, clip, start)
-    far = float(np.hypot(*(theirs.centre[last] - theirs.centre[first])[[0, 2]]))
-    told = f"  {name:34s} air {air:.2f} s, {far:.2f} m, v0 {np.hypot(*state.velocity[[0, 2]]):.1f} m/s"
+    feet = contact_points(jump.skeleton, *(a[last:last + 1] for a in clip.kinematics()))[0]
+    place = feet.mean(0) * [1.0, 0.0, 1.0] + [0.0, float(state.floor), 0.0]
+    told = f"  {clip.name:22s} {one.time:6.2f} s {'one foot ' if one.single is not None else ''}air {one.airtime:.2f} s, {one.far:.2f} m, {one.pace:.1f} m/s"
     try:
-        made = jump.plan(state, Intent(leap=Leap(place, air)))
-    except Refused as reason:
+        made = jump.plan(state, Intent(leap=Leap(place, one.airtime)))
+    except Unable as reason:
         print(f"{told}  not ours: {str(reason).split(';')[0]}")
         return None
-    times = np.arange(-min(BEFORE, made.take_off), air + AFTER, clip.frame_time)
-    poses = [made.at(made.take_off + t) for t in times]
+    count = last - first
+    times = made.take_off + one.airtime * np.arange(count) / count
+    poses = [made.at(t) for t in times]
     ours = curves(jump, np.stack([p.root for p in poses]), np.stack([p.rotations for p in poses]))
-    at = first + np.round(times * rate).astype(int)
-    inside = (at >= 0) & (at < len(clip))
-    rms = {}
-    for key, a, b in (("knee", ours.knee, theirs.knee[at[inside]]), ("hip", ours.hip, theirs.hip[at[inside]]),
-                      ("height", 100 * (ours.centre[:, 1]), 100 * theirs.centre[at[inside], 1])):
-        rms[key] = float(np.sqrt(np.mean((a[inside] - b) ** 2)))
-    print(f"{told}  RMS knee {rms['knee']:4.1f}°, hip {rms['hip']:4.1f}°, height {rms['height']:4.1f} cm; most bent knee "
-          f"{ours.knee.max():.0f}° / {theirs.knee[at[inside]].max():.0f}°")
+    air = slice(first, last)
+    rms = {name: float(np.sqrt(np.mean((getattr(ours, name) - getattr(theirs, name)[air]) ** 2))) for name in ANGLES[:3]}
+    rms["arm"] = float(np.degrees(np.sqrt(np.mean(np.arccos(np.clip((ours.arms * theirs.arms[air]).sum(-1), -1.0, 1.0)) ** 2))))
+    whole = [made.at(t) for t in np.arange(0.0, made.duration, 1 / 120)]
+    all_ours = curves(jump, np.stack([p.root for p in whole]), np.stack([p.rotations for p in whole]))
+    off, down = round(made.take_off * 120), round(made.touch_down * 120)
+    low = down + int(all_ours.centre[down:, 1].argmin())
+    rms |= {"knee off": ours.knee[0], "knee off theirs": theirs.knee[first], "trunk landed": all_ours.trunk[low], "trunk landed theirs": theirs.trunk[landed],
+            "crouch": all_ours.centre[0, 1] - all_ours.centre[:off, 1].min(), "crouch theirs": one.depth,
+            "sinks": ours.centre[-1, 1] - all_ours.centre[low, 1], "sinks theirs": theirs.centre[last, 1] - theirs.centre[landed, 1]}
+    print(f"{told}  RMS knee {rms['knee']:4.1f}°, hip {rms['hip']:4.1f}°, trunk {rms['trunk']:4.1f}°, arm {rms['arm']:4.1f}°; ours / theirs: knee at take-off {rms['knee off']:.0f} / "
+          f"{rms['knee off theirs']:.0f}°, trunk landed {rms['trunk landed']:.0f} / {rms['trunk landed theirs']:.0f}°, crouch {rms['crouch']:.2f} / {one.depth:.2f} m, "
+          f"sinks {rms['sinks']:.2f} / {rms['sinks theirs']:.2f} m")
     if plots:
-        draw(plots / f"{clip.name}_{number}.png", name, times, ours, theirs, at[inside], inside, air)
+        plots.mkdir(parents=True, exist_ok=True)
+        strip(plots / f"{clip.name}_{number}.png", told.strip(), jump, clip, one, made)
     return rms
 
 
-def draw(path: Path, title: str, times, ours: Curves, theirs: Curves, at, inside, air: float) -> None:
-    """Three curves over time from take-off, ours beside theirs."""
+def strip(path: Path, title: str, jump: Jump, clip: Clip, one: Recorded, made) -> None:
+    """Both as stick figures from the side, at the same shares of the way from event to event: recorded above, ours below."""
     plt = pyplot()
-    figure, axes = plt.subplots(3, 1, sharex=True, figsize=(7, 7))
-    for axis, label, a, b in zip(axes, ("knee [°]", "hip [°]", "centre of mass [m]"), (ours.knee, ours.hip, ours.centre[:, 1]),
-                                 (theirs.knee[at], theirs.hip[at], theirs.centre[at, 1])):
-        axis.plot(times[inside], b, label="recorded")
-        axis.plot(times, a, label="ours")
-        axis.axvspan(0.0, air, alpha=0.1)
-        axis.set_ylabel(label)
-    axes[0].set_title(title)
-    axes[0].legend()
-    axes[-1].set_xlabel("time from take-off [s]")
-    figure.savefig(path, dpi=110)
+    figure, axes = plt.subplots(2, 1, figsize=(17, 6))
+    shares = np.linspace(0.0, 5.0, 16)
+    events = np.array([0.0, made.push_off, made.take_off, made.touch_down, made.lowest, min(made.duration, made.lowest + 0.5)])
+    frames = np.clip(np.interp(shares, np.arange(6), one.events).round().astype(int), 0, len(clip) - 1)
+    shown = [made.at(t) for t in np.interp(shares, np.arange(6), events)]
+    theirs, ours = clip.root[frames], np.stack([p.root for p in shown])
+    for axis, roots, local in ((axes[0], theirs, clip.rotations[frames]), (axes[1], ours, np.stack([p.rotations for p in shown]))):
+        positions, turned = forward_kinematics(jump.skeleton, roots, local)
+        heading = float(heading_of(turned[0, 0][:, 2]))
+        way = np.array([np.sin(heading), np.cos(heading)])
+        for k, p in enumerate(positions):
+            along = (p[:, [0, 2]] - positions[0, 0, [0, 2]]) @ way + 0.85 * k
+            for j in range(1, len(p)):
+                i, name = jump.skeleton.parents[j], jump.skeleton.names[j]
+                axis.plot(along[[i, j]], p[[i, j], 1], color="tab:red" if name.startswith("Left") else "tab:blue" if name.startswith("Right") else "k", lw=1.3)
+            axis.text(0.85 * k, -0.12, f"{shares[k]:.1f}", fontsize=6)
+        axis.set_aspect("equal")
+        axis.axis("off")
+    axes[0].set_title(title, fontsize=8)
+    figure.tight_layout()
+    figure.savefig(path, dpi=70)
     plt.close(figure)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("clips", nargs="*", help="files under ../shared/mocap; by default those of the issue")
-    parser.add_argument("--plots", type=Path, help="a folder for pictures (needs matplotlib, which the extra `report` brings)")
-    given = parser.parse_args()
-    if not MOCAP.is_dir():
-        print("no ../shared/mocap beside the project: recorded jumps are not to be had here; nothing compared")
-        return 0
-    pictures(parser, given.plots)
-    jump, all_rms = Jump(), []
-    for clip, found in recorded(jump, given.clips or CLIPS):
-        if not found:
+def beside(takes: Sequence[str], plots: Path | None) -> None:
+    """Every recorded jump beside ours."""
+    found, fitted = list(recorded(Jump(), takes)), {Path(take).stem for take in TAKES}
+    everything, rows = [one for clip, some in found if clip.name in fitted for one in some], []
+
+    for clip, some in found:
+        if not some:
             print(f"  {clip.name}: no jump found")
-        for number, (first, last) in enumerate(found):
-            rms = compare(jump, clip, first, last, given.plots, number)
-            all_rms += [rms] if rms else []
-    if all_rms:
-        print(f"{len(all_rms)} jumps, median RMS: " + ", ".join(
-            f"{key} {np.median([r[key] for r in all_rms]):.1f} {'cm' if key == 'height' else '°'}" for key in all_rms[0]))
+            continue
+        prior = fit([one for one in everything if one.clip != clip.name])
+        for number, one in enumerate(some):
+            rms = compare(clip, one, prior, plots, number)
+            rows += [rms | {"take": clip.name, "feet": 1 if one.single is not None else 2}] if rms else []
+    for feet in (2, 1):
+        some = [row for row in rows if row["feet"] == feet]
+        if some:
+            takes = sorted({row["take"] for row in some})
+            print(f"off {feet} feet, {len(some)} jumps of {len(takes)} takes, each left out: RMS in the air, median, mean, median of takes' medians: " + "; ".join(
+                f"{key} {np.median([r[key] for r in some]):.0f}, {np.mean([r[key] for r in some]):.0f}, "
+                f"{np.median([np.median([r[key] for r in some if r['take'] == take]) for take in takes]):.0f}°" for key in ANGLES))
+            print("  ours / theirs, median: " + "; ".join(f"{key} {np.median([r[key] for r in some]):.2f} / {np.median([r[key + ' theirs'] for r in some]):.2f}"
+                                                          for key in ("knee off", "trunk landed", "crouch", "sinks")))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("takes", nargs="*", help="files under ../shared/mocap; by default those that the prior is fitted to")
+    parser.add_argument("--plots", type=Path, help="a folder for strips (needs matplotlib, which the extra `report` brings)")
+    parser.add_argument("--recorded", action="store_true", help="only what stands beside recorded jumps")
+    parser.add_argument("--quick", action="store_true", help="150 random targets")
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    pictures(parser, given.plots)
+    if MOCAP.is_dir():
+        beside(given.takes or JUDGED, given.plots)
+    else:
+        print("no ../shared/mocap beside the project: recorded jumps are not to be had here; nothing compared")
+    if not given.recorded:
+        jump_faults.table(Locomotion.load(), given.quick, given.seed)
     return 0
 
 

@@ -20,7 +20,7 @@ from dataclasses import replace
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
-from compare_jump import AFTER, curves, begins, recorded
+from compare_jump import recorded
 from jump_trials import FINE, FPS, Motion, possible, result_of, starts, trial
 
 from gambol.controllers.body import forward_kinematics, log, segment_centres, sole_corners
@@ -33,6 +33,10 @@ from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box
 
 
+AFTER = 0.3
+"""So long after touch-down recorded jumps count for accelerations [s]."""
+
+
 def report_targets(trials: int, rng: np.random.Generator, locomotion: Locomotion) -> None:
     """Random targets until so many were accepted."""
     rest, runners = starts(locomotion, rng, 40)
@@ -43,8 +47,7 @@ def report_targets(trials: int, rng: np.random.Generator, locomotion: Locomotion
         way = "running" if t.running else "standing"
         asked[way] += 1
         begin = time.perf_counter()
-        for low in (False, True):  # found once a body
-            measures(t.jump.physique, low)
+        measures(t.jump.physique)  # found once a body
         strength(t.jump.physique, gravity=-float(t.jump.gravity[1]))
         bodies.append(time.perf_counter() - begin)
         begin = time.perf_counter()
@@ -172,7 +175,7 @@ def report_counter_movement(locomotion: Locomotion) -> None:
 
 def report_arms(locomotion: Locomotion) -> None:
     """What swinging arms do to the centre of mass of an adult: its place about the shoulders, times the arms' share of the
-    mass, over the push of a jump of 0.35 m and at take-off; and what the same arc takes with the arms down."""
+    mass, over the push of a jump of 0.35 m and at take-off."""
     jump = Jump()
     anatomy, skeleton = jump.physique.anatomy, jump.skeleton
     state = replace(locomotion.step(locomotion.start(), Intent(), 1 / FPS)[0], elapsed=0.0)
@@ -186,10 +189,8 @@ def report_arms(locomotion: Locomotion) -> None:
         height += ((places[:, arm, 1] - shoulder[:, None]) * anatomy.masses[arm]).sum(1) / anatomy.masses.sum()
     speed = np.gradient(height, seen.times)
     push = seen.times >= made.push_off
-    free, low = (measures(jump.physique, low_arms=down).leave(0.0) for down in (False, True))
     print(f"Arms, in a jump of 0.35 m: they raise the centre of mass by {100.0 * (height[-1] - height[push][0]):.1f} cm over the push, by "
-          f"{speed[push].max():.2f} m/s at the fastest and {speed[-1]:.2f} m/s at take-off, of {made.path.velocity[1]:.2f}; with them down "
-          f"it leaves the floor {100.0 * (free - low):.1f} cm lower")
+          f"{speed[push].max():.2f} m/s at the fastest and {speed[-1]:.2f} m/s at take-off, of {made.path.velocity[1]:.2f}")
 
 
 def uniform(values: np.ndarray, width: int = 5) -> np.ndarray:
@@ -201,14 +202,9 @@ def recorded_accelerations() -> np.ndarray | None:
     """The 99th percentile (J,) [m/s²] of every joint in recorded jumps, from the crouch to a good while after
     touch-down, as for the gaits; None where there are no recordings."""
     jump, found = Jump(), []
-    for clip, flights in recorded(jump):
-        rate, theirs = 1.0 / clip.frame_time, curves(jump, clip.root, clip.rotations)
+    for clip, some in recorded(jump):
         positions = clip.kinematics()[0]
-        flow = np.gradient(theirs.centre, clip.frame_time, axis=0)
-        for first, last in flights:
-            pace = float(np.hypot(*flow[max(first - round(0.3 * rate), 0), [0, 2]]))
-            start = begins(theirs, first, rate, pace)
-            found.append(joint_acceleration(positions[start:last + round(AFTER * rate)], clip.frame_time))
+        found += [joint_acceleration(positions[one.events[0]:one.events[3] + round(AFTER / clip.frame_time)], clip.frame_time) for one in some]
     return np.percentile(np.concatenate(found), 99, axis=0) if found else None
 
 

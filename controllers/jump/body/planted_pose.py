@@ -14,7 +14,7 @@ from ...body import distance_kernel, relative_kernel, two_bone_kernel
 from ...compiled import kernel
 from .dynamics import centre_kernel, place_kernel
 
-STRAIGHT = 0.985
+STRAIGHT = 0.992
 """A leg is straight at this share of its length: beyond, the heel rises, and then the jump is over."""
 GAIN = 1.0 / 0.82
 """How far the pelvis moves for what the centre of mass lacks: part of the legs stays behind."""

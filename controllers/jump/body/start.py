@@ -2,38 +2,30 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...body import HALF_SOLE, yaw
 from . import carriage
 from .balance import HALF_STANCE, STAND_REACH
 from .ballistics import apex_airtime
-from .dynamics import BodyTables, Physique
+from .dynamics import BodyTables, Physique, centre_kernel, place_kernel, turns
 from .planted_pose import stand_kernel
 
 FLAT = np.array([1.0, 0.0, 1.0])
 """What is left of a vector along the floor."""
 HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
-TAKE_OFF_REACH, TOUCH_REACH = 0.955, 0.93
+TAKE_OFF_REACH, TOUCH_REACH = 0.982, 0.93
 """How straight legs are, as shares of their length, as they take off and touch down."""
 FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
-LEANS, BACK, FORTH = 0.7, -0.15, 0.45
-"""How much of the angle from the feet to the centre of mass the trunk leans with at take-off; how far back and forth at most [rad]."""
 TRAIL = (0.16, 0.30)
 """How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
-FOLDS = 0.8
-"""How much farther it leans forward for each metre of that [rad]: who leaps far folds up as the legs reach ahead."""
-_LEAN = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-
 
 @dataclass(frozen=True, eq=False)
 class Start:
@@ -65,14 +57,17 @@ class Start:
 @dataclass(frozen=True, eq=False)
 class Measures:
     """Heights [m] of a body's centre of mass over the floor: standing; leaves: (L,) as it takes off so far ahead (L,) [m] of
-    the balls of its feet, leaning with it; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles,
-    folded with it."""
+    the balls of its feet; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles.
+
+    carried: (2,) how high the centre of mass lies over the pelvis for that, at take-off and at touch-down [m].
+    """
 
     stand: float
     leads: np.ndarray
     leaves: np.ndarray
     trails: np.ndarray
     touches: np.ndarray
+    carried: np.ndarray
 
     def touch(self, trail: float) -> float:
         """How high it touches down `trail` [m] behind its feet."""
@@ -82,31 +77,40 @@ class Measures:
         """How high it takes off `lead` [m] ahead of the balls of its feet, and so far to a side of them."""
         return over(float(np.interp(lead, self.leads, self.leaves)), aside)
 
+    def of(self, leave: float, touch: float) -> Measures:
+        """The same legs under a body whose centre of mass is carried at other heights over its pelvis [m]."""
+        return replace(self, leaves=self.leaves + leave - self.carried[0], touches=self.touches + touch - self.carried[1],
+                       carried=np.array([leave, touch]))
 
-def measures(physique: Physique, low_arms: bool = False) -> Measures:
+
+def measures(physique: Physique) -> Measures:
     """The heights of the centre of mass of a body over its own feet; found once."""
-    return _measures(physique, low_arms)  # however it is called
+    return _measures(physique)  # however it is called
 
 
 @lru_cache(maxsize=64)
-def _measures(physique, low_arms):
+def _measures(physique):
     body = physique.tables
     feet = landing_feet(np.zeros(3), 0.0, body)
-    leave, touch = carriage.TAKE_OFF.copy(), carriage.TOUCH.copy()
-    if low_arms:
-        leave[3], touch[3] = carriage.LOW_ARMS[[0, 2]]
     leads = np.linspace(-0.2, MOST_LEAD, 9) * (body.thigh + body.shank)
     ball = feet[:, 2].mean()
-    upright = _height(physique, leave, HEEL_UP, TAKE_OFF_REACH, feet, ball)
-    leaves = [_height(physique, leave + leaning(lead, upright) * _LEAN, HEEL_UP, TAKE_OFF_REACH, feet, ball + lead) for lead in leads]
+    leaves = [_height(physique, carriage.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH, feet, ball + lead) for lead in leads]
     trails = np.linspace(0.0, TRAIL[1], 5) * body.size
-    touches = [_height(physique, touch + folding(trail, body.size) * _LEAN, TOES_DOWN, TOUCH_REACH, feet, -trail) for trail in trails]
-    return Measures(_height(physique, carriage.STAND, 0.0, STAND_REACH, feet), leads, np.array(leaves), trails, np.array(touches))
+    touches = [_height(physique, carriage.TOUCH, TOES_DOWN, TOUCH_REACH, feet, -trail) for trail in trails]
+    return Measures(_height(physique, carriage.STAND, 0.0, STAND_REACH, feet), leads, np.array(leaves), trails, np.array(touches),
+                    np.array([carried(physique, carriage.TAKE_OFF), carried(physique, carriage.TOUCH)]))
 
 
-def folding(trail: float, size: float) -> float:
-    """How much farther [rad] a body leans forward at touch-down that is so far behind its feet [m]."""
-    return FOLDS * trail / size
+def carried(physique: Physique, angles: np.ndarray) -> float:
+    """How high [m] the centre of mass lies over the pelvis of a body carried by `angles` (11,), its legs hanging."""
+    skeleton, local = physique.skeleton, np.tile(np.eye(3), (len(physique.skeleton), 1, 1))
+    positions, turned, centre = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3)), np.empty(3)
+    carriage.carry_kernel(np.ascontiguousarray(angles, float), carriage.joints_of(skeleton), local)
+    local[0] = turns(np.array([angles[0], 0.0, 0.0]))
+    local[physique.tables.hip] = local[0].T
+    place_kernel(physique.tables, np.zeros(3), local, positions, turned)
+    centre_kernel(physique.tables, positions, turned, centre)
+    return float(centre[1])
 
 
 def airtime_up(physique: Physique, height: float, gravity: np.ndarray) -> float:
@@ -118,23 +122,31 @@ def airtime_up(physique: Physique, height: float, gravity: np.ndarray) -> float:
 
 def _height(physique: Physique, angles, pitch: float, share: float, feet: np.ndarray, ahead: float = 0.0) -> float:
     """The centre of mass's height over two feet, `ahead` [m] of the origin, the legs `share` of their length."""
+    body = physique.tables
+    return stretched(physique, angles, feet, pitch, share, 0.0, np.array([0.0, body.sole + 1.1 * (body.thigh + body.shank), ahead]))
+
+
+def stretched(physique: Physique, angles: np.ndarray, feet: np.ndarray, pitch: float, share: float, heading: float,
+              guess: np.ndarray) -> float:
+    """How high [m] the centre of mass is over `guess`'s (3,) place on the floor, where the leg of two feet (2, 5) that is
+    stretched more is `share` of its length, the feet `pitch` [rad] down, the body carried by `angles` (11,) and heading as told."""
     body, skeleton = physique.tables, physique.skeleton
     local = np.tile(np.eye(3), (len(skeleton), 1, 1))
     positions, turned = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3))
-    carriage.carry_kernel(angles, carriage.joints_of(skeleton), local)
-    local[0] = Rotation.from_rotvec([angles[0], 0.0, 0.0]).as_matrix()
+    carriage.carry_kernel(np.ascontiguousarray(angles, float), carriage.joints_of(skeleton), local)
+    local[0] = yaw(heading) @ turns(np.array([angles[0], 0.0, 0.0]))
     free = np.column_stack([feet[:, :4], [pitch, pitch], [0.0, 0.0]])
-    tilt = np.stack([yaw(f[3]) @ Rotation.from_rotvec([f[4], 0.0, 0.0]).as_matrix() for f in free])
+    tilt = np.stack([yaw(f[3]) @ turns(np.array([f[4], 0.0, 0.0])) for f in free])
     ankles = free[:, :3] - tilt @ body.toe
-    leg = body.thigh + body.shank
-    centre = np.array([0.0, body.sole + 1.1 * leg, ahead])
-    root = centre.copy()
+    centre, root = guess.copy(), guess.copy()
+    leg = share * (body.thigh + body.shank)
     for _ in range(40):
         stand_kernel(body, centre, free.copy(), 1.0, root, local, positions, turned)
         line = positions[body.hip] - ankles
-        short = (np.sqrt(np.maximum((share * leg) ** 2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min()
+        short = float((np.sqrt(np.maximum(leg**2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min())
         centre[1] += short
-        if abs(short) < 1e-7:
+        root[1] += short
+        if abs(short) < 1e-6:
             break
     return float(centre[1])
 
@@ -156,11 +168,6 @@ def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndar
         ball = np.array([sign * HALF_STANCE * body.size, body.sole, 0.0])
         feet[side, :3] = place + yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
     return feet
-
-
-def leaning(lead: float, height: float) -> float:
-    """How far [rad] a body leans forward that leaves the floor so far ahead of its feet [m], at a height [m]."""
-    return min(max(LEANS * math.atan2(lead, height), BACK), FORTH)
 
 
 def over(height: float, aside: float) -> float:

@@ -10,6 +10,7 @@ from ...body import exp_kernel, product_kernel, settle, yaw
 from ...compiled import kernel
 from ..body import (FLEX, TOES_DOWN, Physique, Start, measures, parts_kernel, place_kernel, soles, stand_kernel,
                     carriage, turns, vectors)
+from ..prior import BETWEEN, LEGS
 from .landing import TIME, absorb
 from .path_estimate import Path
 
@@ -27,8 +28,14 @@ FADE = 0.14
 """Half-life with which the start's pose gives way to the jump's [s]."""
 STEADY = 0.12
 """Half-life with which the pelvis loses the turn it landed with [s]."""
-LOWEST = 0.28
-"""From touch-down to the lowest point of the landing [s]."""
+LOWEST = 0.06, 0.45
+"""From touch-down to the lowest point of the landing it takes at least and at most so long [s]."""
+SETTLES = np.array([0.85, 0.6, 0.35, 0.15, 0.05])
+"""How much is left, from row to row, of what a body's carriage differed by as it touched down."""
+LEANS, LEANT = (1.8, 0.2), np.array([0.2, 0.5, 0.8, 1.0, 1.0, 0.8, 0.55, 0.3, 0.1, 0.0])
+"""Who sinks deeper than the second [m] leans farther forward by the first [rad/m], lest the heels rise; and which share of that, from row to row."""
+UP = 0.98
+"""Trunk and arms are as in standing once the body has come up so much of the way."""
 SAME = 1e-3
 """The legs reach for a body turned to within this of how it lands [rad]."""
 
@@ -37,11 +44,10 @@ class Airborne:
     """One motion in the making, from the air to standing.
 
     start: where it begins. way: its flight. landing: (2, 5) the feet on the floor. leave: when the flight
-    begins [s]. times, keys: (K,) [s], (K, 6) [rad] the carriage until touch-down; the landing's is added; first: as in `carriage.keyed`.
+    begins [s]. times, keys: (K,) [s], (K, 11) [rad] the carriage until touch-down; the landing's is added from `Path.keys`.
     """
 
-    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float,
-                 times, keys: np.ndarray, first: float = 0.0):
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float, times, keys: np.ndarray):
         self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
         self.landing, self.gravity, self.leave = landing, way.gravity, leave
         self.joints = carriage.joints_of(physique.skeleton)
@@ -49,16 +55,33 @@ class Airborne:
         self.flex = FLEX * physique.flexibility
         self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
         self.down = leave + way.airtime
-        self.carriage = carriage.keyed(np.append(times, [self.down, self.down + LOWEST, self.down + TIME]), keys, first)
+        self.support = soles(landing, self.body)
+        goal = self.support.mean(0) + [0.0, measures(physique).stand, 0.0]
+        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1])
+        self.after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
+        self.sunk = self.absorbs.motion(self.after)
+        landed = self._landing_times(goal[1])
+        self.lowest = float(landed[BETWEEN - 1])
+        rows = way.keys[3 * BETWEEN + 1:, :LEGS].copy()  # whoever comes down otherwise carried comes to them by and by
+        rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
+        sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
+        rows[:, 0] += LEANS[0] * max(sunk - LEANS[1], 0.0) * LEANT
+        self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
+                                       np.concatenate([keys, rows, [carriage.STAND]]))
 
-    @staticmethod
-    def absorbing(physique: Physique, way: Path, landing: np.ndarray) -> float:
-        """How far a body folds up as it lands, 1 as in `carriage.ABSORB`: for a fall, or for the squat it lands in."""
-        low = measures(physique).stand - (way.land[1] - landing[0, 1] + physique.tables.sole)
-        return max(float(np.linalg.norm(way.falling)) / 3.2, low / (0.3 * physique.size))
+    def _landing_times(self, stand: float) -> np.ndarray:
+        """When [s] after touch-down the rows of the prior are due: until the lowest point evenly, then as the body comes up to how
+        high [m] it stands."""
+        height = self.sunk[0][:, 1]
+        low = int(height.argmin())
+        lowest = float(np.clip(self.after[low], *LOWEST))
+        rises = (height[low:] - height[low]) / max(stand - height[low], 1e-6)
+        up = np.interp(UP * np.linspace(0.0, 1.0, BETWEEN + 1)[1:], np.maximum.accumulate(rises), self.after[low:])
+        up = np.minimum(np.maximum(up, lowest + 0.04 * np.arange(1, BETWEEN + 1)), TIME - 0.04 * np.arange(BETWEEN, 0, -1))
+        return np.concatenate([lowest * np.linspace(0.0, 1.0, BETWEEN + 1)[1:], up])
 
     def _differ(self, angles: np.ndarray) -> None:
-        """What the start's pose differs by from one carried by `angles` (6,): it fades, see `_left_over`."""
+        """What the start's pose differs by from one carried by `angles` (11,): it fades, see `_left_over`."""
         local = np.tile(np.eye(3), (self.count, 1, 1))
         carriage.carry_kernel(angles, self.joints, local)
         self.offset, self.offset_rate = vectors(self.start.rotations @ np.swapaxes(local, -1, -2)), self.start.rates.copy()
@@ -126,12 +149,8 @@ class Airborne:
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
         velocity and acceleration; whether the heels (M, 2) stand; when it walks on."""
-        way, body = self.way, self.body
-        after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
-        support = soles(self.landing, body)
-        goal = support.mean(0) + [0.0, measures(self.physique).stand, 0.0]
-        landing = absorb(way.land, way.falling, goal, support, -self.gravity[1])
-        c, v, a = landing.motion(after)
+        body = self.body
+        after, landing, (c, v, a) = self.after, self.absorbs, self.sunk
         angles = self.carriage(self.down + after)
         feet = np.ones((len(after), 2, 6))
         feet[..., :5] = self.landing
@@ -158,7 +177,7 @@ def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarr
 
 @kernel
 def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
-    """Poses over planted feet: angles (N, 6), what is left of the start (N, J, 3), the pelvis' turns
+    """Poses over planted feet: angles (N, 11), what is left of the start (N, J, 3), the pelvis' turns
     (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), whose pitch is written.
 
     root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
@@ -179,7 +198,7 @@ def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, roo
 
 @kernel
 def carry_on_kernel(angles, joints, offsets, local):
-    """Write the local rotations (J, 3, 3) of a body carried by `angles` (6,), what is left of the start (J, 3)
+    """Write the local rotations (J, 3, 3) of a body carried by `angles` (11,), what is left of the start (J, 3)
     added; neither the pelvis nor, where nothing is left, joints that are not carried are touched."""
     turn, carried = np.empty((3, 3)), np.empty((3, 3))
     for j in range(1, len(local)):  # poses are made anew, whatever an earlier round left

@@ -16,7 +16,8 @@ from ...body import Pose, Skeleton, contact_points, end_positions, forward_kinem
 from ...navigation import floor_at, gap
 from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
                     turns, vectors)
-from .airborne import LOWEST, SAME, Airborne
+from ..prior import BETWEEN, LEGS, Prior
+from .airborne import SAME, Airborne
 from .flight import flight_kernel
 from .path_estimate import Path, softened
 from .plan import Plan
@@ -33,6 +34,8 @@ TURNS = 5.0
 """Nobody turns faster to get upright [rad/s]."""
 REACHES = 0.30
 """So long after the hit the legs are where they land [s]."""
+GATHERS = 0.6
+"""In so long [s] arms that were thrown out are as in any landing."""
 ASIDE = ((0.25, 0.17), (1.15, 0.36))
 """What stands or hangs at a height over the feet [m] is so far from them [m] when they come down."""
 ROUNDS, CLOSE = 5, 0.02
@@ -97,7 +100,9 @@ def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any
     """The motion from the moment of a hit, or of losing the floor, to standing. start: the body at that moment."""
     velocity = start.velocity if hit is None else hit.after(start.velocity)
     time, land, place = _down(physique, start.centre, velocity, around, gravity)
-    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre)
+    prior, falls = Prior.load(), max(-float(velocity[1] + gravity[1] * time), 0.0)
+    features = prior.features(falls, 0.0, 0.0, physique.size, False)
+    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre, keys=prior.keys(features, features))
     return _Fall(physique, start, way, landing_feet(place, start.heading, physique.tables)).plan()
 
 
@@ -127,7 +132,9 @@ class _Fall(Airborne):
     """One fall in the making."""
 
     def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray):
-        super().__init__(physique, start, way, landing, 0.0, [0.0], carriage.falling(self.absorbing(physique, way, landing)))
+        touch = way.keys[3 * BETWEEN, :LEGS]
+        share = min(way.airtime / GATHERS, 1.0)
+        super().__init__(physique, start, way, landing, 0.0, [0.0, way.airtime], np.stack([carriage.FALL, carriage.FALL + share * (touch - carriage.FALL)]))
 
     def plan(self) -> Plan:
         """Everything, in order."""
@@ -143,7 +150,7 @@ class _Fall(Airborne):
             np.concatenate([self.air, landed[1]]), np.concatenate([self.arc, landed[2]]),
             np.concatenate([way.velocity + self.gravity * flying[:, None], landed[3]]),
             self.physique.mass * np.concatenate([np.zeros((len(flying), 3)), landed[4] - self.gravity]),
-            contacts, 0.0, 0.0, self.down, self.down + LOWEST, self.down + through, self.landing, self.momentum.copy(), way)
+            contacts, 0.0, 0.0, self.down, self.down + self.lowest, self.down + through, self.landing, self.momentum.copy(), way)
 
     def _turn_upright(self) -> None:
         """Fly with the angular momentum that lands the body upright: arms and hands get it from what they hit."""

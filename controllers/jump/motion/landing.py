@@ -1,4 +1,4 @@
-"""The landing: legs give like a critically damped spring until the body stands again.
+"""The landing: legs give like a critically damped spring whose force begins at nothing, until the body stands again.
 
 Feet first (Ha 2012 without the roll): toes, then heels, knees absorbing. Along the floor the body
 comes to rest over its feet if it can; the margin says whether it could.
@@ -16,11 +16,18 @@ HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
 GRIP = 0.8
 """The friction of soles that a body which passes over its feet counts on."""
-SLOWEST = 5.0
+SINKS = 0.045, 0.0765, 0.42
+"""How deep [m] legs give to a body that hardly falls, how much deeper for each m/s that it falls, and at most: as recorded, at standard
+height."""
+SLOWEST = 4.0
 """Rate of the spring with which a body that hardly fell stands up [1/s]."""
-LEAST_WEIGHT = 0.1
-"""However fast a body stands up, so much of its weight stays on its feet: the floor can't pull."""
-DEEPEST, STIFFEST = 0.41, 13.0
+LIGHT = 0.0
+"""However fast a body stands up, so much of its weight stays on its feet at least: the floor can't pull."""
+ADULT = 0.975
+"""How high the centre of mass of a standard body stands [m]."""
+TIMES = np.linspace(0.0, 1.2, 121)
+"""When a landing is looked at [s]."""
+DEEPEST, STIFFEST = 0.45, 20.0
 """How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
@@ -31,11 +38,12 @@ OVER = 0.04
 @dataclass(frozen=True, eq=False)
 class Landing:
     """The centre of mass after touch-down: rates (3,) [1/s] of the springs, `offset` (3,) [m] from where it
-    comes to rest, `velocity` (3,) [m/s] with which it landed, `goal` (3,) [m]. passes: it can't stop here."""
+    comes to rest, `velocity` (3,) [m/s] and `falls` (3,) [m/s²] with which it landed, `goal` (3,) [m]. passes: it can't stop here."""
 
     rates: np.ndarray
     offset: np.ndarray
     velocity: np.ndarray
+    falls: np.ndarray
     goal: np.ndarray
     passes: bool = False
 
@@ -50,12 +58,11 @@ class Landing:
 
     def motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Place, velocity, acceleration (N, 3) at times (N,) [s] after touch-down."""
-        t = np.asarray(time, float)[:, None]
-        pull = self.velocity + self.offset * self.rates
-        fade = np.exp(-self.rates * t)
-        return (self.goal + fade * (self.offset + pull * t),
-                fade * (self.velocity - pull * self.rates * t),
-                fade * (-2.0 * self.rates * pull + self.rates**2 * (self.offset + pull * t)))
+        t, r = np.asarray(time, float)[:, None], self.rates
+        a, b = self.velocity + r * self.offset, 0.5 * (self.falls + 2.0 * r * self.velocity + r**2 * self.offset)
+        fade, way = np.exp(-r * t), self.offset + a * t + b * t**2
+        rate, bend = a + 2.0 * b * t, 2.0 * b
+        return self.goal + fade * way, fade * (rate - r * way), fade * (bend - 2.0 * r * rate + r**2 * way)
 
 
 def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float) -> Landing:
@@ -63,7 +70,7 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
 
     support: (C, 3) corners of the soles. It comes to rest if its capture point, x + v √(h/g), lies over
     them; else it passes over them and must step on (Ha 2012 rolls on; feet do it here). It sinks the
-    deeper the faster it fell: a critically damped spring met with speed v sinks v / (e·rate).
+    deeper the faster it fell; the springs have three equal rates, so that the ground's force begins with none.
     """
     fall = max(-velocity[1], 0.0)
     flat = velocity * [1.0, 0.0, 1.0]
@@ -75,23 +82,18 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         passes = bool(capture > ((support - goal) @ ahead).max())
     # soles don't slip: a spring of rate r brakes with 2 r v at first
     rate = min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
-    sink = max(fall / (np.e * (0.08 + 0.07 * fall)), SLOWEST)
-    while sink < STIFFEST and _lowest(land[1] - goal[1], velocity[1], sink) < -DEEPEST * (goal[1] - support[0, 1]):
-        sink *= 1.1
-    while sink > 1.0 and _lightest(land[1] - goal[1], velocity[1], sink) < (LEAST_WEIGHT - 1.0) * gravity:
+    size, g = goal[1] - support[0, 1], np.array([gravity])
+    start, speed, deep = land[1] - goal[1], float(velocity[1]), min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * size / ADULT
+
+    def course(stiff: float) -> tuple[float, float]:
+        """The lowest place [m] and the least acceleration [m/s²]."""
+        up = np.array([0.0, 1.0, 0.0])
+        place, _, bends = Landing(np.full(3, stiff), start * up, speed * up, -g * up, 0.0 * up).motion(TIMES)
+        return float(place[:, 1].min()), float(bends[1:, 1].min())
+    low, high = SLOWEST, STIFFEST
+    for _ in range(10):
+        sink = 0.5 * (low + high)
+        low, high = (sink, high) if course(sink)[0] < max(start - deep, -DEEPEST * size) else (low, sink)
+    while sink > 1.0 and course(sink)[1] < LIGHT * gravity - gravity:
         sink *= 0.93
-    return Landing(np.array([rate, sink, rate]), land - goal, velocity, goal, passes)
-
-
-def _lowest(offset: float, velocity: float, rate: float) -> float:
-    """The lowest that the critically damped spring comes, from an offset [m] and a velocity [m/s]."""
-    pull = velocity + offset * rate
-    time = max(velocity / (rate * pull), 0.0) if pull < 0.0 else 0.0
-    return float(np.exp(-rate * time) * (offset + pull * time))
-
-
-def _lightest(offset: float, velocity: float, rate: float) -> float:
-    """The most [m/s²] that the same spring accelerates it downward, below 0."""
-    pull = velocity + offset * rate
-    time = max((3.0 * pull - offset * rate) / (rate * pull), 0.0) if pull else 0.0
-    return float(np.exp(-rate * time) * (-2.0 * rate * pull + rate**2 * (offset + pull * time)))
+    return Landing(np.array([rate, sink, rate]), land - goal, velocity, np.array([0.0, -gravity, 0.0]), goal, passes)

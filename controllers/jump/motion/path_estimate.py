@@ -4,23 +4,31 @@ wind-up over take-off to landing, and what stops a body from going there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..body import FLAT, TRAIL, Physique, Start, apex_airtime, folding, least_effort, measures, soles, take_off_velocity
+from ...body import yaw
+from ..body import (FLAT, TRAIL, Physique, Start, apex_airtime, carriage, carried, least_effort, measures, soles,
+                    take_off_velocity)
+from ..prior import BETWEEN, EACH, LEGS, Prior
 from .take_off import Running, Standing
 from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = (0.035, 2.5, 0.10)
+SOFT = (0.02, 2.5, 0.05)
 """How much lower [m] a body touches down for each m/s that it falls faster than the second [m/s], and at most:
 bent legs give way without the knees flying. At standard height and what an adult falls."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 FOLDED = 0.64
 """How low a body touches down at most, as a share of how high it stands."""
+TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
+"""How far hips and knees are bent [rad] of legs that are drawn up over something, by which share of the way at each row of the flight, and
+how long a flight needs for all of it [s]."""
+LEAST_PUSH = 0.01
+"""A push that rises less [m], at standard height, is none."""
 ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
 """Where a body leaves and how fast follow from each other: they are found in so many rounds at most, to so much [m], by such
 a share at least of what the last round found."""
@@ -29,11 +37,11 @@ a share at least of what the last round found."""
 @dataclass(frozen=True, eq=False)
 class Path:
     """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at the lowest point
-    and at take-off, the flight's and the wind-up's time [s], the push between, None for a fall.
+    and at take-off, the flight's and the wind-up's time [s], the push between, None for a fall and where nothing pushes so.
 
     stance: (3,) [m] the middle of the soles that push. dip: how long before the lowest point it starts to go down [s]. strong:
     whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
-    foot. lean, fold: [rad] forward, more than straight up, at take-off and at touch-down. low_arms: the arms stay down.
+    foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down.
     """
 
     low: np.ndarray
@@ -52,9 +60,8 @@ class Path:
     up: float = 0.0
     heading: float = 0.0
     running: bool = False
-    lean: float = 0.0
-    fold: float = 0.0
     low_arms: bool = False
+    keys: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def falling(self) -> np.ndarray:
@@ -63,37 +70,46 @@ class Path:
 
 
 def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray, floor: float,
-         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False) -> Path:
+         gravity: np.ndarray, airtime: float | None = None, low_arms: bool = False, prior: Prior | None = None, tucked: bool = False) -> Path:
     """The path from the planted `feet` (F, 5) on a `floor` [m] to the `landing` feet (2, 5).
 
-    airtime: [s], or None for the least effort. low_arms: with the arms down. The crouch is as deep as the muscles need it (`windup`).
+    airtime: [s], or None for the least effort. low_arms: with the arms down. tucked: with the legs drawn up. prior: how people carry
+    themselves, the shipped one by default. The crouch is as deep as the muscles need it (`windup`).
     """
-    body, heights = physique.tables, measures(physique, low_arms)
-    size, g = body.size, -float(gravity[1])
+    body, upright = physique.tables, measures(physique)
+    size, g, prior = body.size, -float(gravity[1]), prior or Prior.load()
     ground = soles(feet, body)
     middle, goal = ground.mean(0), soles(landing, body).mean(0)
     flat = (goal - middle) * FLAT
     far = float(np.linalg.norm(flat))
     towards = flat / far if far > 1e-6 else np.zeros(3)
+    facing = yaw(start.heading)[:, 2]
+    ahead, pace = float(flat @ facing), float(start.velocity @ facing)
     balls = feet[:, :3].mean(0)
-    if start.single is None:
-        reach = 0.5 * float(body.tip[2] - body.heel[2] + body.toe[2]) - 0.015 * size
-        pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity)
-    else:
-        pushing = Running(physique, start, heights, balls, floor, gravity)
+    reach = 0.5 * float(body.tip[2] - body.heel[2] + body.toe[2]) - 0.015 * size
     # who jumps up lands with folded legs, and need not bring the body as high
     squat = min(SQUAT * max(float(goal[1]) - floor, 0.0), DEEPEST_SQUAT * size)
     # where it leaves, how far behind its feet and how much lower it lands
-    guess = np.array([middle[0], floor + heights.leave(0.0), middle[2], 0.0, 0.0])
+    guess = np.array([middle[0], floor + upright.leave(0.0), middle[2], 0.0, 0.0])
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
+    heights, crouch = upright, 0.0
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
         height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
-            least_effort(leave, land, pushing.before, gravity), LEAST_AIRTIME * np.sqrt(9.81 / g * size),
-            apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
+            least_effort(leave, land, start.velocity * FLAT if start.single is not None else np.zeros(3), gravity),
+            LEAST_AIRTIME * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
         velocity = take_off_velocity(leave, land, flight, gravity)
+        features = [prior.features(speed, ahead, pace, size, start.single is not None)
+                    for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
+        angles = [_low(prior.row(number * BETWEEN, some, start.single), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
+        heights = upright.of(*(carried(physique, some) for some in angles))
+        if start.single is None:
+            crouch = size * prior.crouch(features[0])
+            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet, angles[0], crouch)
+        else:
+            pushing = Running(physique, start, heights, balls, floor, gravity)
         found = pushing.take_off(leave, land, velocity, flight)
         before, lacks = lacks, np.array([
             *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
@@ -104,11 +120,32 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             change = lacks - before
             relaxed = min(max(-relaxed * (before @ change) / max(change @ change, 1e-12), LEAST_STEP), 1.0)
         guess = guess + relaxed * lacks
-    low, leave, passing, wind_up, dip, lean, strong = found
+    low, leave, passing, wind_up, dip, strong = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
+    rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
-                push(leave - low, passing, velocity, gravity), middle, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, lean, folding(trail, size), low_arms)
+                push(leave - low, passing, velocity, gravity) if rises else None, middle, dip, strong, far, float(goal[1]) - floor,
+                start.heading, start.single is not None, low_arms, _tuck(_low(prior.keys(*features, start.single), low_arms), flight, tucked))
+
+
+def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:
+    """The same keys (..., COLUMNS), or with arms that stay down."""
+    if low_arms:
+        keys = keys.copy()
+        keys[..., 3:LEGS] = carriage.LOW_ARMS
+    return keys
+
+
+def _tuck(keys: np.ndarray, flight: float, tucked: bool) -> np.ndarray:
+    """The same keys (ROWS, COLUMNS), or with legs that are drawn up in the air as far as there is time [s]."""
+    if tucked:
+        keys = keys.copy()
+        share = TUCKS * min(flight / TUCK_TIME, 1.0)
+        rows = slice(2 * BETWEEN + 1, 3 * BETWEEN)
+        for hip in (LEGS, LEGS + EACH):
+            keys[rows, hip] += share * np.minimum(TUCK[0] - keys[rows, hip], 0.0)
+            keys[rows, hip + 1] += share * np.maximum(TUCK[1] - keys[rows, hip + 1], 0.0)
+    return keys
 
 
 def softened(fall: float, size: float) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...body import yaw
 from ...compiled import kernel
-from ..body import FLAT, Measures, Physique, Start, leaning, over
+from ..body import FLAT, HEEL_UP, TAKE_OFF_REACH, Measures, Physique, Start, over, stretched
 from ..muscles import crouch_depth, strength
 from .thrust import MOMENTS, risen, upward
 
@@ -46,6 +46,8 @@ STRIKE = -0.5
 """How a runner's centre of mass is accelerated as the foot has struck, over gravity: half its weight is carried."""
 LEAST_CROUCH = 0.07
 """A body crouches at least so deep [m], at standard height."""
+LEAST_RISE = 0.05
+"""From its lowest point it rises at least so far [m], at standard height."""
 MOST = 2.0
 """A wind-up that would need more foot than there is takes longer: at most so many times as long, on Earth."""
 SOONER, TIMES = 0.85, 5
@@ -54,22 +56,22 @@ SOONER, TIMES = 0.85, 5
 
 class TakeOff(NamedTuple):
     """Lowest point and take-off of the centre of mass (3,) [m], its velocity (3,) [m/s] at the lowest point, the time until
-    there [s] and how much of that it goes down, how far the body leans forward as it leaves [rad], and whether the muscles
-    are strong enough."""
+    there [s] and how much of that it goes down, and whether the muscles are strong enough."""
 
     low: np.ndarray
     leave: np.ndarray
     passing: np.ndarray
     wind_up: float
     dip: float
-    lean: float
     strong: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Standing:
     """A body that pushes off both feet: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
-    the soles can press [m]. floor [m], gravity (3,) [m/s²]."""
+    the soles can press [m]. floor [m], gravity (3,) [m/s²]. crouch: how deep [m] people go down for it, whatever the muscles
+    need. feet: (2, 5) that push. angles: (11,) as they leave the floor, see `carriage`.
+    """
 
     physique: Physique
     start: Start
@@ -79,8 +81,9 @@ class Standing:
     reach: float
     floor: float
     gravity: np.ndarray
-
-    before = np.zeros(3)
+    feet: np.ndarray
+    angles: np.ndarray
+    crouch: float = 0.0
 
     @cached_property
     def facing(self) -> np.ndarray:
@@ -98,7 +101,8 @@ class Standing:
         rise = leave[1] - self.floor - self.heights.stand
         deep = crouch_depth(self.physique, velocity, rise, self.gravity)
         strong = deep == deep  # not a number where the muscles can't
-        deep = max(deep, LEAST_CROUCH * size) if strong else float(strength(self.physique).depth[-1])
+        able = float(strength(self.physique).depth[-1])
+        deep = max(deep, min(self.crouch, able), LEAST_CROUCH * size, LEAST_RISE * size - rise) if strong else able
         duration, level = upward(max(deep + rise, 0.02 * size), 0.0, float(velocity[1]), g)
         low_height, start = self.heights.stand - deep, self.start
         facing = self.facing
@@ -117,14 +121,14 @@ class Standing:
         low, ahead, passing, _ = found
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
-        forward, aside = float(lead @ facing), abs(float(lead[2] * facing[0] - lead[0] * facing[2]))
-        height = self.heights.leave(forward, aside)
-        leave = self.balls * FLAT + lead + [0.0, self.floor + height, 0.0]
+        ahead = self.balls * FLAT + lead + [0.0, leave[1], 0.0]
+        ahead[1] = stretched(self.physique, self.angles, self.feet, HEEL_UP, TAKE_OFF_REACH, start.heading, ahead)
+        leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf
         if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
             dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
-        return TakeOff(low, leave, passing, wind_up, dip, leaning(forward, height), strong)
+        return TakeOff(low, leave, passing, wind_up, dip, strong)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,11 +142,6 @@ class Running:
     floor: float
     gravity: np.ndarray
 
-    @property
-    def before(self) -> np.ndarray:
-        """The velocity (3,) [m/s] that it has."""
-        return self.start.velocity * FLAT
-
     def take_off(self, leave: np.ndarray, land: np.ndarray, velocity: np.ndarray, flight: float) -> TakeOff:
         """The take-off from about `leave` (3,) [m] with about a velocity (3,) [m/s], to be at `land` (3,) after `flight` [s].
 
@@ -150,7 +149,7 @@ class Running:
         at first as ahead of it at last, or farther ahead if it is to become faster.
         """
         start, g, most = self.start, -float(self.gravity[1]), float(self.heights.leads[-1])
-        passing = self.before
+        passing = start.velocity * FLAT
         mean = 0.5 * (passing + velocity * FLAT)
         along = mean / max(float(np.linalg.norm(mean)), 1e-6)
         behind = float((start.centre - self.ball) @ along)
@@ -186,7 +185,7 @@ class Running:
         leave = low + mean * (contact - yielding)
         leave[1] = self._top(contact * speed + behind) + min(above(yielding, contact), SLACK * self.physique.size)
         low[1] = leave[1] - rise
-        return TakeOff(low, leave, passing, yielding, math.inf, 0.5 * leaning(lead, leave[1] - self.floor), True)
+        return TakeOff(low, leave, passing, yielding, math.inf, True)
 
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""

@@ -24,7 +24,7 @@ LEAST = 0.06
 DELAYS = np.array([0.0, 0.08, 0.16])
 """By when hip, knee and ankle push with all they have [s]: from the centre of mass outward, half of it 40 ms apart."""
 DELAYS.setflags(write=False)
-FORWARD = 0.4
+FORWARD = 0.25
 """Which share of a forward speed's energy the springs have to hold. People leave the ground faster in a standing long
 jump than straight up: 3 to 4 m/s at 35 to 45 degrees against 2.5 to 2.9. The rest comes from arms that are
 thrown forward and from falling ahead of the feet, which a chain balanced over them has not."""
