@@ -46,7 +46,7 @@ def forecast(controller: Controller, state: CharacterState, intent: Intent, seco
     points = contact_points(controller.skeleton, positions, orientations)
     points = points.reshape(points.shape[:-2] + (2, 2, 3))  # foot, then heel and ball
     stands = np.stack([s.contacts for s in states], -2)
-    stands = stands.reshape(stands.shape[:-1] + (2, 2)).any(-1)
+    stands = np.asarray(stands.reshape(stands.shape[:-1] + (2, 2)).any(-1))
     comes = stands[..., 1:, :] & ~stands[..., :-1, :]
     first = np.where(comes.any(-2), comes.argmax(-2) + 1, count)  # (..., 2), the step at which a foot comes down
     leaves = ~stands & (np.arange(count)[:, None] > first[..., None, :])

@@ -174,7 +174,7 @@ class _Draft(Airborne):
             change, before = gain @ step, miss
             bound = MOST_GAIN * float(np.linalg.norm(spun @ step)) / time
             change *= min(1.0, bound / max(float(np.linalg.norm(change)), 1e-12))
-            self.momentum += change
+            self.momentum[:] += change
         spin = np.linalg.solve(spun, self.momentum - still)
         self._leave(spin)
         # the legs reach for where this very body comes down, which changes a little how it turns

@@ -199,7 +199,7 @@ class Reconstruction(Controller):
         motion = (body - self.controls.on(*earlier)) / self.dt
         gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
         if self.starts is not None and gate.at_odds(self.dt) and spread(points) <= APART:
-            return self._anew(following, points, gate.smooth)
+            return self._anew(following, points, self.starts.find(points, gate.smooth))
         memory, pose = self.method.step(following.memory, goals)
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
@@ -213,9 +213,9 @@ class Reconstruction(Controller):
         ahead = moved(following.pose, step)
         return replace(after, before=moved(pose, -step), offset=difference(moved(ahead, following.offset), pose))
 
-    def _anew(self, following: Following, points: np.ndarray, velocities: np.ndarray) -> Following:
-        """Begun anew from points that are at odds with the body. It comes there smoothly, unless nobody could."""
-        begun = self._frame(self._begun(*self.starts.find(points, velocities), points, self.dt), points)
+    def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray]) -> Following:
+        """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
+        begun = self._frame(self._begun(*past, points, self.dt), points)
         ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
         offset = np.zeros_like(following.offset) if far else difference(ahead, begun.pose)

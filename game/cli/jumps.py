@@ -19,13 +19,13 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of motion captur
           out: Annotated[Path, typer.Option("-o", "--out", help="The file to write.")] = Path("jumps.npz")) -> None:
     """Fit the prior of jumps to the recorded ones of a folder."""
     from gambol.controllers.jump import Physique
-    from gambol.controllers.jump.prior import fit, recorded, save
+    from gambol.controllers.jump.prior import fit, recorded_jumps, save
 
     from ..files import named, output_file
 
     output_file(out, ".npz")
     body = Physique()
-    found, notes = recorded(folder, body.skeleton, body.anatomy)
+    found, notes = recorded_jumps(folder, body.skeleton, body.anatomy)
     try:
         prior = fit(found)
     except ValueError as error:

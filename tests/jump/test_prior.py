@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.jump import Physique
 from gambol.controllers.jump.body import carriage
-from gambol.controllers.jump.prior import LEGS, ROWS, Prior, carried, fit, recorded
+from gambol.controllers.jump.prior import LEGS, ROWS, Prior, carried, fit, recorded_jumps
 from gambol.controllers.jump.prior.build import regressed
 from gambol.controllers.jump.prior.coefficients import COLUMNS, mirrored
 from gambol.controllers.jump.prior.recorded import aligned
@@ -63,7 +63,7 @@ def test_lines_through_keys_and_slopes_over_features_are_found_again():
 def test_takes_left_out_are_near_what_the_others_say(shared):
     """The rows of the flight, of takes by three people: knees, hips, trunk."""
     body = Physique()
-    found, notes = recorded(shared / "mocap", body.skeleton, body.anatomy,
+    found, notes = recorded_jumps(shared / "mocap", body.skeleton, body.anatomy,
                             ("cmu/16/16_02.amc", "cmu/16/16_05.amc", "cmu/127/127_27.amc", "woody2/wd2_Physics_Jump00.bvh", "cmu/49/49_03.amc"))
     assert not notes and len(found) > 12
     air = slice(ROWS // 5 * 2, ROWS // 5 * 3 + 1)
@@ -82,5 +82,5 @@ def test_a_prior_takes_jumps_of_both_kinds(tmp_path):
     with pytest.raises(ValueError, match="off both feet and off one, got 0 and 0"):
         fit([])
     body = Physique()
-    found, notes = recorded(tmp_path, body.skeleton, body.anatomy, ("none.bvh",))
+    found, notes = recorded_jumps(tmp_path, body.skeleton, body.anatomy, ("none.bvh",))
     assert not found and "none.bvh" in notes[0]

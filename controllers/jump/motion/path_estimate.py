@@ -125,7 +125,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity) if rises else None, middle, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, _tuck(_low(prior.keys(*features, start.single), low_arms), flight, tucked))
+                start.heading, start.single is not None, low_arms, _tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked))
 
 
 def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:

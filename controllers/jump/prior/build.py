@@ -26,7 +26,7 @@ RIDGE = 1.0
 """How much slopes are held back: as much as one take that shows nothing."""
 
 
-def recorded(folder: str | PathLike[str], skeleton: Skeleton, anatomy: Anatomy, takes: Sequence[str] = TAKES) -> tuple[list[Recorded], list[str]]:
+def recorded_jumps(folder: str | PathLike[str], skeleton: Skeleton, anatomy: Anatomy, takes: Sequence[str] = TAKES) -> tuple[list[Recorded], list[str]]:
     """The jumps of takes in a folder, and what is to be said of takes that could not be read."""
     found, notes = [], []
     for take in takes:
