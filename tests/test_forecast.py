@@ -5,7 +5,7 @@ import pytest
 
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent
-from gambol.controllers.forecast import forecast
+from gambol.controllers.person import forecast
 from gambol.controllers.locomotion import Locomotion
 
 

@@ -106,7 +106,6 @@ PLAN = {
         "reconstruction": "body contract driven",
         "driven": "body contract",
         "supervisor": "body contract navigation",
-        "forecast": "body contract",
         "jump.muscles": "compiled jump.body",
         "jump.prior": "files body jump.body mocap",
         "jump": "body contract navigation",

@@ -1,8 +1,11 @@
-"""A person: everything that one body can do, under one supervisor; and `preparing`, which compiles what that takes."""
+"""A person: everything that one body can do, under one supervisor; and `preparing`, which compiles what that takes; and what it will do in
+the next second.
+"""
 
 from . import preparing
+from .forecast import Forecast, forecast
 from .person import built, person, rehearse
 
 __all__ = [
-    "built", "person", "preparing", "rehearse",
+    "Forecast", "built", "forecast", "person", "preparing", "rehearse",
 ]

@@ -9,7 +9,7 @@ import numpy as np
 
 from gambol.controllers.body import CONTACT_HEIGHT, contact_height
 from gambol.controllers.contract import Intent
-from gambol.controllers.forecast import forecast
+from gambol.controllers.person import forecast
 
 from ..scene import Figure, Overlays, Patch
 from ..world import Character, World

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .body import contact_points, forward_kinematics
-from .contract import CharacterState, Controller, Intent
+from ..body import contact_points, forward_kinematics
+from ..contract import CharacterState, Controller, Intent
 
 STEP = 1 / 60
 """Seconds a step of a forecast. Steps as long as those that are then made foretell them to rounding; of twice the length they
