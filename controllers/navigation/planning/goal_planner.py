@@ -145,7 +145,8 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
     first, times, aims, whose = [], [], [], []
     for number, routes in tasks:
         for way in routes:
-            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table)
+            moving = np.append(in_world(grounds[number], velocities[number]), velocities[number, 1])
+            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table, moving)
             first.append(guess)
             times.append(seconds)
             aims.append(np.broadcast_to(faced(way, table), (len(guess), len(table.shares), 2)))

@@ -14,6 +14,9 @@ BOTH_WAYS = 0.5 * np.pi
 """Turns larger than this [rad] are tried the other way round, too."""
 AHEAD = 1.2
 """Where the goal can't be walked to straight, the walker faces the way so far ahead [m]."""
+MOVES = 0.2
+"""Who is faster than this [m/s, half as much in rad/s] is moving."""
+STANDING = np.zeros(3)
 NEAR = 2.5
 """Ways shorter than this [m] are tried without turning to them: to the side, or backward."""
 
@@ -39,10 +42,12 @@ def faced(way: np.ndarray, basis: Basis) -> np.ndarray:
     return np.stack([np.interp(there, along, way[:, i]) for i in range(2)], -1)
 
 
-def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: float, basis: Basis) -> tuple[np.ndarray, np.ndarray]:
+def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: float, basis: Basis,
+            moving: np.ndarray = STANDING) -> tuple[np.ndarray, np.ndarray]:
     """First splines (S, M + 3, 3) and times (S,) [s] along a way (n, 2) [m], from one heading to another [rad].
 
-    top: the fastest that is gone ahead [m/s].
+    top: the fastest that is gone ahead [m/s]. moving: (3,) ẋ, ż, ω in the world at the start [m/s, rad/s]: who moves may also go on
+    so at first.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
     length = along[-1]
@@ -70,4 +75,8 @@ def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: f
     guess = np.empty((len(made), len(basis.peaks), 3))
     guess[..., :2] = place
     guess[..., 2] = made
+    if direct and np.hypot(*moving[:2]) + 0.5 * abs(moving[2]) > MOVES:
+        going = basis.peaks * (1.0 - basis.peaks) ** 2 * seconds[:, None]  # a cubic with that velocity at first, and none in the end
+        guess = np.concatenate([guess, guess + going[..., None] * moving])
+        seconds = np.tile(seconds, 2)
     return guess, seconds

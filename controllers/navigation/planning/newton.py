@@ -18,6 +18,9 @@ from .walking_cost import stage
 
 BAND = 12
 """Coefficients four apart, three numbers each, share no interval."""
+HOPE = 5.0
+"""A search that is to gain less than so many times what its next step promises is given up for a better one; on a pass
+between two ways a step promises little."""
 LEASH = 0.3
 """Among things that stand about a way moves by so much in a step, at most [m]."""
 
@@ -183,7 +186,7 @@ def minimise(coefficients, seconds, start, speed, goal, aims, alpha, values, wei
             promised -= gradient[i] * step[i]
         if 0.5 * promised < tolerance * (cost + penalty) and damping < 1e-2:
             return seconds, cost, cost + penalty, fast, near, count, True
-        if cost + penalty - promised > best and damping < 1e-2:
+        if cost + penalty - HOPE * promised > best and damping < 1e-2:
             return seconds, cost, cost + penalty, fast, near, count, False
         share = min(1.0, 0.5 * seconds / abs(step[n])) if step[n] != 0.0 else 1.0
         if shapes.shape[0]:  # lest the way jumps to another side of something
