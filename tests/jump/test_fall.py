@@ -13,7 +13,7 @@ from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump.motion.fall import Hit, struck
 from gambol.controllers.navigation import gap
 from gambol.controllers.supervisor import Supervisor
-from gambol.game.scene.scene import Box
+from gambol.game.scene.scene import Box, Goal
 
 FPS = 60
 HIGH = Box((0.0, 1.5, -1.0), (3.0, 3.0, 2.4))
@@ -151,3 +151,17 @@ def test_who_walks_over_an_edge_falls_and_walks_on(jump, locomotion, high, speed
     assert len(fell) > 4 and np.abs(np.diff(fell, 2, axis=0)[1:, 1] * FPS**2 + 9.81).max() < 2.0
     assert why == {"there was nothing to step on"}
     assert state.memory.active == "locomotion" and float(state.floor) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_goal_is_in_nobodys_way_down(jump, locomotion):
+    """It has no surface to be pushed out of: whoever falls beside one falls as without."""
+    someone = Supervisor({"locomotion": locomotion, "jump": jump})
+    top = Box((0.0, 0.3, 0.0), (2.0, 0.6, 2.0))
+    ends = []
+    for around in ((top,), (top, Goal((0.0, 0.0, 3.0)))):
+        state = someone.start((0.0, 0.5, 0.0), 0.6)
+        for _ in range(150):
+            state, _ = someone.step(state, Intent(np.array([1.3, 0.0, 0.0]), around=around), 1 / 60)
+        ends.append(state)
+    assert float(ends[0].floor) == 0.0 and np.isfinite(ends[1].pose.root).all()
+    assert np.allclose(ends[0].pose.root, ends[1].pose.root)

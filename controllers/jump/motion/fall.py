@@ -121,7 +121,8 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: 
         for thing in around:
             for height, aside in ASIDE:
                 near = gap(foot := np.array([[place[0], floor + height * size, place[2]]]), thing)[0]
-                place = place + max(aside * size - near, 0.0) * _out(foot[0], thing) * FLAT
+                if near < aside * size:  # a goal is infinitely far, and has no way out
+                    place = place + (aside * size - near) * _out(foot[0], thing) * FLAT
         floor = floor_at(place[0], place[2], around, centre[1] - LOW * touch)
         soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), size)
         time = max(until(floor + touch - soft), min(LEAST, until(floor + LOW * touch)), 0.03)

@@ -12,7 +12,6 @@ import numpy as np
 
 from ...body import Anatomy, Skeleton
 from ...files import whole
-from ...mocap import calibrate, load, retarget
 from .coefficients import FEATURES, Prior, mirrored
 from .recorded import Recorded, jumps
 
@@ -28,6 +27,8 @@ RIDGE = 1.0
 
 def recorded_jumps(folder: str | PathLike[str], skeleton: Skeleton, anatomy: Anatomy, takes: Sequence[str] = TAKES) -> tuple[list[Recorded], list[str]]:
     """The jumps of takes in a folder, and what is to be said of takes that could not be read."""
+    from ...mocap import calibrate, load, retarget  # here: who jumps reads no files
+
     found, notes = [], []
     for take in takes:
         try:
