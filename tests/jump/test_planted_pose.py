@@ -21,7 +21,7 @@ def stood(physique, down, ahead, lean, swing, flex=1.0):
     feet = np.column_stack([landing_feet(np.zeros(3), 0.0, body), np.ones(2)])
     centre = np.array([0.0, measures(physique).stand - down * physique.height / 1.741, ahead])
     local = np.tile(np.eye(3), (len(skeleton), 1, 1))
-    style.carry_kernel(np.array([lean, 0.3, 0.0, swing, 0.2, 0.3]), style.joints_of(skeleton), local)
+    style.carry_kernel(style.posture(*np.degrees([lean, 0.3, 0.0, swing, 0.2, 0.3])), style.joints_of(skeleton), local)
     local[0] = [[1, 0, 0], [0, np.cos(lean), -np.sin(lean)], [0, np.sin(lean), np.cos(lean)]]
     root = centre.copy()
     left = stand_kernel(body, centre, feet, flex * FLEX, root, local, np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3)))
