@@ -52,11 +52,11 @@ PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
 RISE_RATE = 8.0
 """A heel rises for its leg's sake no faster than this [rad/s] …"""
+RISE_HALFLIFE = 0.12
+"""… and sinks back with this half-life once its ball is free [s]."""
 LENDING = 0.7
 """A heel that is free to rise takes this share of what its leg lacks, so that the knee bends nearly as the blend's; in a
 body's first stride, whose push is weak yet, it does not."""
-RISE_HALFLIFE = 0.12
-"""… and sinks back with this half-life once its ball is free [s]."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 YIELDING = 0.25
