@@ -24,8 +24,6 @@ for name, same in (("gambol", True), ("seek", False)):  # a busy machine breaks 
     settings.register_profile(name, derandomize=same, database=None, deadline=None, print_blob=True,
                               suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 settings.load_profile("gambol")
-for library in ("OPENBLAS", "OMP"):
-    os.environ.setdefault(f"{library}_NUM_THREADS", "1")  # threads cost small matrices far more than they save
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"

@@ -2,14 +2,15 @@
 
 import os
 import shutil
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
 
 from gambol.controllers import compiled
+
+import fresh_process
+from fresh_process import Fresh
 
 SOURCE = Path(compiled.__file__)
 
@@ -27,6 +28,11 @@ def package(tmp_path):
     return home
 
 
+@pytest.fixture(scope="module", autouse=True)
+def server():
+    fresh_process.ready()
+
+
 @pytest.fixture(autouse=True)
 def kept(tmp_path, monkeypatch):
     """A folder of the tests' own for what is compiled."""
@@ -39,16 +45,13 @@ CALLED = "print(outer(1.0), sum(outer.stats.cache_hits.values()))"
 
 def begun(package, code=CALLED):
     """A new process that has the package and runs some code."""
-    return subprocess.Popen([sys.executable, "-c", f"from pack.outer import outer\nimport pack.compiled as c\n{code}"],
-                            cwd=package.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return Fresh(f"from pack.outer import outer\nimport pack.compiled as c\n{code}", package.parent,
+                 GAMBOL_CACHE=os.environ["GAMBOL_CACHE"])
 
 
 def call(package, code=CALLED):
     """What some code prints in a new process that has the package."""
-    program = begun(package, code)
-    said, fault = program.communicate()
-    assert program.returncode == 0, fault
-    return said.split()
+    return begun(package, code).said().split()
 
 
 def folders(kept):
@@ -112,9 +115,7 @@ def test_what_is_damaged_is_compiled_anew(package, kept, damage):
 
 def test_several_programs_may_compile_the_same_at_once(package, kept):
     programs = [begun(package) for _ in range(4)]
-    for program in programs:
-        said, fault = program.communicate()
-        assert program.returncode == 0 and said.startswith("20.0"), fault
+    assert all(program.said().startswith("20.0") for program in programs)
     assert len(list(folders(kept)[0].iterdir())) == 2
     assert call(package) == ["20.0", "1"]
 
