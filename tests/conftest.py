@@ -14,6 +14,8 @@ from pathlib import Path
 # each that wait for each other cost small matrices forty times what they save
 for library in ("OPENBLAS", "MKL", "OMP"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+# nor may numba colour what it says as it compiles: colorama puts back the standard output of an earlier test
+os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
 
 import pytest  # noqa: E402
 from hypothesis import HealthCheck, is_hypothesis_test, settings  # noqa: E402

@@ -27,12 +27,14 @@ FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
-HIGHER = (1.12, 1.26, 1.42, 1.6)
+HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
 WAYS = (False, False), (False, True), (True, True)
 """With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
 BACK = 1.0, 0.85, 0.6
 """A place that is offered instead of another is planned, too: if something would be touched there, less far on the way."""
+TRIES = 3
+"""With so many plans at most: who was refused shall not wait for the reason."""
 CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
 """For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
 FLUSH = 0.03
@@ -132,20 +134,22 @@ class Jump(Controller):
         raise Refused(reason, self.nearest(start, place, floor, leap.airtime, intent.around), here)
 
     def _made(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
-              around: Sequence[Any]) -> tuple[Plan | None, str]:
+              around: Sequence[Any], tries: int | None = None) -> tuple[Plan | None, str]:
         """A plan that touches nothing, or None and why there is none. Where something is in the way of its limbs, they are drawn up, or
-        it jumps higher."""
+        it jumps higher. tries: so many plans at most."""
         why = self.footing(start, place, floor, around)
         if why:
             return None, why
-        told = ""
+        told, count = "", 0
         for way, why in self.arcs(start, place, floor, airtime, around):
             if not why:
-                made = plan(self.physique, start, way, place, floor)
-                why = wrong(self.physique, made) or touches(self.physique, made, around)
+                made, count = plan(self.physique, start, way, place, floor), count + 1
+                why = wrong(self.physique, made) or str(touches(self.physique, made, around) or "")
                 if not why:
                     return made, ""
             told = told or why
+            if count == tries:
+                break
         return None, told
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
@@ -189,7 +193,7 @@ class Jump(Controller):
         """The paths to a place, and why each can't be gone, if so: the usual one first; where something stands about then with the legs
         drawn up and the arms down and, without an airtime, higher."""
         first = None
-        for higher in (1.0, *HIGHER):
+        for higher in HEIGHTS:
             flight = airtime if first is None else first.airtime * higher
             for low, tucked in WAYS if len(around) else WAYS[:1]:
                 if first is not None and higher > 1.0 and not tucked:
@@ -228,7 +232,7 @@ class Jump(Controller):
         for share in BACK:
             there = begun + share * (found - begun)
             there[1] = found[1] if not len(around) else floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
-            if self._made(start, there, floor, airtime, around)[0] is not None:
+            if self._made(start, there, floor, airtime, around, TRIES)[0] is not None:
                 return there
         return None
 

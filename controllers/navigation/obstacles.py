@@ -6,11 +6,14 @@ the way; anything else stops nobody.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from ..compiled import kernel
 
 STEP = 0.21
 """No higher step is taken without a jump [m]."""
@@ -67,19 +70,36 @@ def is_pillar(thing: Any) -> TypeGuard[Pillar]:
 
 def gap(points: np.ndarray, thing: Any) -> np.ndarray:
     """How far points (N, 3) [m] are from a box or a pillar: 0 on its surface, negative inside."""
+    out = np.empty(len(points))
     if is_pillar(thing):
-        foot = np.asarray(thing.foot, float)
-        aside = np.hypot(points[:, 0] - foot[0], points[:, 2] - foot[2]) - thing.radius
-        along_y = np.abs(points[:, 1] - foot[1] - 0.5 * thing.height) - 0.5 * thing.height
-        outside = np.stack([aside, along_y], 1)
+        pillar_kernel(np.ascontiguousarray(points, float), np.asarray(thing.foot, float), float(thing.radius), float(thing.height), out)
     elif is_box(thing):
-        c, s = np.cos(thing.heading), np.sin(thing.heading)
-        local = (points - np.asarray(thing.centre)) @ np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-        local[:, 1] -= slope(thing) * local[:, 2]
-        outside = np.abs(local) - 0.5 * np.asarray(thing.size)
+        box_kernel(np.ascontiguousarray(points, float), np.asarray(thing.centre, float), np.asarray(thing.size, float),
+                   float(thing.heading), float(slope(thing)), out)
     else:  # a goal stops nobody
-        return np.full(len(points), np.inf)
-    return np.linalg.norm(np.maximum(outside, 0.0), axis=1) + np.minimum(outside.max(1), 0.0)
+        out[:] = np.inf
+    return out
+
+
+@kernel
+def pillar_kernel(points, foot, radius, height, out):
+    """Write how far points (N, 3) are from an upright cylinder, see `gap`."""
+    for n in range(len(points)):
+        aside = math.hypot(points[n, 0] - foot[0], points[n, 2] - foot[2]) - radius
+        along = abs(points[n, 1] - foot[1] - 0.5 * height) - 0.5 * height
+        out[n] = math.hypot(max(aside, 0.0), max(along, 0.0)) + min(max(aside, along), 0.0)
+
+
+@kernel
+def box_kernel(points, centre, size, heading, slope, out):
+    """Write how far points (N, 3) are from a box, see `gap`."""
+    c, s = math.cos(heading), math.sin(heading)
+    for n in range(len(points)):
+        dx, dy, dz = points[n, 0] - centre[0], points[n, 1] - centre[1], points[n, 2] - centre[2]
+        x, z = c * dx - s * dz, s * dx + c * dz
+        x, y, z = abs(x) - 0.5 * size[0], abs(dy - slope * z) - 0.5 * size[1], abs(z) - 0.5 * size[2]
+        outside = math.sqrt(max(x, 0.0) ** 2 + max(y, 0.0) ** 2 + max(z, 0.0) ** 2)
+        out[n] = outside + min(max(x, y, z), 0.0)
 
 
 def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,6 +47,7 @@ FALL = posture(16.0, 12.0, -14.0, -40.0, 62.0, 46.0)
 """Struck in the air: the arms go out to the sides."""
 
 
+@lru_cache(maxsize=16)
 def joints_of(skeleton: Skeleton) -> np.ndarray:
     """The joints that `carry_kernel` turns: three of the spine, neck, head, both arms, both elbows."""
     return np.array([skeleton.index(name) for name in (

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
 
-from ...body import HALF_SOLE, yaw
+from ...body import HALF_SOLE, exp_kernel, product_kernel, yaw
+from ...compiled import kernel
 from . import carriage
 from .balance import HALF_STANCE, STAND_REACH
 from .ballistics import apex_airtime
-from .dynamics import BodyTables, Physique, centre_kernel, place_kernel, turns
+from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
 from .planted_pose import stand_kernel
 
 FLAT = np.array([1.0, 0.0, 1.0])
@@ -103,14 +105,24 @@ def _measures(physique):
 
 def carried(physique: Physique, angles: np.ndarray) -> float:
     """How high [m] the centre of mass lies over the pelvis of a body carried by `angles` (11,), its legs hanging."""
-    skeleton, local = physique.skeleton, np.tile(np.eye(3), (len(physique.skeleton), 1, 1))
-    positions, turned, centre = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3)), np.empty(3)
-    carriage.carry_kernel(np.ascontiguousarray(angles, float), carriage.joints_of(skeleton), local)
-    local[0] = turns(np.array([angles[0], 0.0, 0.0]))
-    local[physique.tables.hip] = local[0].T
-    place_kernel(physique.tables, np.zeros(3), local, positions, turned)
-    centre_kernel(physique.tables, positions, turned, centre)
-    return float(centre[1])
+    return carried_kernel(physique.tables, np.ascontiguousarray(angles, float), carriage.joints_of(physique.skeleton))
+
+
+@kernel
+def carried_kernel(body, angles, joints):
+    """See `carried`. joints: as in `carriage.joints_of`."""
+    count = len(body.parents)
+    local, positions, turned, centre = np.zeros((count, 3, 3)), np.empty((count, 3)), np.empty((count, 3, 3)), np.empty(3)
+    for j in range(count):
+        for i in range(3):
+            local[j, i, i] = 1.0
+    carriage.carry_kernel(angles, joints, local)
+    exp_kernel(angles[0], 0.0, 0.0, local[0])
+    for hip in body.hip:
+        exp_kernel(-angles[0], 0.0, 0.0, local[hip])
+    place_kernel(body, np.zeros(3), local, positions, turned)
+    centre_kernel(body, positions, turned, centre)
+    return centre[1]
 
 
 def airtime_up(physique: Physique, height: float, gravity: np.ndarray) -> float:
@@ -130,25 +142,47 @@ def stretched(physique: Physique, angles: np.ndarray, feet: np.ndarray, pitch: f
               guess: np.ndarray) -> float:
     """How high [m] the centre of mass is over `guess`'s (3,) place on the floor, where the leg of two feet (2, 5) that is
     stretched more is `share` of its length, the feet `pitch` [rad] down, the body carried by `angles` (11,) and heading as told."""
-    body, skeleton = physique.tables, physique.skeleton
-    local = np.tile(np.eye(3), (len(skeleton), 1, 1))
-    positions, turned = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3))
-    carriage.carry_kernel(np.ascontiguousarray(angles, float), carriage.joints_of(skeleton), local)
-    local[0] = yaw(heading) @ turns(np.array([angles[0], 0.0, 0.0]))
-    free = np.column_stack([feet[:, :4], [pitch, pitch], [0.0, 0.0]])
-    tilt = np.stack([yaw(f[3]) @ turns(np.array([f[4], 0.0, 0.0])) for f in free])
-    ankles = free[:, :3] - tilt @ body.toe
+    return stretched_kernel(physique.tables, np.ascontiguousarray(angles, float), carriage.joints_of(physique.skeleton),
+                            np.ascontiguousarray(feet, float), float(pitch), float(share), float(heading),
+                            np.ascontiguousarray(guess, float))
+
+
+@kernel
+def stretched_kernel(body, angles, joints, feet, pitch, share, heading, guess):
+    """See `stretched`. joints: as in `carriage.joints_of`."""
+    count = len(body.parents)
+    local, positions, turned = np.zeros((count, 3, 3)), np.empty((count, 3)), np.empty((count, 3, 3))
+    for j in range(count):
+        for i in range(3):
+            local[j, i, i] = 1.0
+    carriage.carry_kernel(angles, joints, local)
+    turn, lean = np.empty((3, 3)), np.empty((3, 3))
+    exp_kernel(0.0, heading, 0.0, turn)
+    exp_kernel(angles[0], 0.0, 0.0, lean)
+    product_kernel(turn, lean, local[0])
+    ankles, free = np.empty((2, 3)), np.zeros((2, 6))
+    for side in range(2):
+        exp_kernel(0.0, feet[side, 3], 0.0, turn)
+        exp_kernel(pitch, 0.0, 0.0, lean)
+        product_kernel(turn, lean, turned[0])
+        for i in range(3):
+            ankles[side, i] = feet[side, i]
+            for k in range(3):
+                ankles[side, i] -= turned[0, i, k] * body.toe[k]
     centre, root = guess.copy(), guess.copy()
     leg = share * (body.thigh + body.shank)
     for _ in range(40):
-        stand_kernel(body, centre, free.copy(), 1.0, root, local, positions, turned)
-        line = positions[body.hip] - ankles
-        short = float((np.sqrt(np.maximum(leg**2 - line[:, 0] ** 2 - line[:, 2] ** 2, 0.0)) - line[:, 1]).min())
+        free[:, :4], free[:, 4] = feet[:, :4], pitch
+        stand_kernel(body, centre, free, 1.0, root, local, positions, turned)
+        short = np.inf
+        for side in range(2):
+            x, y, z = positions[body.hip[side]] - ankles[side]
+            short = min(short, math.sqrt(max(leg * leg - x * x - z * z, 0.0)) - y)
         centre[1] += short
         root[1] += short
         if abs(short) < 1e-6:
             break
-    return float(centre[1])
+    return centre[1]
 
 
 def soles(feet: np.ndarray, body: BodyTables) -> np.ndarray:
