@@ -25,7 +25,7 @@ from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
 
 PARTS = ("walk", "jump")
-KERNELS = 153
+KERNELS = 188
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 

@@ -2,13 +2,13 @@
 
 from . import control_points
 from .control_points import NAMES, SETS, ControlPoints, parse
-from .controller import Reconstruction
+from .controller import Following, Reconstruction
 from .following import towards
 from .database import Database, DatabaseError, build
 from .neighbours import Neighbourhood, Segments, Weights
 from .pose_vector import HEIGHT, JOINTS, SKELETON, WIDTH, encode
 
 __all__ = [
-    "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "ControlPoints", "Database", "DatabaseError",
+    "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "ControlPoints", "Database", "DatabaseError", "Following",
     "Neighbourhood", "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse", "towards",
 ]

@@ -108,8 +108,10 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
 
 def _sure(state: Any) -> float:
     """How sure a body is of its pose: the share of the points that are followed; none while it follows nothing."""
-    gate = getattr(state.memory.memory, "gate", None)
-    return 0.0 if gate is None else float(gate.trusted.mean())
+    from gambol.controllers.reconstruction import Following
+
+    following = state.memory.memory
+    return float(following.gate.trusted.mean()) if isinstance(following, Following) else 0.0
 
 
 def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
