@@ -115,7 +115,7 @@ PLAN = {
         "tracking.silhouettes": "compiled body tracking.twists tracking.cameras",
         "tracking.pose": "compiled body tracking.twists tracking.cameras tracking.silhouettes",
         "tracking.rivals": "tracking.twists",
-        "tracking.segmentation": "compiled",
+        "tracking.segmentation": "compiled tracking.silhouettes",
         "locomotion": "compiled files body contract mocap navigation",
         "scaled": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles jump.prior",

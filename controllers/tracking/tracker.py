@@ -15,7 +15,7 @@ import numpy as np
 from .cameras import Lens
 from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, overlap, penalty_of, predicted, solve
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
-from .silhouettes import Surface, rendered, skinned
+from .silhouettes import Surface, View, redrawn, rendered, skinned
 from .together import together
 from .twists import Configuration, posed
 
@@ -89,9 +89,9 @@ class Tracker:
         penalty = None
         if chosen.penalty:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
-        evidence, believed, found = track.evidence, there, None
+        evidence, believed, found, drawn = track.evidence, there, None, None
         for k in range(chosen.rounds if shown.any() else 1):
-            found = self._found(seen, start, found)
+            found, drawn = self._found(seen, start, found, drawn)
             agreements = np.array([one.agreement for one in found])
 
             def believe(overlaps: np.ndarray, first=k == 0, agreements=agreements) -> np.ndarray:
@@ -100,7 +100,7 @@ class Tracker:
                     evidence, believed = judged(evidence, np.where(shown, agreements, overlaps))
                 return believed & there
             views = together(observed, self.lenses, [one.mask for one in found])
-            fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver)
+            fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver, drawn)
             start = fit.where
         doubted = there & ~fit.believed
         if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, target, evidence)) is not None:
@@ -115,13 +115,13 @@ class Tracker:
 
         Pictures of something else are explained by no pose nearby.
         """
-        found, where, fit = None, target, None
+        found, drawn, where, fit = None, None, target, None
         for _ in range(2):
-            found = self._found(seen, where, found)
+            found, drawn = self._found(seen, where, found, drawn)
             views = together(observed, self.lenses, [one.mask for one in found])
-            fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver)
+            fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver, drawn)
             where = fit.where
-        found = self._found(seen, where, found)
+        found, _ = self._found(seen, where, found, drawn)
         vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
         overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
                              for lens, one, colours in zip(self.lenses, found, shown)])
@@ -131,19 +131,24 @@ class Tracker:
 
     def masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> list[np.ndarray]:
         """Who is in each camera's picture, (H, W) bool, for somebody near a pose; masks as they are, empty ones of dropped frames."""
-        return [one.mask for one in self._found(seen, where, None)]
+        return [one.mask for one in self._found(seen, where, None, None)[0]]
 
-    def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None) -> list[Segmented]:
-        """Who is in each camera's picture near a pose; masks as they are. before: what an earlier turn found in the same pictures."""
-        vertices = None
-        if any(one is not None and one.dtype != bool for one in seen):
-            vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+    def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None,
+               room: list[View | None] | None) -> tuple[list[Segmented], list[View | None] | None]:
+        """Who is in each camera's picture near a pose, masks as they are; and the model there, where it had to be drawn.
 
-        def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None) -> Segmented:
-            if one is None:
-                return Segmented(np.zeros(lens.size[::-1], bool), 0.0)
-            if vertices is None or one.dtype == bool:
-                return Segmented(one, 0.0)
-            drawn = rendered(lens, vertices, self.surface.triangles)
-            return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut)
-        return together(act, self.lenses, seen, self.plates or (None,) * len(seen), before or (None,) * len(seen))
+        before: what an earlier turn found in the same pictures. room: views to draw over.
+        """
+        many = len(seen)
+        if all(one is None or one.dtype == bool for one in seen):
+            return [Segmented(np.zeros(lens.size[::-1], bool) if one is None else one, 0.0) for lens, one in zip(self.lenses, seen)], None
+        vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+
+        def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None, kept: View | None
+                ) -> tuple[Segmented, View | None]:
+            if one is None or one.dtype == bool:
+                return Segmented(np.zeros(lens.size[::-1], bool) if one is None else one, 0.0), None
+            drawn = redrawn(lens, vertices, self.surface.triangles, kept)
+            return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut), drawn
+        parts = together(act, self.lenses, seen, self.plates or (None,) * many, before or (None,) * many, room or (None,) * many)
+        return [one for one, _ in parts], [view for _, view in parts]
