@@ -25,8 +25,8 @@ ROUGH = 0.6
 """So far off are contours [pixels] on average under the paper's noise: cleaner ones count for more, rougher ones for less."""
 CLEANEST, ROUGHEST = 0.03, 1.5
 """Nobody is believed to be better than that [pixels], or worse."""
-EXPLAINED = 0.88
-"""A pose that covers so much of the usual in every picture explains them."""
+EXPLAINED, COLOURED = 0.72, 0.88
+"""A pose that covers so much of the usual in every silhouette explains them; where colours say how much, which agree with more."""
 
 
 @dataclass(frozen=True)
@@ -103,31 +103,36 @@ class Tracker:
             fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver, drawn)
             start = fit.where
         doubted = there & ~fit.believed
-        if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, target, evidence)) is not None:
+        if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, track, target, evidence)) is not None:
             fit, evidence = second
         elif not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
         return Track(fit.where, track.now, evidence, fit)
 
-    def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, target: Configuration,
+    def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, track: Track, target: Configuration,
                      evidence: Evidence) -> tuple[Fit, Evidence] | None:
         """The fit to all pictures, doubted ones too, if it explains them nearly as well as usual: then it was the prediction that was wrong.
 
-        Pictures of something else are explained by no pose nearby.
+        Pictures of something else are explained by no pose nearby. Whoever was not seen for some frames is looked for where
+        they were led, and if not there, with joints as they were: noise in their pace leads the farther astray the longer.
         """
-        found, drawn, where, fit = None, None, target, None
-        for _ in range(2):
-            found, drawn = self._found(seen, where, found, drawn)
-            views = together(observed, self.lenses, [one.mask for one in found])
-            fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver, drawn)
-            where = fit.where
-        found, _ = self._found(seen, where, found, drawn)
-        vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
-        overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
-                             for lens, one, colours in zip(self.lenses, found, shown)])
-        if fit is None or not there.any() or (overlaps[there] < EXPLAINED * evidence.usual[there]).any():
-            return None
-        return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
+        chain, now = self.surface.chain, track.now
+        starts = [target, calmed(chain, now, target, 0.0)] if there.any() and track.evidence.doubted.any() else [target]
+        usual = evidence.usual * np.where(shown, COLOURED, EXPLAINED)
+        for where in starts:
+            found, drawn, fit = None, None, None
+            for _ in range(2):
+                found, drawn = self._found(seen, where, found, drawn)
+                views = together(observed, self.lenses, [one.mask for one in found])
+                fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver, drawn)
+                where = fit.where
+            found, _ = self._found(seen, where, found, drawn)
+            vertices = skinned(self.surface, *posed(chain, where)[:2])
+            overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
+                                 for lens, one, colours in zip(self.lenses, found, shown)])
+            if fit is not None and there.any() and (overlaps[there] >= usual[there]).all():
+                return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
+        return None
 
     def masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> list[np.ndarray]:
         """Who is in each camera's picture, (H, W) bool, for somebody near a pose; masks as they are, empty ones of dropped frames."""
