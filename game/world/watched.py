@@ -18,6 +18,7 @@ from gambol.controllers.contract import Sighting
 from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
+from .filmed import Filmed
 from .recorded import Recorded
 
 if TYPE_CHECKING:  # what tracks is loaded by the functions that need it: a game without cameras starts without
@@ -112,7 +113,7 @@ def tracked_of(performer: Any, watches: Watches, rate: float, penalty: bool = Tr
     from ..meshes import surface_of
 
     surface = surface_of(watches.surface.chain.skeleton, "full", level="middle")
-    someone = performer.walker if isinstance(performer, Recorded) else performer
+    someone = performer.walker if isinstance(performer, Recorded | Filmed) else performer
     tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty))
     controllers = {"locomotion": someone.parts.get("locomotion", someone), "tracking": Tracking(tracker, watches.beside)}
     return Embodied(controllers, performer.body, performer.factor) if isinstance(performer, Embodied) else Supervisor(controllers)
