@@ -148,7 +148,7 @@ PLAN = {
         "output": "scene files render character input world explain session scenario",
         "studio": "scene files meshes footage world scenario output",
         "app": "scene files render input camera hosts world explain session hud output",
-        "cli": "scene files meshes character input hosts world session scenario output studio app",
+        "cli": "scene files meshes footage character input hosts world session scenario output studio app",
     },
 }
 """The house plan: which room may use which others of its wing; the game may use every room of the controllers.

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, overlap, penalty_of, predicted, solve
+from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, carried, judged, observed, overlap, penalty_of, predicted, solve
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, View, redrawn, rendered, skinned
 from .together import together
@@ -34,13 +34,14 @@ class TrackerSettings:
     """start: where a frame's search begins, at the prediction or at the last pose. penalty: draw it to the prediction, too.
     pace: how far joints go on as before where the penalty draws them, 1 as the paper's eq. (16), 0 not at all.
     gate: leave out cameras whose picture is not what could be expected. firmness: of the penalty, times what bounds on
-    acceleration say. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each."""
+    acceleration say. carriage: how firmly arms are drawn to how people carry them where contours are ROUGH [1/rad²]. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each."""
 
     start: Literal["prediction", "last"] = "prediction"
     penalty: bool = True
     pace: float = 0.0
     gate: bool = True
     firmness: float = FIRM
+    carriage: float = 0.0
     solver: SolverSettings = SETTINGS
     rounds: int = 2
     pictures: SolverSettings = replace(SETTINGS, outer=2)
@@ -89,6 +90,8 @@ class Tracker:
         penalty = None
         if chosen.penalty:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
+            if chosen.carriage:
+                penalty = carried(chain, penalty, chosen.carriage * (rough / ROUGH) ** 2)
         evidence, believed, found, drawn = track.evidence, there, None, None
         for k in range(chosen.rounds if shown.any() else 1):
             found, drawn = self._found(seen, start, found, drawn)

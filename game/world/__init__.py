@@ -5,11 +5,11 @@ few points of somebody, and the course that the game opens on.
 from .centre_of_mass import jump_of, physique_of
 from .course import COURSE, STAGES
 from .embodied import Embodied
-from .filmed import Filmed
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
 from .learnt_methods import METHODS, NAMES, TINTS, Learning, Methods, methods
 from .primitive import nearest, posed
 from .recorded import Recorded
+from .tracked_footage import Filmed
 from .watched import Watches, rig, switched, tracked_of, tracked_vertices, tracker_ready, tracking_of, watches_of
 from .world import DT, RATE, Character, FixedStep, World, figures, ground_between, pose_between
 

@@ -20,8 +20,8 @@ from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
 from .learnt_methods import Methods
-from .filmed import Filmed
 from .recorded import Recorded
+from .tracked_footage import Filmed
 
 if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
     from gambol.controllers.reconstruction import ControlPoints

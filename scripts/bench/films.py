@@ -36,8 +36,10 @@ moves = [{{ for = 30, velocity = [1.0, 0, 0] }}]
 def made(scenario: Path, folder: Path, seeds: int, workers: int, width: int) -> tuple[float, float]:
     """Seconds by the clock and of all processors that so many films took."""
     begun, before = time.perf_counter(), os.times()
-    subprocess.run([sys.executable, "-c", "from gambol.game.cli import main; main()", "film", str(scenario), "-o", str(folder), "--seeds", str(seeds),
-                    "--workers", str(workers), "--width", str(width)], check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run([sys.executable, "-c", "from gambol.game.cli import main; main()", "film", str(scenario), "-o", str(folder), "--seeds", str(seeds),
+                    "--workers", str(workers), "--width", str(width)], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(done.stderr)
     after = os.times()
     return time.perf_counter() - begun, after.children_user + after.children_system - before.children_user - before.children_system
 

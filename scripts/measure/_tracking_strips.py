@@ -39,7 +39,7 @@ def strips(rows: Mapping[str, Sequence[Configuration]], film: Film, masks: Seque
                 axis.set_title(f"frame {t}" if name == "truth" else f"{off.angles[t].mean():.1f}°, {100 * off.metres[t].mean():.1f} cm", fontsize=8)
             told = "" if name == "truth" else f"\n{off.angles.mean():.1f}°, {100 * off.metres.mean():.1f} cm"
             line[0].text(-0.05, 0.5, name + told, rotation=90, transform=line[0].transAxes, ha="right", va="center", fontsize=8)
-    figure.suptitle(title, y=1.0, fontsize=9)
+    figure.suptitle(title, y=0.95, fontsize=9)
     figure.savefig(path)
     plt.close(figure)
 
