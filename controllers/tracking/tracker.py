@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, judged, observed, overlap, penalty_of, predicted, solve
+from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, carried, judged, observed, overlap, penalty_of, predicted, solve
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
-from .silhouettes import Surface, rendered, skinned
+from .silhouettes import Surface, View, redrawn, rendered, skinned
 from .together import together
 from .twists import Configuration, posed
 
@@ -25,8 +25,8 @@ ROUGH = 0.6
 """So far off are contours [pixels] on average under the paper's noise: cleaner ones count for more, rougher ones for less."""
 CLEANEST, ROUGHEST = 0.03, 1.5
 """Nobody is believed to be better than that [pixels], or worse."""
-EXPLAINED = 0.88
-"""A pose that covers so much of the usual in every picture explains them."""
+EXPLAINED, COLOURED = 0.72, 0.88
+"""A pose that covers so much of the usual in every silhouette explains them; where colours say how much, which agree with more."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,14 @@ class TrackerSettings:
     """start: where a frame's search begins, at the prediction or at the last pose. penalty: draw it to the prediction, too.
     pace: how far joints go on as before where the penalty draws them, 1 as the paper's eq. (16), 0 not at all.
     gate: leave out cameras whose picture is not what could be expected. firmness: of the penalty, times what bounds on
-    acceleration say. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each."""
+    acceleration say. carriage: how firmly arms are drawn to how people carry them where contours are ROUGH [1/rad²]. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each."""
 
     start: Literal["prediction", "last"] = "prediction"
     penalty: bool = True
     pace: float = 0.0
     gate: bool = True
     firmness: float = FIRM
+    carriage: float = 0.0
     solver: SolverSettings = SETTINGS
     rounds: int = 2
     pictures: SolverSettings = replace(SETTINGS, outer=2)
@@ -89,9 +90,11 @@ class Tracker:
         penalty = None
         if chosen.penalty:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
-        evidence, believed, found = track.evidence, there, None
+            if chosen.carriage:
+                penalty = carried(chain, penalty, chosen.carriage * (rough / ROUGH) ** 2)
+        evidence, believed, found, drawn = track.evidence, there, None, None
         for k in range(chosen.rounds if shown.any() else 1):
-            found = self._found(seen, start, found)
+            found, drawn = self._found(seen, start, found, drawn)
             agreements = np.array([one.agreement for one in found])
 
             def believe(overlaps: np.ndarray, first=k == 0, agreements=agreements) -> np.ndarray:
@@ -100,50 +103,60 @@ class Tracker:
                     evidence, believed = judged(evidence, np.where(shown, agreements, overlaps))
                 return believed & there
             views = together(observed, self.lenses, [one.mask for one in found])
-            fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver)
+            fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver, drawn)
             start = fit.where
         doubted = there & ~fit.believed
-        if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, target, evidence)) is not None:
+        if chosen.gate and doubted.any() and (second := self._second_look(seen, there, shown, track, target, evidence)) is not None:
             fit, evidence = second
         elif not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
         return Track(fit.where, track.now, evidence, fit)
 
-    def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, target: Configuration,
+    def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, track: Track, target: Configuration,
                      evidence: Evidence) -> tuple[Fit, Evidence] | None:
         """The fit to all pictures, doubted ones too, if it explains them nearly as well as usual: then it was the prediction that was wrong.
 
-        Pictures of something else are explained by no pose nearby.
+        Pictures of something else are explained by no pose nearby. Whoever was not seen for some frames is looked for where
+        they were led, and if not there, with joints as they were: noise in their pace leads the farther astray the longer.
         """
-        found, where, fit = None, target, None
-        for _ in range(2):
-            found = self._found(seen, where, found)
-            views = together(observed, self.lenses, [one.mask for one in found])
-            fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver)
-            where = fit.where
-        found = self._found(seen, where, found)
-        vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
-        overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
-                             for lens, one, colours in zip(self.lenses, found, shown)])
-        if fit is None or not there.any() or (overlaps[there] < EXPLAINED * evidence.usual[there]).any():
-            return None
-        return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
+        chain, now = self.surface.chain, track.now
+        starts = [target, calmed(chain, now, target, 0.0)] if there.any() and track.evidence.doubted.any() else [target]
+        usual = evidence.usual * np.where(shown, COLOURED, EXPLAINED)
+        for where in starts:
+            found, drawn, fit = None, None, None
+            for _ in range(2):
+                found, drawn = self._found(seen, where, found, drawn)
+                views = together(observed, self.lenses, [one.mask for one in found])
+                fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver, drawn)
+                where = fit.where
+            found, _ = self._found(seen, where, found, drawn)
+            vertices = skinned(self.surface, *posed(chain, where)[:2])
+            overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
+                                 for lens, one, colours in zip(self.lenses, found, shown)])
+            if fit is not None and there.any() and (overlaps[there] >= usual[there]).all():
+                return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
+        return None
 
     def masks(self, seen: Sequence[np.ndarray | None], where: Configuration) -> list[np.ndarray]:
         """Who is in each camera's picture, (H, W) bool, for somebody near a pose; masks as they are, empty ones of dropped frames."""
-        return [one.mask for one in self._found(seen, where, None)]
+        return [one.mask for one in self._found(seen, where, None, None)[0]]
 
-    def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None) -> list[Segmented]:
-        """Who is in each camera's picture near a pose; masks as they are. before: what an earlier turn found in the same pictures."""
-        vertices = None
-        if any(one is not None and one.dtype != bool for one in seen):
-            vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+    def _found(self, seen: Sequence[np.ndarray | None], where: Configuration, before: Sequence[Segmented] | None,
+               room: list[View | None] | None) -> tuple[list[Segmented], list[View | None] | None]:
+        """Who is in each camera's picture near a pose, masks as they are; and the model there, where it had to be drawn.
 
-        def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None) -> Segmented:
-            if one is None:
-                return Segmented(np.zeros(lens.size[::-1], bool), 0.0)
-            if vertices is None or one.dtype == bool:
-                return Segmented(one, 0.0)
-            drawn = rendered(lens, vertices, self.surface.triangles)
-            return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut)
-        return together(act, self.lenses, seen, self.plates or (None,) * len(seen), before or (None,) * len(seen))
+        before: what an earlier turn found in the same pictures. room: views to draw over.
+        """
+        many = len(seen)
+        if all(one is None or one.dtype == bool for one in seen):
+            return [Segmented(np.zeros(lens.size[::-1], bool) if one is None else one, 0.0) for lens, one in zip(self.lenses, seen)], None
+        vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+
+        def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None, kept: View | None
+                ) -> tuple[Segmented, View | None]:
+            if one is None or one.dtype == bool:
+                return Segmented(np.zeros(lens.size[::-1], bool) if one is None else one, 0.0), None
+            drawn = redrawn(lens, vertices, self.surface.triangles, kept)
+            return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut), drawn
+        parts = together(act, self.lenses, seen, self.plates or (None,) * many, before or (None,) * many, room or (None,) * many)
+        return [one for one, _ in parts], [view for _, view in parts]

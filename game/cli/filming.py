@@ -102,7 +102,8 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
 
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
-    from ..studio import clicked_pose, error_of, first_poses, followed, overlaid, person_in, read_footage, seen_in, settled
+    from ..footage import clicked_pose, first_poses, person_in, read_footage, seen_in, settled
+    from ..studio import error_of, followed, overlaid
 
     film = read_footage(footage)
     if film.frames < 2:

@@ -24,6 +24,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          record: Annotated[Path | None, typer.Option(help="Keep the input log in this new .gambol file; by default in out/.")] = None,
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
          cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
+         footage: Annotated[Path | None, typer.Option(help="A folder of footage, of `gambol film` or `gambol footage`: the first who is seen in it moves as a tracker makes them, and is whom you watch.")] = None,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from ..input import load as load_bindings
@@ -45,6 +46,12 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     if replay is not None:
         tape, controller = replayed(replay, controller)
         players, clip, database = tape.players, tape.clip or None, tape.database or None
+    elif footage is not None:
+        from ..world import Filmed
+
+        if players != 1 or character is not None:
+            raise Mistake("--footage: shows one person, in the mannequin: leave out " + ("--players" if players != 1 else "--character"))
+        controller, clip = Filmed.load(footage, controller), footage
     log = LogWriter(log_file(record), controller, players, clip, database)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])

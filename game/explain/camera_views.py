@@ -1,13 +1,14 @@
-"""What the cameras see that watch somebody, in the corner of the picture: silhouettes, their contours, and the tracked body's."""
+"""What the cameras see that watch somebody, in the corner of the picture: silhouettes or pictures, contours, and the tracked body's."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from ..scene import VERTEX, Ink, Stroke
-from ..world import Character, World, tracked_vertices, tracking_of
+from ..world import Character, Filmed, World, tracked_vertices, tracking_of
 
 GROUND, BODY, FOUND, MODEL = (18, 20, 24), (120, 124, 132), (70, 150, 255), (255, 64, 48)
 """Colours of what cameras see, of the contour found there, and of the model's."""
@@ -15,6 +16,8 @@ SHEET = -15
 """The number of the picture among an ink's sheets; panels' are above 0."""
 ASIDE = 0.2
 """So much of a picture is left out on both sides where cameras go along."""
+LARGEST = 640
+"""Of real films' pictures, so many pixels across at most are shown."""
 WIDE, MARGIN, BETWEEN = 0.24, 14.0, 4
 """How wide the pictures are together, over the whole picture's width; from its corner [px at 720 lines]; between them [pixels]."""
 
@@ -44,6 +47,8 @@ def camera_views(tracked: Character, world: World) -> np.ndarray | None:
     """The pictures (H, W, 3) uint8 of those who watch a character's performer, two beside each other; None where nobody does."""
     from gambol.controllers.tracking.silhouettes import contour_of, rendered
 
+    if isinstance(tracked.controller, Filmed):
+        return _beside_each_other([_smaller(one) for one in _filmed(tracked.controller, tracked.state.memory)])
     watches = tracked.watches
     performer = next((one for one in world.characters if watches is not None and one.name == watches.performer), None)
     if watches is None or performer is None:
@@ -62,6 +67,33 @@ def camera_views(tracked: Character, world: World) -> np.ndarray | None:
             _drawn(picture, contour_of(rendered(lens, vertices, tracking.tracker.surface.triangles).mask).pixels, MODEL)
         aside = int(ASIDE * picture.shape[1]) if watches.along else 0  # nobody is far from the middle
         made.append(picture[:, aside:picture.shape[1] - aside])
+    return _beside_each_other(made)
+
+
+def _filmed(controller: Filmed, filming) -> Iterator[np.ndarray]:
+    """Each camera's picture of the last frame that was seen, with the contour that was found in it and the model's."""
+    from gambol.controllers.tracking.silhouettes import contour_of, rendered, skinned
+    from gambol.controllers.tracking.twists import posed
+
+    tracker, where = controller.tracker, filming.watching.track.now
+    seen = controller.seen(min(controller.frame(filming.number), controller.footage.frames - 1))
+    vertices = skinned(tracker.surface, *posed(tracker.surface.chain, where)[:2])
+    for lens, one, found in zip(tracker.lenses, seen, tracker.masks(seen, where)):
+        picture = np.full((*lens.size[::-1], 3), GROUND, np.uint8)
+        if one is not None:
+            picture[:] = np.where(one[..., None], BODY, GROUND) if one.dtype == bool else one if one.ndim == 3 else one[..., None]
+            _drawn(picture, contour_of(found).pixels, FOUND)
+        _drawn(picture, contour_of(rendered(lens, vertices, tracker.surface.triangles).mask).pixels, MODEL)
+        yield picture
+
+
+def _smaller(picture: np.ndarray) -> np.ndarray:
+    """Every so manieth pixel of a large picture."""
+    return picture[::(step := -(-picture.shape[1] // LARGEST)), ::step]
+
+
+def _beside_each_other(made: list[np.ndarray]) -> np.ndarray:
+    """Pictures (H, W, 3) as one, two in a row."""
     height, width = max(one.shape[0] for one in made), max(one.shape[1] for one in made)
     across, down = (2, (len(made) + 1) // 2) if len(made) > 1 else (1, 1)
     sheet = np.zeros((down * (height + BETWEEN) - BETWEEN, across * (width + BETWEEN) - BETWEEN, 3), np.uint8)

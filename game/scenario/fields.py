@@ -65,9 +65,9 @@ class Table(BaseModel):
 
 
 def beside_the_file(name: str, info: ValidationInfo) -> str:
-    """The path of a file that a scenario names: beside the scenario's own, or from where one stands."""
+    """The path of a file or a folder that a scenario names: beside the scenario's own, or from where one stands."""
     for path in ((info.context or {}).get("folder", Path()) / name, Path(name)):
-        if path.is_file():
+        if path.exists():
             return str(path)
     raise ValueError(f"there is no file {name!r} beside the scenario")
 

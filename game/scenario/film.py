@@ -77,7 +77,10 @@ def opening(scenario: Scenario, controller: Any) -> World:
             cast[actor.name] = Character(actor.name, someone, tint=actor.tint, state=state, opacity=_opacity(actor),
                                          enters=actor.enters, leaves=actor.gone)
     for actor in scenario.actors:
-        if actor.tracks is not None:
+        if actor.tracks is not None and actor.tracks.footage is not None:
+            someone = actor.tracks.filmed(controller)
+            cast[actor.name] = Character(actor.name, someone, tint=actor.colour, opacity=_opacity(actor), state=someone.start(beside=actor.tracks.beside))
+        elif actor.tracks is not None and actor.tracks.actor is not None:
             performer = cast[actor.tracks.actor]
             watches = actor.tracks.watches(performer.controller.skeleton)
             someone = tracked_of(performer.controller, watches, RATE, actor.tracks.penalty)

@@ -106,7 +106,7 @@ def _check_followers(actors: tuple[ActorTable, ...]) -> None:
     """Whom one follows has a will."""
     seen = [actor.name for actor in actors if actor.follows is None and actor.tracks is None]
     for i, actor in enumerate(actors):
-        if actor.tracks is not None and actor.tracks.actor not in seen:
+        if actor.tracks is not None and actor.tracks.actor is not None and actor.tracks.actor not in seen:
             raise ValueError(f"actors[{i}].tracks.actor: nobody with moves is called {actor.tracks.actor!r}; "
                              f"there {'are ' + ', '.join(seen) if seen else 'is nobody'}")
     wills = [actor.name for actor in actors if actor.follows is None]

@@ -39,8 +39,8 @@ class Log:
     """What was played. players: at the beginning. ticks: for each, one wish for each player.
 
     library: the `digest` of what it was played with. character: the name of the body that was worn,
-    if any. prints: tick number → `fingerprint`. clip, database: the files of the recording that the first player was, and
-    of what the methods of reconstruction learn from; empty where there was none but Gambol's own.
+    if any. prints: tick number → `fingerprint`. clip, database: the files of the recording that the first player was, or
+    the folder of footage, and of what the methods of reconstruction learn from; empty where there was none but Gambol's own.
     """
 
     players: int

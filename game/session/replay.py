@@ -8,7 +8,7 @@ from typing import Any
 
 from gambol.controllers.files import printable
 
-from ..world import RATE, Recorded, methods
+from ..world import RATE, Filmed, Recorded, methods
 from .comparison import wanted
 from .fingerprint import digest, fingerprint
 from .input_log import Log
@@ -19,14 +19,16 @@ from .tick import Timeline
 
 
 def performer_of(log: Log, controller: Any) -> Any:
-    """Who moved in a log: a controller, or the recording that the log names.
+    """Who moved in a log: a controller, or the recording or the footage that the log names.
 
     LogError where a file that it needs is not there.
     """
     for what, file, needed in (("clip", log.clip, True), ("motion database", log.database, bool(wanted(log.ticks)))):
-        if file and needed and not Path(file).is_file():
+        if file and needed and not (Path(file).is_file() or Path(file, "footage.json").is_file()):
             raise LogError(f"{log.path}: was played with the {what} {file}, which is not there: put it back")
-    return Recorded.load(log.clip, controller) if log.clip else controller
+    if not log.clip:
+        return controller
+    return Filmed.load(log.clip, controller) if Path(log.clip).is_dir() else Recorded.load(log.clip, controller)
 
 
 def of_library(log: Log, controller: Any) -> Log:

@@ -13,7 +13,7 @@ from gambol.controllers.files import reason
 from gambol.controllers.tracking.cameras import Lens
 
 from ..files import whole
-from .footage import FootageError, begun, complete, file_of, fingerprint
+from ..footage import FootageError, begun, complete, file_of, fingerprint
 
 BORDER = 16
 """A film may have so many columns and rows fewer than its camera was calibrated with: coders cut them off at the right and below."""

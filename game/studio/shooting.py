@@ -12,11 +12,11 @@ import numpy as np
 from gambol.controllers.tracking.cameras import Lens
 
 from ..files import whole
+from ..footage import FootageError, begun, complete, file_of, fingerprint
 from ..output import takes, write
 from ..scenario import Scenario, run
 from ..scene import Scene
 from ..world import figures
-from .footage import FootageError, begun, complete, file_of, fingerprint
 from .lens_warp import LensWarp
 from .sensor import Sensor
 from .truth import Stage, Truth, seen_by

@@ -21,6 +21,7 @@ from gambol.controllers.supervisor import Supervisor
 from .embodied import Embodied
 from .learnt_methods import Methods
 from .recorded import Recorded
+from .tracked_footage import Filmed
 
 if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
     from gambol.controllers.reconstruction import ControlPoints
@@ -156,7 +157,7 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
     from gambol.controllers.reconstruction import SKELETON, Reconstruction
 
     method, controls = methods(name, points)
-    someone = performer.walker if isinstance(performer, Recorded) else performer
+    someone = performer.walker if isinstance(performer, Recorded | Filmed) else performer
     walker = someone.parts.get("locomotion", someone)
     height = STATURE * float(performer.skeleton.offsets[0, 1] / SKELETON.offsets[0, 1])
     controllers = {"locomotion": walker, "reconstruction": Reconstruction(

@@ -19,6 +19,7 @@ from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
 from .recorded import Recorded
+from .tracked_footage import Filmed
 
 if TYPE_CHECKING:  # what tracks is loaded by the functions that need it: a game without cameras starts without
     from gambol.controllers.tracking import Tracking, Watching
@@ -27,6 +28,8 @@ if TYPE_CHECKING:  # what tracks is loaded by the functions that need it: a game
 
 AWAY, HIGH, VIEW = 4.0, 1.3, 0.56
 """How far cameras of a rig are from whom they watch, how high [m], and what they see [rad]."""
+CARRIAGE = 100.0
+"""How firmly a tracker of poor silhouettes draws arms to how people carry them [1/rad²]."""
 MAJORITY = 5
 """A pixel is what most of so many by so many are, where pixels are wrong: so much a segmentation makes good."""
 
@@ -112,8 +115,8 @@ def tracked_of(performer: Any, watches: Watches, rate: float, penalty: bool = Tr
     from ..meshes import surface_of
 
     surface = surface_of(watches.surface.chain.skeleton, "full", level="middle")
-    someone = performer.walker if isinstance(performer, Recorded) else performer
-    tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty))
+    someone = performer.walker if isinstance(performer, Recorded | Filmed) else performer
+    tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty, carriage=CARRIAGE))
     controllers = {"locomotion": someone.parts.get("locomotion", someone), "tracking": Tracking(tracker, watches.beside)}
     return Embodied(controllers, performer.body, performer.factor) if isinstance(performer, Embodied) else Supervisor(controllers)
 

@@ -1,6 +1,6 @@
 """Measure tracking: how far poses are off with clean and with noisy silhouettes, corrupted frames, the rivals, and a frame's time.
 
-    python scripts/measure/tracking.py DIR [--seeds 3] [--frames 120] [--only clean,noise,corrupted,rivals,images,time] [--plots FOLDER]
+    python scripts/measure/tracking.py DIR [--seeds 5] [--frames 120] [--only clean,noise,corrupted,rivals,images,time] [--plots FOLDER] [--keep FOLDER]
 
 DIR is a folder of motion capture with CMU's subjects 14, 16 and 49 in it. Each clip is first brought onto the chain's 26
 degrees of freedom, and that is filmed from four sides at 60 frames a second: what is measured is tracking, not how stiff a
@@ -15,63 +15,76 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from _plots import pictures
-from _tracking import RATE, Film, errors, films, overlay, silhouette
-from _tracking_ways import BARE, OURS, WAYS, lied, told, track, with_lies, with_noise
+from _tracking import RATE, errors, films, overlay, silhouette
+from _tracking_ways import WAYS, Runs, lied, perfect, told, track, with_lies, with_noise
 
 from gambol.controllers.tracking import Tracker
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
 from gambol.controllers.tracking.segmentation import segmented
 
-def clean(film: Film, _seeds: int, _plots: Path | None) -> None:
+def clean(runs: Runs, _seeds: int, _plots: Path | None) -> None:
     """Perfect silhouettes."""
-    masks = [film.masks(t) for t in range(2, len(film.truth))]
-    for name, settings in WAYS.items():
-        told(name, [errors(film.chain, track(film, masks, settings)[0], film.truth)])
+    for name in WAYS:
+        told(name, [runs.errors(runs.poses("clean", 0, name, lambda: perfect(runs.film)))])
 
 
-def noise(film: Film, seeds: int, plots: Path | None) -> None:
+def noise(runs: Runs, seeds: int, plots: Path | None) -> None:
     """The paper's 15 % and rectangles."""
-    masks = [with_noise(film, seed) for seed in range(seeds)]
-    for name, settings in WAYS.items():
-        made = [track(film, one, settings)[0] for one in masks]
-        told(name, [errors(film.chain, one, film.truth) for one in made])
+    film, made = runs.film, {}
+    for seed in range(seeds):  # a seed's silhouettes are made once
+        for name in WAYS:
+            made[name, seed] = runs.poses("noise", seed, name, lambda: with_noise(film, seed))
+    for name in WAYS:
+        told(name, [runs.errors(made[name, seed]) for seed in range(seeds)])
         if plots is not None:
             from PIL import Image
 
-            shown = overlay(film, masks[0], made[0], [len(film.truth) * k // 5 for k in (1, 2, 3, 4)])
+            shown = overlay(film, with_noise(film, 0), made[name, 0], [len(film.truth) * k // 5 for k in (1, 2, 3, 4)])
             Image.fromarray(shown).save(plots / f"{film.name} {name}.png".replace(" ", "_").replace(",", "").replace("'", ""))
 
 
-def corrupted(film: Film, seeds: int, _plots: Path | None) -> None:
+def corrupted(runs: Runs, seeds: int, _plots: Path | None) -> None:
     """Two frames in 22 in which every camera stored something else: the silhouette of another moment, mirrored and elsewhere."""
+    names = ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate")
     for kind in ("clean", "noisy"):
-        made = [with_lies(film, seed, kind) for seed in range(seeds)]
-        for name in ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate"):
-            told(f"{kind}: {name}", [errors(film.chain, track(film, masks, WAYS[name])[0], film.truth) for masks in made])
+        made = {(name, seed): runs.errors(runs.poses(f"{kind} 2 of 22", seed, name, lambda: with_lies(runs.film, seed, kind)))
+                for seed in range(seeds) for name in names}
+        for name in names:
+            told(f"{kind}: {name}", [made[name, seed] for seed in range(seeds)])
 
 
-def images(film: Film, seeds: int, plots: Path | None) -> None:
+def images(runs: Runs, seeds: int, plots: Path | None) -> None:
     """Pictures instead of silhouettes: without a fault, with the paper's 15 % and rectangles in them, with frames of something else."""
     from _footage import contours, shots, spoilt
 
+    film = runs.film
     made = shots(film)
-    kinds = {"clean": [made.pictures], "noisy": [spoilt(made.pictures, seed) for seed in range(seeds)]}
-    kinds |= {f"{kind}, corrupted": [lied(one, seed) for seed, one in enumerate(kinds[kind])] for kind in ("clean", "noisy")}
-    for kind, films_ in kinds.items():
-        for name in ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate", "ours, gate, empty pictures known"):
-            plates = made.plates if "empty" in name else None
-            runs = [track(film, one, WAYS[name.removesuffix(", empty pictures known")], plates) for one in films_]
-            told(f"{kind}: {name}", [errors(film.chain, one, film.truth) for one, _ in runs])
-            if plots is not None and name == "ours, gate":
-                from PIL import Image
 
-                frames = [len(film.truth) * k // 5 for k in (1, 2, 3, 4)]
-                Image.fromarray(contours(film, films_[0], runs[0][0], frames)).save(plots / f"{film.name} images {kind}.png".replace(" ", "_").replace(",", ""))
+    @lru_cache(1)
+    def seen(kind: str, seed: int) -> list[list[np.ndarray]]:
+        good = made.pictures if kind.startswith("clean") else spoilt(made.pictures, seed)
+        return lied(good, seed) if kind.endswith("corrupted") else good
+    ways = ("no penalty", "the paper's penalty", "ours, joints at rest", "ours, gate", "ours, gate, empty pictures known")
+    for kind in ("clean", "noisy", "clean, corrupted", "noisy, corrupted"):
+        poses = {}
+        for seed in range(1 if kind == "clean" else seeds):
+            for name in ways:
+                way, plates = name.removesuffix(", empty pictures known"), made.plates if "empty" in name else None
+                poses[name, seed] = runs.poses(f"images {kind}", seed, name, lambda: seen(kind, seed),
+                                               lambda film, one: track(film, one, WAYS[way], plates)[0])
+        for name in ways:
+            told(f"{kind}: {name}", [runs.errors(one) for (known, _), one in poses.items() if known == name])
+        if plots is not None:
+            from PIL import Image
+
+            shown = contours(film, seen(kind, 0), poses["ours, gate", 0], [len(film.truth) * k // 5 for k in (1, 2, 3, 4)])
+            Image.fromarray(shown).save(plots / f"{film.name} images {kind}.png".replace(" ", "_").replace(",", ""))
     tracker, drawn = Tracker(film.surface, film.lenses, RATE), silhouette(film, film.lenses[0], film.truth[2])
     state = tracker.step(tracker.start(film.truth[1], film.truth[0]), made.pictures[0])
     for what, act in (("one view's segmentation", lambda _: segmented(made.pictures[0][0], drawn)),
@@ -85,11 +98,12 @@ def images(film: Film, seeds: int, plots: Path | None) -> None:
         print(f"    {what}: {np.median(spent):.1f} ms (least {min(spent):.1f}); processor {np.median(worked):.1f} ms (least {min(worked):.1f})")
 
 
-def rivals(film: Film, seeds: int, _plots: Path | None) -> None:
+def rivals(runs: Runs, seeds: int, _plots: Path | None) -> None:
     """Filters after each frame of a bare track, tuned to lag as far as the penalty does, or as little as they can; and both."""
-    masks = [with_noise(film, seed) for seed in range(seeds)]
-    bare = [track(film, one, BARE)[0] for one in masks]
-    ours = [track(film, one, OURS)[0] for one in masks]
+    film, bare, ours = runs.film, [], []
+    for seed in range(seeds):
+        for name, to in (("no penalty", bare), ("ours, joints at rest", ours)):
+            to.append(runs.poses("noise", seed, name, lambda: with_noise(film, seed)))
     base = [errors(film.chain, one, film.truth) for one in ours]
     lag = float(np.mean([one.lag for one in base]))
     told("none", [errors(film.chain, one, film.truth) for one in bare])
@@ -124,12 +138,13 @@ def times(folder: Path, frames: int) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, metavar="DIR")
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--frames", type=int, default=120)
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--only", default="clean,noise,corrupted,rivals,time")
     parser.add_argument("--clips", default="", help="parts of clips' names, with commas")
     parser.add_argument("--plots", type=Path, help="a folder for pictures of contours and model under noise")
+    parser.add_argument("--keep", type=Path, help="a folder for tracks, of one state of the sources: what was broken off goes on")
     args = parser.parse_args()
     pictures(parser, args.plots)
     parts = {"clean": clean, "noise": noise, "corrupted": corrupted, "rivals": rivals, "images": images}
@@ -141,7 +156,7 @@ def main() -> None:
         print(f"{name}: {' '.join((parts[name].__doc__ or '').split())}")
         for film in every:
             print(f"  {film.name}, {len(film.truth)} frames, {args.width} × {args.width * 3 // 4}")
-            parts[name](film, args.seeds, args.plots)
+            parts[name](Runs(film, args.keep), args.seeds, args.plots)
     if "time" in wanted:
         print("time: four cameras, one thread, silhouettes given")
         times(args.folder, 80)

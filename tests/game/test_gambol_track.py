@@ -15,10 +15,10 @@ from gambol.controllers.tracking import Tracker
 from gambol.controllers.tracking.cameras import read_cameras
 from gambol.controllers.tracking.twists import posed
 from gambol.game import cli
+from gambol.game.footage import FootageError, first_poses, person_in, read_footage, seen_in
 from gambol.game.meshes import surface_of
 from gambol.game.scenario.scenario import load
-from gambol.game.studio import (FootageError, Plan, Sensor, error_of, first_poses, followed, overlaid, person_in, read_footage,
-                                seen_in, shoot)
+from gambol.game.studio import Plan, Sensor, error_of, followed, overlaid, shoot
 
 SCENARIO = """
 title = "Short"

@@ -37,9 +37,9 @@ def locomotion():
     return Locomotion.load()
 
 
-def play(path, ticks, controller=GLIDE, players=1, every=45):
+def play(path, ticks, controller=GLIDE, players=1, every=45, clip=None):
     """Play wishes into a log; the moments after each tick."""
-    timeline, writer, moments = Timeline(opening(controller, players)), LogWriter(path, controller, players), []
+    timeline, writer, moments = Timeline(opening(controller, players)), LogWriter(path, controller, players, clip), []
     for number, wishes in enumerate(ticks, 1):
         wishes = tuple(wish.rounded() for wish in wishes[:len(timeline.now.players)])
         timeline.advance(wishes)

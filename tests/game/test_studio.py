@@ -14,10 +14,10 @@ from gambol.controllers.mocap import load as load_motion
 from gambol.controllers.tracking.cameras import looking_at, read_cameras
 from gambol.game import cli, hosts
 from gambol.game.cli import film_jobs, filming
+from gambol.game.footage import FootageError, read_footage
 from gambol.game.scenario.scenario import load
 from gambol.game.scene import Box, Figure, Pillar, Scene
-from gambol.game.studio import (COCO, FootageError, LensWarp, Plan, Sensor, Stage, coco_points, read_footage, read_sensor, seen_by,
-                                shoot)
+from gambol.game.studio import COCO, LensWarp, Plan, Sensor, Stage, coco_points, read_sensor, seen_by, shoot
 
 SCENARIO = """
 title = "Short"

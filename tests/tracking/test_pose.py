@@ -9,7 +9,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from bodies import cameras, masks, stick_body, stride
 
-from gambol.controllers.tracking.pose import (Evidence, Penalty, calmed, constraint, judged, normal_rows, observed, overlap, penalty_of,
+from gambol.controllers.tracking.pose import (Evidence, Penalty, calmed, carried, constraint, judged, normal_rows, observed, overlap, penalty_of,
                                               penalty_rows, plucker_rows, predicted, solve)
 from gambol.controllers.tracking.pose.matching import closest_kernel, shift_kernel, sums_kernel
 from gambol.controllers.tracking.silhouettes import skinned
@@ -238,3 +238,18 @@ def test_a_corrupted_picture_is_noticed_and_patience_ends():
 def test_a_mask_of_another_size_is_told():
     with pytest.raises(ValueError, match="cam01: a mask of 5 × 4 pixels, but its pictures have 96 × 96"):
         observed(cameras()[0], np.zeros((4, 5), bool))
+
+
+def test_arms_are_drawn_to_how_people_carry_them():
+    """Where nothing is seen an arm turns back to between what both pulls want; other joints stay, and what is not asked for changes nothing."""
+    surface = stick_body()
+    chain, names = surface.chain, surface.chain.names
+    turned = Configuration(chain.rest().root, np.clip(np.full(len(chain), 0.3), chain.lower, chain.upper))
+    penalty = penalty_of(chain, turned, 60.0)
+    drawn = carried(chain, penalty, float(penalty.weights[-1]))
+    for k, name in enumerate(names):
+        half = name in ("LeftArm.x", "RightArm.x", "LeftForeArm.x", "LeftHand.y", "LeftHand.z", "RightForeArm.x", "RightHand.y", "RightHand.z")
+        assert drawn.target.angles[k] == pytest.approx(turned.angles[k] * (0.5 if half else 1.0))
+        assert drawn.weights[6 + k] == pytest.approx(penalty.weights[6 + k] * (2.0 if half else 1.0))
+    np.testing.assert_array_equal(carried(chain, penalty, 0.0).weights, penalty.weights)
+    np.testing.assert_array_equal(drawn.weights[:6], penalty.weights[:6])

@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from bodies import cameras, masks, stick_body, stride
 
 from gambol.controllers.tracking import Tracker, TrackerSettings
+from gambol.controllers.tracking.pose import Evidence
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
 from gambol.controllers.tracking.twists import Configuration, exp, posed
 
@@ -66,6 +67,26 @@ def test_pictures_that_lie_are_left_out(film):
     assert not gated[2].fit.believed.any() and gated[4].fit.believed.all()
     assert off(surface.chain, gated[3].now, truth[5]).mean() < 0.03 < off(surface.chain, open_[3].now, truth[5]).mean()
     assert off(surface.chain, gated[4].now, truth[6]).mean() < 0.02
+
+
+def test_who_was_led_astray_is_found_again_though_part_of_them_is_hidden(film):
+    """Three frames of something else after a pace that was wrong; then a fifth of one silhouette is missing."""
+    surface, lenses, truth, seen = film
+    tracker = Tracker(surface, lenses, RATE)
+    track = tracker.step(tracker.start(truth[1], truth[0]), seen[2])
+    wild = np.random.default_rng(2).normal(size=len(surface.chain)) * 0.12
+    usual = Evidence(np.full(4, 0.97), np.zeros(4, int))
+    track = replace(track, before=Configuration(track.before.root, track.before.angles + wild), evidence=usual)
+    for t in (3, 4, 5):
+        track = tracker.step(track, [np.roll(mask[::-1], 20, 1) for mask in seen[t]])
+        assert not track.fit.believed.any()
+    assert off(surface.chain, track.now, truth[5]).mean() > 0.06
+    rows = np.flatnonzero(seen[6][1].any(1))
+    hidden = seen[6][1].copy()
+    hidden[rows[len(rows) // 2]:rows[len(rows) // 2 + len(rows) // 7]] = False
+    track = tracker.step(track, [seen[6][0], hidden, *seen[6][2:]])
+    assert 0.75 < np.count_nonzero(hidden) / np.count_nonzero(seen[6][1]) < 0.87
+    assert track.fit.believed.all() and off(surface.chain, track.now, truth[6]).mean() < 0.03
 
 
 def test_a_dropped_frame_is_no_evidence(film):

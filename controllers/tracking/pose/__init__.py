@@ -2,11 +2,11 @@
 
 from .evidence import Evidence, judged, overlap
 from .observed import Observed, observed
-from .penaliser import Penalty, calmed, penalty_of, penalty_rows, predicted
+from .penaliser import Penalty, calmed, carried, penalty_of, penalty_rows, predicted
 from .plucker import constraint, normal_rows, plucker_rows
 from .pose_solver import SETTINGS, Fit, SolverSettings, solve
 
 __all__ = [
-    "SETTINGS", "Evidence", "Fit", "Observed", "Penalty", "SolverSettings", "calmed", "constraint", "judged", "normal_rows", "observed",
+    "SETTINGS", "Evidence", "Fit", "Observed", "Penalty", "SolverSettings", "calmed", "carried", "constraint", "judged", "normal_rows", "observed",
     "overlap", "penalty_of", "penalty_rows", "plucker_rows", "predicted", "solve",
 ]

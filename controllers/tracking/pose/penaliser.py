@@ -16,6 +16,9 @@ ACCELERATION = 25.0
 TURNING = 110.0
 """The hips' [rad/s²], 0.03 rad at 60 frames a second."""
 
+STILL = ("Arm.x", "ForeArm.x", "Hand.y", "Hand.z")
+"""What an arm seldom does: turn about itself, and bend at the wrist."""
+
 
 @dataclass(frozen=True, eq=False)
 class Penalty:
@@ -62,6 +65,19 @@ def penalty_of(chain: Chain, target: Configuration, rate: float, firmness: float
     interval = 1.0 / min(rate, 60.0) ** 2
     sigma = np.concatenate([np.full(3, ACCELERATION * interval), np.full(3, TURNING * interval), np.full(len(chain), JOINT_ACCELERATION * interval)])
     return Penalty(target, firmness / sigma**2)
+
+
+def carried(chain: Chain, penalty: Penalty, firmness: float) -> Penalty:
+    """A penalty that draws arms to how people carry them, too: neither turned about themselves nor bent at the wrist.
+
+    firmness: 1/σ² of that [1/rad²]. Silhouettes hardly show it, and noise turns an arm until its elbow bends backwards.
+    """
+    pulled = np.array([name.removeprefix("Left").removeprefix("Right") in STILL for name in chain.names])
+    weights, angles = penalty.weights.copy(), penalty.target.angles.copy()
+    own = weights[6:][pulled]
+    angles[pulled] *= own / (own + firmness)
+    weights[6:][pulled] = own + firmness
+    return Penalty(Configuration(penalty.target.root, angles), weights)
 
 
 def penalty_rows(chain: Chain, penalty: Penalty, where: Configuration, centre: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solve as solved
 
 from ..cameras import Lens, direction_kernel, project_kernel
-from ..silhouettes import Surface, View, contour_of, rendered, skinned
+from ..silhouettes import Surface, View, contour_of, redrawn, skinned
 from ..together import together
 from ..twists import Configuration, posed, retract_kernel
 from .evidence import overlap
@@ -63,17 +63,19 @@ class _Drawn:
 
 
 def solve(surface: Surface, views: Sequence[Observed], start: Configuration, penalty: Penalty | None = None,
-          believe: Callable[[np.ndarray], np.ndarray] | None = None, settings: SolverSettings = SETTINGS) -> Fit:
+          believe: Callable[[np.ndarray], np.ndarray] | None = None, settings: SolverSettings = SETTINGS,
+          shown: list[View | None] | None = None) -> Fit:
     """The pose near `start` that fits what cameras see, and the penalty.
 
-    believe: told how `start` overlaps each mask (C,), it says which cameras (C,) bool have a say; all by default.
+    believe: told how `start` overlaps each mask (C,), it says which cameras (C,) bool have a say; all by default. shown: the
+    surface at `start` as each camera sees it, where that was drawn already; in their place the last drawn views are left.
     """
     chain, size = surface.chain, 6 + len(surface.chain)
     centre = start.root[:3, 3].copy()
     root, angles = start.root.copy(), start.angles.copy()
     root[:3, 3] -= centre
     overlaps, residual, believed = np.zeros(len(views)), 0.0, np.ones(len(views), bool)
-    buffers: list[View | None] = [None] * len(views)
+    buffers: list[View | None] = [None] * len(views) if shown is None else shown
     views = list(views)
     for outer in range(settings.outer):
         world = root.copy()
@@ -85,7 +87,9 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
             if not believed[k]:
                 return None
             view = views[k]
-            buffers[k] = made = _render(view.lens, vertices, surface, buffers[k])
+            made = buffers[k]
+            if made is None or shown is None or not first:
+                buffers[k] = made = redrawn(view.lens, vertices, surface.triangles, made)
             if first:
                 box = _around(made.box, settings.reach)
                 overlaps[k] = _overlap(view.mask, made, box)
@@ -114,15 +118,6 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
             retract_kernel(chain.first, chain.count, step, root, angles, chain.lower, chain.upper)
     root[:3, 3] += centre
     return Fit(Configuration(root, angles), residual, overlaps, believed)
-
-
-def _render(lens: Lens, vertices: np.ndarray, surface: Surface, kept: View | None) -> View:
-    if kept is not None:
-        left, top, right, bottom = kept.box
-        kept.depth[top:bottom, left:right] = np.inf
-        kept.triangles[top:bottom, left:right] = -1
-        kept = View(kept.depth, kept.triangles, (0, 0, 0, 0))
-    return rendered(lens, vertices, surface.triangles, kept)
 
 
 def _around(box: tuple[int, int, int, int], reach: float) -> tuple[int, int, int, int]:

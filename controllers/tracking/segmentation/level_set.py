@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..silhouettes import extent_of
 from .local_gaussians import features_of, in_company, likelihood_ratio
 from .signed_distance import signed_distance
 from .total_variation import cheapest
@@ -70,11 +71,10 @@ def segmented(picture: np.ndarray, prior: np.ndarray, plate: np.ndarray | None =
     anew. ValueError for pictures of other sizes or kinds than each other's.
     """
     _checked(picture, prior, plate)
-    rows, columns = np.flatnonzero(prior.any(1)), np.flatnonzero(prior.any(0))
-    out = np.zeros(prior.shape, bool)
-    if not len(rows):
+    out, box = np.zeros(prior.shape, bool), extent_of(prior)
+    if box[0] == box[2]:
         return Segmented(out, 0.0, cut)
-    cut = _cut(picture, plate, (int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1), chosen, cut)
+    cut = _cut(picture, plate, box, chosen, cut)
     left, top, right, bottom = cut.box
     part, features, empty, heard = np.s_[top:bottom, left:right], cut.features, cut.empty, cut.heard
     levels = signed_distance(prior[part], chosen.reach)

@@ -67,22 +67,41 @@ def likelihood_ratio(features: np.ndarray, inside: np.ndarray, outside: np.ndarr
 
 @kernel(nogil=True)
 def company_kernel(picture, channels, apart, out):
-    """Write 1 for each pixel (H, W) of a picture (H, W × C) uint8 that two of its eight neighbours are like, else 0."""
+    """Write 1 for each pixel (H, W) of a picture (H, W × C) uint8 that two of its eight neighbours are like, else 0.
+
+    Each pair of neighbours is compared once, a row at a time and colour by colour, as processors do many of at once.
+    """
     height, width = out.shape
-    for y in range(height):
+    rows = np.empty((2, channels, width), np.int32)
+    alike, away = np.zeros((2, width), np.int32), np.empty(width, np.int32)
+    for c in range(channels):
         for x in range(width):
-            alike, left = 0, max(x - 1, 0)
-            v, u = max(y - 1, 0), left
-            while v < min(y + 2, height) and alike < 3:  # it is like itself
-                away = np.int32(0)
-                for c in range(channels):
-                    away += abs(np.int32(picture[y, x * channels + c]) - np.int32(picture[v, u * channels + c]))
-                if away <= apart:
-                    alike += 1
-                u += 1
-                if u == min(x + 2, width):
-                    v, u = v + 1, left
-            out[y, x] = 1.0 if alike > 2 else 0.0
+            rows[0, c, x] = picture[0, x * channels + c]
+    for y in range(height):
+        here, below = y % 2, (y + 1) % 2
+        own, under = alike[here], alike[below]
+        under[:] = 0
+        if y + 1 < height:
+            for c in range(channels):
+                for x in range(width):
+                    rows[below, c, x] = picture[y + 1, x * channels + c]
+        for kind in range(4 if y + 1 < height else 1):  # the next of the row, then three of the row below
+            other, side = (here, 1) if kind == 0 else (below, kind - 2)
+            many, i, j = width - abs(side), max(-side, 0), max(side, 0)
+            away[:many] = 0
+            for c in range(channels):
+                a, b = rows[here, c, i:i + many], rows[other, c, j:j + many]
+                for x in range(many):
+                    away[x] += abs(a[x] - b[x])
+            mine, theirs = own[i:i + many], alike[other, j:j + many]
+            for x in range(many):
+                away[x] = np.int32(1) if away[x] <= apart else np.int32(0)
+                mine[x] += away[x]
+            for x in range(many):
+                theirs[x] += away[x]
+        line = out[y]
+        for x in range(width):
+            line[x] = 1.0 if own[x] >= 2 else 0.0
 
 
 @kernel(nogil=True, fastmath=True)
@@ -148,7 +167,7 @@ def blur_kernel(values, window, room, out):
                 out[k, y, x] = value
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(nogil=True, fastmath=True, error_model="numpy")
 def gaussian_kernel(sums, floor, out):
     """Write means (C), halves of inverse variances (C) and the logarithm of the peak, (1 + 2 C, h, w), the peak first."""
     planes, height, width = sums.shape
@@ -166,31 +185,44 @@ def gaussian_kernel(sums, floor, out):
             out[0, y, x] = peak
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(nogil=True, fastmath=True, error_model="numpy")
 def ratio_kernel(features, empty, gaussians, stray, out):
-    """Write log p₁ − log p₂ (H, W); each no less than `stray`, the density of what is neither's. empty: what p₂ is of."""
+    """Write log p₁ − log p₂ (H, W); each no less than `stray`, the density of what is neither's. empty: what p₂ is of.
+
+    Gaussians are drawn out to the picture's width once for each of their rows; all the rest is done a row of pixels at a time.
+    """
     channels, height, width = features.shape
     planes, rows, columns = gaussians.shape[1], gaussians.shape[2], gaussians.shape[3]
-    line = np.empty((2, planes, columns), np.float32)
-    least = np.float32(stray)
+    drawn, line = np.empty((2, 2, planes, width), np.float32), np.empty((2, width), np.float32)
+    which, share = np.empty(width, np.int64), np.empty(width, np.float32)
+    for x in range(width):
+        at = min(max((x + 0.5) / COARSE - 0.5, 0.0), columns - 1.0)
+        which[x] = min(int(at), max(columns - 2, 0))
+        share[x] = at - which[x]
+    least, known = np.float32(stray), -1
     for y in range(height):
         at = min(max((y + 0.5) / COARSE - 0.5, 0.0), rows - 1.0)
         v = min(int(at), max(rows - 2, 0))
-        w, f = min(v + 1, rows - 1), np.float32(at - v)
+        f = np.float32(at - v)
+        while known < min(v + 1, rows - 1):
+            known += 1
+            for side in range(2):
+                for k in range(planes):
+                    flat, wide = gaussians[side, k, known], drawn[known % 2, side, k]
+                    for x in range(width):
+                        u = which[x]
+                        wide[x] = flat[u] + share[x] * (flat[min(u + 1, columns - 1)] - flat[u])
+        upper, lower = drawn[v % 2], drawn[min(v + 1, rows - 1) % 2]
         for side in range(2):
-            for k in range(planes):
-                for u in range(columns):
-                    line[side, k, u] = gaussians[side, k, v, u] + f * (gaussians[side, k, w, u] - gaussians[side, k, v, u])
-        for x in range(width):
-            at = min(max((x + 0.5) / COARSE - 0.5, 0.0), columns - 1.0)
-            u = min(int(at), max(columns - 2, 0))
-            n, g = min(u + 1, columns - 1), np.float32(at - u)
-            one = line[0, 0, u] + g * (line[0, 0, n] - line[0, 0, u])
-            other = line[1, 0, u] + g * (line[1, 0, n] - line[1, 0, u])
+            total, one, two = line[side], upper[side, 0], lower[side, 0]
+            for x in range(width):
+                total[x] = one[x] + f * (two[x] - one[x])
             for c in range(1, channels + 1):
-                d = channels + c
-                a = features[c - 1, y, x] - (line[0, c, u] + g * (line[0, c, n] - line[0, c, u]))
-                b = empty[c - 1, y, x] - (line[1, c, u] + g * (line[1, c, n] - line[1, c, u]))
-                one -= a * a * (line[0, d, u] + g * (line[0, d, n] - line[0, d, u]))
-                other -= b * b * (line[1, d, u] + g * (line[1, d, n] - line[1, d, u]))
-            out[y, x] = max(one, least) - max(other, least)
+                seen = features[c - 1, y] if side == 0 else empty[c - 1, y]
+                one, two, third, fourth = upper[side, c], lower[side, c], upper[side, channels + c], lower[side, channels + c]
+                for x in range(width):
+                    away = seen[x] - (one[x] + f * (two[x] - one[x]))
+                    total[x] -= away * away * (third[x] + f * (fourth[x] - third[x]))
+        one, two, ratio = line[0], line[1], out[y]
+        for x in range(width):
+            ratio[x] = max(one[x], least) - max(two[x], least)

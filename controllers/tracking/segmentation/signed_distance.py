@@ -14,40 +14,43 @@ def signed_distance(mask: np.ndarray, most: float) -> np.ndarray:
     return out
 
 
-@kernel(nogil=True)
+@kernel(nogil=True, fastmath=True)
 def distance_kernel(mask, most, out):
-    """Write signed distances (H, W): along columns first, then the least over a row (Meijster 2000), which ends where it can."""
+    """Write signed distances (H, W): along columns first, then the least over a row, as far as distances are told."""
     height, width = mask.shape
-    far = np.int32(most) + 2
-    column = np.empty((2, height, width), np.int32)  # to the nearest pixel of a column that is 0, 1
+    reach = int(most) + 2
+    far = np.float32(reach)
+    zero, one = np.float32(0.0), np.float32(1.0)
+    column = np.empty((2, height, width), np.float32)  # to the nearest pixel of a column that is 0, 1
     for kind in range(2):
-        for x in range(width):
-            column[kind, 0, x] = 0 if mask[0, x] == kind else far
-        for y in range(1, height):
+        for y in range(height):
+            row, above, pixels = column[kind, y], column[kind, max(y - 1, 0)], mask[y]
             for x in range(width):
-                column[kind, y, x] = 0 if mask[y, x] == kind else min(column[kind, y - 1, x] + 1, far)
+                row[x] = zero if pixels[x] == kind else far if y == 0 else min(above[x] + one, far)
         for y in range(height - 2, -1, -1):
+            row, below = column[kind, y], column[kind, y + 1]
             for x in range(width):
-                column[kind, y, x] = min(column[kind, y, x], column[kind, y + 1, x] + 1)
-    first = np.empty((2, width), np.int32)  # how far along a row the next column is that has anything near
+                row[x] = min(row[x], below[x] + one)
+    square, best = np.empty(width, np.float32), np.empty((2, width), np.float32)
     for y in range(height):
         for kind in range(2):
-            first[kind, 0] = 0 if column[kind, y, 0] < far else far
-            for x in range(1, width):
-                first[kind, x] = 0 if column[kind, y, x] < far else min(first[kind, x - 1] + 1, far)
-            for x in range(width - 2, -1, -1):
-                first[kind, x] = min(first[kind, x], first[kind, x + 1] + 1)
+            row, least = column[kind, y], best[kind]
+            nearest = far
+            for x in range(width):
+                square[x] = row[x] * row[x]
+                least[x] = square[x]
+                nearest = min(nearest, row[x])
+            if nearest == far:
+                continue
+            for d in range(1, min(reach, width)):
+                more, many = np.float32(d * d), width - d
+                right, left, before, after = least[d:], least[:many], square[:many], square[d:]
+                for x in range(many):
+                    right[x] = min(right[x], before[x] + more)
+                for x in range(many):
+                    left[x] = min(left[x], after[x] + more)
+        here, there, line, pixels = best[0], best[1], out[y], mask[y]
         for x in range(width):
-            inside = mask[y, x] != 0
-            kind = 0 if inside else 1
-            row = column[kind, y]
-            best = row[x] * row[x]
-            d = max(first[kind, x], 1)
-            while d * d < best and d < far:
-                if x >= d:
-                    best = min(best, row[x - d] * row[x - d] + d * d)
-                if x + d < width:
-                    best = min(best, row[x + d] * row[x + d] + d * d)
-                d += 1
-            value = min(np.sqrt(np.float32(best)) - np.float32(0.5), np.float32(most))
-            out[y, x] = value if inside else -value
+            inside = pixels[x] != 0
+            value = min(np.sqrt(here[x] if inside else there[x]) - np.float32(0.5), np.float32(most))
+            line[x] = value if inside else -value

@@ -60,38 +60,41 @@ def span_kernel(costs, most, spans, region):
         spans[y, 0], spans[y, 1] = (max(left - 1, 0), min(right + 1, width)) if left < right else (0, 0)
 
 
-@kernel(nogil=True, fastmath=True)
+@kernel(nogil=True, fastmath=True, error_model="numpy")
 def variation_kernel(costs, spans, length, rounds, primal, dual, region, field):
-    """Go so many steps of both, in place, where rows' spans (H, 2) are. region: (H, W). field: (2, H, W), 0 at the last column and row."""
+    """Go so many steps of both, in place, where rows' spans (H, 2) are. region: (H, W). field: (2, H, W), 0 at the last column and row.
+
+    Row by row: a row's u needs the field of that row and of the one above, and the field u of that row and of the one below.
+    Each has its own part of an array, from 0 on, so that many pixels are done at once.
+    """
     height, width = costs.shape
     limit, up, down = np.float32(length), np.float32(dual), np.float32(primal)
-    ahead = region.copy()
-    px, py = field[0], field[1]
+    ahead, none = region.copy(), np.zeros(width, np.float32)
     zero, one = np.float32(0.0), np.float32(1.0)
     for _ in range(rounds):
         for y in range(height):
-            below = min(y + 1, height - 1)
             left, right = spans[y, 0], spans[y, 1]
-            for x in range(left, min(right, width - 1)):
-                a = px[y, x] + up * (ahead[y, x + 1] - ahead[y, x])
-                b = py[y, x] + up * (ahead[below, x] - ahead[y, x])
+            if left >= right:
+                continue
+            last, under = min(right, width - 1), min(y + 1, height - 1)
+            px, py = field[0, y, left:last], field[1, y, left:last]
+            here, beside, below = ahead[y, left:last], ahead[y, left + 1:last + 1], ahead[under, left:last]
+            for x in range(last - left):
+                a, b = px[x] + up * (beside[x] - here[x]), py[x] + up * (below[x] - here[x])
                 scale = limit / max(limit, np.sqrt(a * a + b * b))
-                px[y, x], py[y, x] = a * scale, b * scale
-            if right == width and left < right:
-                x = width - 1
-                b = py[y, x] + up * (ahead[below, x] - ahead[y, x])
-                py[y, x] = min(max(b, -limit), limit)
-        for y in range(height):
-            above = max(y - 1, 0)
-            keep = one if y > 0 else zero
-            left, right = spans[y, 0], spans[y, 1]
-            if left == 0 and right > 0:
+                px[x], py[x] = a * scale, b * scale
+            if right == width:
+                b = field[1, y, last] + up * (ahead[under, last] - ahead[y, last])
+                field[1, y, last] = min(max(b, -limit), limit)
+            above = field[1, y - 1] if y > 0 else none
+            if left == 0:
                 old = region[y, 0]
-                new = min(max(old + down * (px[y, 0] + py[y, 0] - keep * py[above, 0] - costs[y, 0]), zero), one)
+                new = min(max(old + down * (field[0, y, 0] + field[1, y, 0] - above[0] - costs[y, 0]), zero), one)
                 region[y, 0], ahead[y, 0] = new, new + new - old
-            for x in range(max(left, 1), right):
-                old = region[y, x]
-                new = old + down * (px[y, x] - px[y, x - 1] + py[y, x] - keep * py[above, x] - costs[y, x])
-                new = min(max(new, zero), one)
-                region[y, x] = new
-                ahead[y, x] = new + new - old
+                left = 1
+            px, before, py, above = field[0, y, left:right], field[0, y, left - 1:right - 1], field[1, y, left:right], above[left:right]
+            u, cost, here = region[y, left:right], costs[y, left:right], ahead[y, left:right]
+            for x in range(right - left):
+                old = u[x]
+                new = min(max(old + down * (px[x] - before[x] + py[x] - above[x] - cost[x]), zero), one)
+                u[x], here[x] = new, new + new - old

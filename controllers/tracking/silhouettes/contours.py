@@ -33,10 +33,40 @@ class Contour:
 def contour_of(mask: np.ndarray, box: tuple[int, int, int, int] | None = None) -> Contour:
     """The contour of a mask (H, W) bool, within a box of left, top, right, bottom pixels. The picture's own border is none."""
     mask = np.ascontiguousarray(mask).view(np.uint8)
-    left, top, right, bottom = box or (0, 0, mask.shape[1], mask.shape[0])
+    left, top, right, bottom = box or extent_of(mask)
     out = np.empty((min(mask.size, MOST), 4))
     count = contour_kernel(mask, left, top, right, bottom, out)
     return Contour(out[:count, :2].copy(), out[:count, 2:].copy())
+
+
+def extent_of(mask: np.ndarray) -> tuple[int, int, int, int]:
+    """Within which left, top, right, bottom pixels a mask (H, W) bool or uint8 covers anything; right and bottom excluded, all 0 for nothing."""
+    left, top, right, bottom = extent_kernel(np.ascontiguousarray(mask).view(np.uint8))
+    return int(left), int(top), int(right), int(bottom)
+
+
+@kernel(nogil=True)
+def extent_kernel(mask):
+    """Left, top, right, bottom of a mask (H, W) uint8; whole rows at once, as most have nothing."""
+    height, width = mask.shape
+    across = np.zeros(width, np.uint8)
+    top, bottom = height, 0
+    for y in range(height):
+        row, some = mask[y], np.uint8(0)
+        for x in range(width):
+            some |= row[x]
+        if some:
+            top, bottom = min(top, y), y + 1
+            for x in range(width):
+                across[x] |= row[x]
+    if top >= bottom:
+        return 0, 0, 0, 0
+    left, right = 0, width
+    while not across[left]:
+        left += 1
+    while not across[right - 1]:
+        right -= 1
+    return left, top, right, bottom
 
 
 @kernel(nogil=True)

@@ -29,7 +29,10 @@ class View:
     @property
     def mask(self) -> np.ndarray:
         """Which pixels are covered (H, W) bool."""
-        return self.triangles >= 0
+        out = np.zeros(self.triangles.shape, bool)
+        left, top, right, bottom = self.box
+        np.greater_equal(self.triangles[top:bottom, left:right], 0, out=out[top:bottom, left:right])
+        return out
 
     @staticmethod
     def empty(lens: Lens) -> View:
@@ -55,7 +58,17 @@ def rendered(lens: Lens, vertices: np.ndarray, triangles: np.ndarray, over: View
     return View(view.depth, view.triangles, (left, top, right, bottom))
 
 
-@kernel(nogil=True)
+def redrawn(lens: Lens, vertices: np.ndarray, triangles: np.ndarray, kept: View | None) -> View:
+    """A mesh seen by a camera as of `rendered`, in the arrays of a view that is not needed any more, if there is one."""
+    if kept is not None:
+        left, top, right, bottom = kept.box
+        kept.depth[top:bottom, left:right] = np.inf
+        kept.triangles[top:bottom, left:right] = -1
+        kept = View(kept.depth, kept.triangles, (0, 0, 0, 0))
+    return rendered(lens, vertices, triangles, kept)
+
+
+@kernel(nogil=True, error_model="numpy")
 def raster_kernel(seen, triangles, closed, first, depth, numbers):
     """Draw triangles (T, 3) of vertices seen at (V, 3), pixels and depth [m], where they are nearer than what is there.
 
@@ -66,14 +79,12 @@ def raster_kernel(seen, triangles, closed, first, depth, numbers):
     left, top, right, bottom = width, height, 0, 0
     for t in range(len(triangles)):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        za, zb, zc = seen[a, 2], seen[b, 2], seen[c, 2]
-        if min(za, zb, zc) < NEAREST:
-            continue
         ax, ay, bx, by, cx, cy = seen[a, 0], seen[a, 1], seen[b, 0], seen[b, 1], seen[c, 0], seen[c, 1]
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-        if area > 0.0 and closed:  # y runs down: an outside turns the other way
+        if area == 0.0 or area > 0.0 and closed:  # y runs down: an outside turns the other way
             continue
-        if area == 0.0:
+        za, zb, zc = seen[a, 2], seen[b, 2], seen[c, 2]
+        if min(za, zb, zc) < NEAREST:
             continue
         low_x, high_x = min(ax, bx, cx), max(ax, bx, cx)
         low_y, high_y = min(ay, by, cy), max(ay, by, cy)
@@ -85,14 +96,15 @@ def raster_kernel(seen, triangles, closed, first, depth, numbers):
             continue
         inverse = 1.0 / area
         ia, ib, ic = 1.0 / za, 1.0 / zb, 1.0 / zc
+        xa, ya, xb, yb = (by - cy) * inverse, (cx - bx) * inverse, (cy - ay) * inverse, (ax - cx) * inverse  # weights' slopes
+        ia, ib = ia - ic, ib - ic
         for y in range(y0, y1 + 1):
+            fa, fb = ya * (y - cy) - xa * cx, yb * (y - cy) - xb * cx
             for x in range(x0, x1 + 1):
-                wa = ((bx - x) * (cy - y) - (by - y) * (cx - x)) * inverse
-                wb = ((cx - x) * (ay - y) - (cy - y) * (ax - x)) * inverse
-                wc = 1.0 - wa - wb
-                if wa < 0.0 or wb < 0.0 or wc < 0.0:
+                wa, wb = fa + xa * x, fb + xb * x
+                if wa < 0.0 or wb < 0.0 or wa + wb > 1.0:
                     continue
-                deep = np.float32(1.0 / (wa * ia + wb * ib + wc * ic))
+                deep = np.float32(1.0 / (ic + wa * ia + wb * ib))
                 if deep < depth[y, x]:
                     depth[y, x] = deep
                     numbers[y, x] = first + t

@@ -70,6 +70,24 @@ class Footage:
             raise FootageError(f"{self.path / TRUTH}: {reason(fault)}") from None
 
 
+def checked(footage: Footage, masks: bool = False) -> Footage:
+    """The footage, with a picture of its camera's size, or a mask, of every frame that was not dropped. FootageError, naming the file."""
+    from PIL import Image, UnidentifiedImageError
+
+    for lens in footage.lenses:
+        gone = () if masks else footage.dropped.get(lens.name, ())
+        for number in (n for n in range(footage.frames) if n not in gone):
+            path = footage.file(lens.name, "mask" if masks else "frame", number)
+            try:
+                with Image.open(path) as image:  # its head alone
+                    size = image.size
+            except (OSError, UnidentifiedImageError, ValueError, SyntaxError) as fault:
+                raise FootageError(f"{path}: {reason(fault)}") from None
+            if size != lens.size:
+                raise FootageError(f"{path}: {size[0]} × {size[1]} pixels, but {lens.name} has {lens.size[0]} × {lens.size[1]}")
+    return footage
+
+
 def file_of(folder: Path, camera: str, kind: str, number: int) -> Path:
     """Where a camera's frame is, one of `KINDS`."""
     return folder / camera / f"{kind}_{number:05d}.png"

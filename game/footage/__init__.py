@@ -1,0 +1,11 @@
+"""Footage on disk: what calibrated cameras filmed, by Gambol's studio or in the world, checked as it is read; and where a track of
+somebody in it begins.
+"""
+
+from .first_frames import clicked_pose, first_poses, person_in, seen_in, settled
+from .footage import Footage, FootageError, begun, checked, complete, file_of, fingerprint, read_footage
+
+__all__ = [
+    "Footage", "FootageError", "begun", "checked", "clicked_pose", "complete", "file_of", "fingerprint", "first_poses", "person_in",
+    "read_footage", "seen_in", "settled",
+]
