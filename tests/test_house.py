@@ -139,7 +139,7 @@ PLAN = {
         "camera": "scene input",
         "hosts": "scene render input",
         "meshes": "scene render",
-        "world": "scene render meshes",
+        "world": "scene render meshes input",
         "explain": "scene input world",
         "session": "scene files input camera world explain",
         "hud": "scene hosts world explain session",

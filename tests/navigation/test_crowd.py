@@ -8,7 +8,7 @@ from gambol.controllers.navigation import in_world
 from gambol.controllers.navigation.crowd import Manners, aims, avoid, crowd_intent, stepping
 from gambol.game.scene.scene import Box
 
-AGENTS = Manners(horizon=2.0, halflife=1e-12, aside=0.0, hurry=1e-9, stir=2.0, right=0.0, first=0.0, sight=np.pi + 1e-3, see=10.0, most=10,
+AGENTS = Manners(horizon=2.0, halflife=1e-12, aside=0.0, swing=0.0, hurry=1e-9, stir=2.0, right=0.0, first=0.0, sight=np.pi + 1e-3, see=10.0, most=10,
                  still=1e-9, differ=0.0)
 """What RVO2's agents do: no lag, half of every change each, eyes all round."""
 PLACES = [[-0.11, 0.75], [-1.52, 0.98], [-1.41, 1.83], [0.84, 0.12], [0.61, -1.08], [0.0, -1.66], [-0.88, -0.86], [-1.34, -0.34]]

@@ -25,7 +25,7 @@ APART = 0.5
 BESIDE = 0.40
 """Who leaps up onto a box, or down from it, stands, or lands, so far from it [m]."""
 FARTHEST, HIGHEST = 2.6, 1.2
-"""No leap from a stand is thought of that goes farther than this [m], or up higher."""
+"""No leap is thought of that goes farther than this [m], or up higher."""
 NEAREST = 6
 """Of the leaps from one box to another so many are thought of, the shortest."""
 SPEED = 1.2
@@ -131,7 +131,8 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
             if levels.regions[other] != own and len(edges[other][0]):
                 onto = _nearest_on(levels, other, places)
                 far = np.linalg.norm(onto - places, axis=1)
-                for k in np.argsort(far, kind="stable")[:NEAREST]:
+                detour = np.linalg.norm(places - ends[0], axis=1) + np.linalg.norm(onto - ends[1], axis=1)
+                for k in np.argsort(far.round(2) + 1e-3 * detour, kind="stable")[:NEAREST]:  # of those as short the ones on the way
                     if far[k] > 0.1:
                         _add(found, (places[k], height), (onto[k], edges[other][2]), own, int(levels.regions[other]))
     return found
