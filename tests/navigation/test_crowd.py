@@ -51,6 +51,14 @@ def test_all_are_asked_alike_however_many_there_are():
     assert np.array_equal(both[:len(PLACES)], alone)
 
 
+def test_who_walks_needs_more_room_than_who_stands():
+    """Arms swing at a walk: beside each other at the same distance those who walk part, those who stand stay."""
+    places = [[-0.33, 0.0], [0.33, 0.0]]
+    standing = avoid(places, np.zeros((2, 2)), np.zeros((2, 2)), 0.22, headings=[0.0, 0.0])
+    walking = avoid(places, [[0.0, 1.2]] * 2, [[0.0, 1.2]] * 2, 0.22, headings=[0.0, 0.0])
+    assert not standing.any() and walking[1, 0] - walking[0, 0] > 0.05
+
+
 def test_walls_are_kept_off():
     wall = Box((0.0, 1.0, 1.0), (4.0, 2.0, 0.2), 0.0)
     chosen = avoid([[0.0, 0.5]], [[0.0, 0.0]], [[0.8, 1.2]], 0.22, [wall])[0]
@@ -93,7 +101,7 @@ def test_a_crowd_on_a_circle_changes_sides():
     """Everybody's way leads through the middle: the hardest for all."""
     angles = np.arange(12) * 2 * np.pi / 12
     around = 6.0 * np.stack([np.sin(angles), np.cos(angles)], 1)
-    walked(around, -around, 22.0)
+    walked(around, -around, 32.0)
 
 
 def walked(places, goals, seconds):

@@ -30,8 +30,8 @@ NEAREST = 6
 """Of the leaps from one box to another so many are thought of, the shortest."""
 SPEED = 1.2
 """How fast one walks between them [m/s]."""
-LEAP = 1.8, 0.5
-"""What a leap takes [s]: turning, crouching and getting up; and for each metre."""
+LEAP = 1.8, 1.5
+"""What a leap counts for [s]: turning, crouching and getting up; and for each metre, more than to walk it, so that the shortest is leapt."""
 ASKED = 60
 """About no more leaps is asked."""
 WEAK = "too "
