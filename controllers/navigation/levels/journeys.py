@@ -122,7 +122,7 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
         without = places + (INSET + BESIDE) * normals
         which, ground = levels.ground(without, height)  # what is higher is another box's matter
         own, theirs = int(levels.regions[box]), levels.regions[which]
-        free = ~levels.shut(without, ground) & (theirs != own)
+        free = ~levels.shut(without, ground) & (theirs != own) & _within(levels, which, without)
         for k in np.flatnonzero(free):
             here, there = (places[k], height), (without[k], float(ground[k]))
             _add(found, here, there, own, int(theirs[k]))
@@ -154,6 +154,11 @@ def _nearest_on(levels: Levels, box: int, places: np.ndarray) -> np.ndarray:
     half = np.maximum(levels.halves[box, [0, 2]] - INSET, 0.0)
     c, s = np.cos(levels.headings[box]), np.sin(levels.headings[box])
     return np.clip(levels.local(places)[:, box], -half, half) @ np.array([[c, -s], [s, c]]) + levels.centres[box, [0, 2]]
+
+
+def _within(levels: Levels, which: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Whether places (P, 2) on surfaces (P,) are an inset from where these end: there walks lead to. The floor ends nowhere."""
+    return np.array([box == levels.floor or np.allclose(_nearest_on(levels, box, place[None])[0], place) for box, place in zip(which, places)], bool)
 
 
 def _add(found: list, here: tuple[np.ndarray, float], there: tuple[np.ndarray, float], off: int, onto: int) -> None:
