@@ -75,10 +75,9 @@ class Pointing:
         if not held or self.waited < EVERY or not middle and (self.pointer, self.heading) == self.asked:  # a camera that moves drags no pointer
             return []
         place = self.place(now.after.props, middle)
-        now_asked = (place if middle else self.pointer, self.heading)
         if place is None or self.asked is not None and middle and math.dist(place, self.asked[0]) < DRAGS:
             return []
-        self.asked, self.waited = now_asked, 0
+        self.asked, self.waited = (place if middle else self.pointer, self.heading), 0
         return ["goto={:.2f}/{:.2f}".format(*place) + ("" if self.heading is None else f"/{self.heading}")]
 
     def place(self, props: Sequence[Prop], middle: bool = False) -> tuple[float, float] | None:
