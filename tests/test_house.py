@@ -99,7 +99,7 @@ PLAN = {
         "reconstruction.live": "files body",
         "navigation": "body contract",
         "navigation.routes": "compiled",
-        "navigation.levels": "contract",
+        "navigation.levels": "contract navigation.planning",
         "navigation.crowd": "compiled contract navigation.routes",
         "navigation.planning": "compiled files body navigation.routes",
         "navigation.identification": "files body navigation.planning",
