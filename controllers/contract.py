@@ -83,7 +83,8 @@ class Intent:
     radius and height (`gambol.game.scene.scene` has both). points: (n, 3) [m] in the world, where the points on
     the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish.
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
-    goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way.
+    goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way. aside: (3,) what is added to
+    the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
     """
 
@@ -93,6 +94,7 @@ class Intent:
     points: np.ndarray | None = None
     look: np.ndarray | None = None
     goal: Goal | None = None
+    aside: np.ndarray | None = None
     sighting: Sighting | None = None
 
     @staticmethod

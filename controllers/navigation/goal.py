@@ -17,6 +17,10 @@ if TYPE_CHECKING:  # whoever has a plan has loaded what it takes
     from .planning import Plan
 
 
+CREEPS = 0.05
+"""Nobody who wishes for less than this [m/s] is kept from his way."""
+
+
 class Following(NamedTuple):
     """How a plan is followed.
 
@@ -50,6 +54,14 @@ def wish(plan: Plan, time: float, ground: np.ndarray, velocity: np.ndarray, foll
     off = relative(np.asarray(ground, float), wanted)
     missing = np.array([following.place * off[1], following.heading * wrap(off[2]), following.place * off[0]])
     return moving + 2.0 * lead * change + lead**2 * jerk + missing + following.speed * (moving - velocity)
+
+
+def progress(wanted: np.ndarray, chosen: np.ndarray) -> float:
+    """How much 0 … 1 of the way that a wish (3,) v_f, ω, v_l would go is gone by the velocity (3,) that was chosen instead: by so much a plan's
+    time goes on. All of it for who wishes to stand, or to turn."""
+    ahead, going = wanted[[0, 2]], chosen[[0, 2]]
+    square = float(ahead @ ahead)
+    return 1.0 if square < CREEPS**2 else min(max(float(ahead @ going) / square, 0.0), 1.0)
 
 
 def arrived(plan: Plan, time: float, ground: np.ndarray, following: Following = Following()) -> bool:

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..body import wrap
 from ..contract import CharacterState, Controller, Goal, Intent, Leap, Status
-from .goal import arrived, wish
-from .levels import Crossing, Leg, levels_of, named, next_leg
+from .goal import arrived, progress, wish
+from .levels import SOON, Crossing, Leg, levels_of, named, next_leg, onto, runs, take_off
 from .obstacles import SHOULDER
 
 if TYPE_CHECKING:  # who never goes to a goal loads no planner
@@ -37,6 +37,10 @@ NEARER = 0.1
 """A new plan is worth something where the walker came so much nearer to the goal since the last [m]."""
 HELD_UP = 4
 """After so many plans in a row that were worth nothing he is held up."""
+PATIENCE = 45.0
+"""Who has come no nearer to the goal for so long [s] because of others gives up."""
+KEPT = 0.9
+"""Who goes on by less than this share of what he wishes for is kept from it by others."""
 LATE = 4.0
 """Who has not arrived so long after his plan's end [s] plans anew."""
 OFFSET, ASKEW, SLOW = 0.07, 0.1, 0.3
@@ -47,8 +51,6 @@ MISSED = 0.5
 """Who lands farther from where he should [m] leaps so no more."""
 ONWARD = 0.3
 """Who has landed and has to go on is asked to walk at this speed [m/s], and gets up sooner."""
-QUICKER = 4
-"""So often a quicker plan is sought for who has to be there within some time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +59,10 @@ class Going:
 
     goal: as it was asked for. plan: the walk there, or to where the first of `crossings` is leapt, and `time` how far he is in it [s]. heading: how he
     is to stand at its end [rad]. around: what stood about as it was planned, and stops what of it stops him. spent: since the goal was asked for [s].
-    stood: for how long he has stood at the plan's end [s]. left: how far he was from it as it was planned [m]. held: so many plans in a row brought him no nearer. plans:
-    how many were made. crossings: the leaps that are left. asked: for how long the first was asked for [s]. leapt: whether somebody else is on duty.
-    barred: leaps that he could not make.
+    stood: for how long he has stood at the plan's end [s]. left: how far he was from it as it was planned [m]. held: so many plans in a row brought him no nearer. waits: for how
+    long others have kept him from coming nearer than he was, `nearest` [m], to the plan's end [s]. plans: how many were made. crossings: the leaps that are left. asked: for how long the first was asked for [s]. leapt: whether somebody else is on duty.
+    barred: leaps that he could not make. pace: how fast he walks as he leaps on [m/s]; 0 from a stand. off: after how many steps he leaps,
+    once that is known. stands: leaps that he does not make from a walk.
     """
 
     goal: Goal
@@ -72,11 +75,16 @@ class Going:
     stood: float = 0.0
     left: float = math.inf
     held: int = 0
+    waits: float = 0.0
+    nearest: float = math.inf
     plans: int = 1
     crossings: tuple[Crossing, ...] = ()
     asked: float = 0.0
     leapt: bool = False
     barred: tuple[tuple[float, ...], ...] = ()
+    pace: float = 0.0
+    off: int | None = None
+    stands: tuple[tuple[float, ...], ...] = ()
 
     @property
     def there(self) -> bool:
@@ -110,16 +118,43 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
         now = _onward(now, state, intent, walker)
     elif now.asked > REFUSED:
         now = _onward(replace(now, barred=(*now.barred, named(now.crossings[0]))), state, intent, walker)
+    elif now.pace and not now.plan.reason and now.time > now.plan.seconds - SOON:
+        now = _looked(now, state, intent, walker, dt)
     elif not now.plan.reason and _astray(now, state):
         now = _again(now, state, intent, walker)
     near = _within(now, state, STAYS) if now.there else bool(np.abs(state.velocity).max() < STILL) and arrived(now.plan, now.time, state.ground)
     now = replace(now, stood=now.stood + dt if near and not now.plan.reason else 0.0)
     velocity = np.zeros(3) if now.there else wish(now.plan, now.time, state.ground, state.velocity)
-    leap = intent.leap
-    if now.crossings and leap is None and not now.plan.reason and _ready(now, state):
-        leap, now = Leap(now.crossings[0].place), replace(now, asked=now.asked + dt)
-    now = replace(now, time=now.time + dt * float(walker.readiness(state)), spent=now.spent + dt)
+    share, leap = 1.0, intent.leap
+    if intent.aside is not None:
+        share, velocity = progress(velocity, velocity + intent.aside), velocity + intent.aside
+        now = _kept(now, state, share, dt)
+    if now.crossings and leap is None and not now.plan.reason and (now.off == 0 if now.pace else _ready(now, state)):
+        leap, now = Leap(onto(now.crossings[0], now.pace)), replace(now, asked=now.asked + dt)
+    now = replace(now, time=now.time + share * dt * float(walker.readiness(state)), spent=now.spent + dt)
     return now, replace(intent, velocity=velocity, leap=leap)
+
+
+def _kept(now: Going, state: CharacterState, share: float, dt: float) -> Going:
+    """The same, as others let him go on by a share of what he wishes for."""
+    left = _left(state, now.plan)
+    if left < now.nearest - NEARER:
+        return replace(now, waits=0.0, nearest=left)
+    waits = now.waits + dt * (share < KEPT)
+    if waits <= PATIENCE or now.plan.reason:
+        return replace(now, waits=waits)
+    from .planning import Plan
+
+    why = f"others have been in the way for {waits:.0f} s, {left:.2f} m before the {'leap' if now.crossings else 'goal'}"
+    return replace(now, waits=waits, plan=Plan.none(state.ground, now.plan.goal, why))
+
+
+def _looked(now: Going, state: CharacterState, intent: Intent, walker: Controller, dt: float) -> Going:
+    """The same near the edge, at which of his steps he leaps; anew, for a leap from a stand, where he leaps at none, or has not leapt at that one."""
+    if now.off is not None and now.off > 0:
+        return replace(now, off=now.off - 1)
+    off = None if now.off == 0 else take_off(walker, state, now.plan, now.time, now.crossings[0], intent, dt)
+    return replace(now, off=off) if off is not None else _onward(replace(now, stands=(*now.stands, named(now.crossings[0]))), state, intent, walker)
 
 
 def _ready(now: Going, state: CharacterState) -> bool:
@@ -135,9 +170,9 @@ def _changed(now: Going, around: Sequence[Any]) -> bool:
 def _onward(now: Going, state: CharacterState, intent: Intent, walker: Controller) -> Going:
     """The way from where he is, after a leap or where something else stands about now."""
     barred = now.barred
-    if now.leapt and now.crossings and math.dist(state.ground[:2], now.crossings[0].place[[0, 2]]) > MISSED:
+    if now.leapt and now.crossings and math.dist(state.ground[:2], onto(now.crossings[0], now.pace)[[0, 2]]) > MISSED:
         barred = (*barred, named(now.crossings[0]))
-    return replace(_begun(state, intent, now.goal, walker, now.plans, now.spent, barred), spent=now.spent)
+    return replace(_begun(state, intent, now.goal, walker, now.plans, now.spent, barred, now.stands), spent=now.spent)
 
 
 def _astray(now: Going, state: CharacterState) -> bool:
@@ -155,9 +190,9 @@ def _within(now: Going, state: CharacterState, near: tuple[float, float]) -> boo
 
 
 def _begun(state: CharacterState, intent: Intent, goal: Goal, walker: Controller, plans: int | None, spent: float = 0.0,
-           barred: tuple[tuple[float, ...], ...] = ()) -> Going:
+           barred: tuple[tuple[float, ...], ...] = (), stands: tuple[tuple[float, ...], ...] = ()) -> Going:
     """The way to a goal, `spent` [s] after it was asked for, as so many plans had been made."""
-    from .planning import Plan
+    from .planning import Plan, plan_in_time
 
     planes = walker.limits(SHARE)
     if planes is None:
@@ -167,26 +202,28 @@ def _begun(state: CharacterState, intent: Intent, goal: Goal, walker: Controller
     heading = _arrival(state, leg) if leg.heading is None else leg.heading
     end = np.array([*leg.place, heading])
     within = None if leg.crossings or goal.within is None else max(goal.within - spent, 0.1)
-    made = Plan.none(state.ground, end, leg.reason) if leg.reason else _planned(state, end, leg.around, planes, within, not spent)
+    pace = runs(leg.crossings[0], state.ground[:2], intent.around, planes) if leg.crossings and named(leg.crossings[0]) not in stands else 0.0
+    made = Plan.none(state.ground, end, leg.reason) if leg.reason else plan_in_time(
+        state.ground, end, state.velocity, planes, leg.around, float(state.floor), within, not spent, np.array([pace, 0.0, 0.0]))
     return Going(goal, made, heading, intent.around, leg.around, left=_left(state, made), plans=1 if plans is None else plans + 1,
-                 crossings=leg.crossings, barred=barred)
+                 crossings=leg.crossings, barred=barred, pace=pace, stands=stands)
 
 
 def _again(now: Going, state: CharacterState, intent: Intent, walker: Controller) -> Going:
     """Another plan to the same end."""
-    from .planning import Plan
+    from .planning import Plan, plan_in_time
 
     planes = walker.limits(SHARE)
     assert planes is not None  # he walked
     goal, left = now.plan.goal, _left(state, now.plan)
     goal = np.array([goal[0], goal[1], now.heading])
-    held = 0 if now.there or left < now.left - NEARER else now.held + 1
+    held = 0 if now.there or now.waits > 0.0 or left < now.left - NEARER else now.held + 1
     if held >= HELD_UP:
         made = Plan.none(state.ground, goal, f"held up {left:.2f} m before the {'leap' if now.crossings else 'goal'}")
     else:
         within = None if now.goal.within is None or now.crossings else max(now.goal.within - now.spent, 0.1)
-        made = _planned(state, goal, now.stops, planes, within, False)
-    return replace(now, plan=made, time=0.0, stood=0.0, asked=0.0, left=left, held=held, plans=now.plans + 1)
+        made = plan_in_time(state.ground, goal, state.velocity, planes, now.stops, float(state.floor), within, leaving=np.array([now.pace, 0.0, 0.0]))
+    return replace(now, plan=made, time=0.0, stood=0.0, asked=0.0, left=left, held=held, plans=now.plans + 1, off=None)
 
 
 def _left(state: CharacterState, made: Plan) -> float:
@@ -201,28 +238,3 @@ def _arrival(state: CharacterState, leg: Leg) -> float:
     found = ways(here, leg.place, shapes, SHOULDER) if len(shapes) else []
     last = leg.place - (found[0][-2] if found else here)
     return float(state.ground[2]) if math.hypot(*last) < NEARER else math.atan2(*last)
-
-
-def _planned(state: CharacterState, goal: np.ndarray, around: Sequence[Any], planes: np.ndarray, within: float | None, strictly: bool) -> Plan:
-    """The plan from where and how the walker moves, within the time [s], or, unless strictly, the quickest."""
-    from .planning import HUMAN, Plan, plan
-
-    floor = float(state.floor)
-    across = planes[:, :3] @ state.velocity
-    share = np.min(-planes[:, 3] / np.maximum(across, 1e-9), initial=1.0, where=across > 1e-9)  # who runs has to slow down first
-    moving = max(min(float(share), 1.0), 0.0) * np.asarray(state.velocity, float)
-    weights = HUMAN
-    made = plan(state.ground, goal, moving, weights, planes, around, floor=floor)
-    if made.reason and np.abs(moving).max() > 1e-3:  # he has to stand first
-        moving = np.zeros(3)
-        made = plan(state.ground, goal, moving, weights, planes, around, floor=floor)
-    for _ in range(QUICKER):
-        if made.reason or within is None or made.seconds <= within:
-            return made
-        faster = (0.95 * within / made.seconds) ** 4
-        weights = weights._replace(forward=faster * weights.forward, turning=faster * weights.turning, lateral=faster * weights.lateral)
-        quicker = plan(state.ground, goal, moving, weights, planes, around, floor=floor)
-        made = made if quicker.reason or quicker.seconds > made.seconds else quicker
-    if within is not None and made.seconds > within and strictly:
-        return Plan.none(state.ground, goal, f"it takes {made.seconds:.1f} s, {within:.1f} s are given")
-    return made

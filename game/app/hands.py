@@ -87,6 +87,13 @@ class Hands:
         """Whether anybody holds the key or button of an action."""
         return self.keyboard.held(action, self.bindings) or any(pad_held(pad, action, self.bindings) for pad in self.pads)
 
+    def sends(self, players: int) -> str:
+        """With what the first player sends the character somewhere: the "pointer" as long as the key is held, the "middle" of the picture, which
+        a stick moves, with a pad's button; "" with neither."""
+        if self.keyboard.held("go_to", self.bindings):
+            return "pointer"
+        return "middle" if any(pad_held(self.pads[slot], "go_to", self.bindings) for slot in drivers(self.pads, players)[0]) else ""
+
     def pushes(self, players: int) -> bool:
         """Whether anybody asks to move, by other keys than those that scrub."""
         scrubs = {key for action in ("scrub_back", "scrub_on") for key in self.bindings.row(action).keys}

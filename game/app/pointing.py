@@ -19,6 +19,8 @@ CLICKED = "LEFT_BUTTON"
 """What a click sends with: held, it turns the camera."""
 CLICK, STILL = 15, 0.01
 """A button that is let go within so many ticks, the pointer no farther than this from where it was [heights of the picture], has been clicked."""
+DRAGS = 0.15
+"""The middle of the picture drags a goal where it is so far from it [m]: the camera goes along with who walks."""
 EVERY = 6
 """While it is dragged, a goal moves at most every so many ticks: each time the way is planned anew."""
 
@@ -57,32 +59,33 @@ class Pointing:
             self.heading = ((self.heading or 0) + round(math.copysign(max(abs(notches), 1.0), notches)) * NOTCH) % 360
         return self.held
 
-    def actions(self, now: SessionState, points: bool, held: bool) -> list[str]:
-        """What the hands ask for in this tick. points: whether the pointer points anywhere; held: whether the key is down."""
+    def actions(self, now: SessionState, points: bool, sends: str) -> list[str]:
+        """What the hands ask for in this tick. points: whether the pointer points anywhere; sends: what is held to send somebody, as
+        `Hands.sends` says it."""
         clicked, self.clicked = self.clicked and points, False
         self.down = None if self.down is None else (self.down[0], self.down[1] + 1)
-        held = held and points
+        held = bool(sends) and points
         if clicked and not held:
             place = self.place(now.after.props)
             return [] if place is None else ["goto={:.2f}/{:.2f}".format(*place)]
         if held and not self.held:
             self.heading, self.asked, self.waited = None, None, EVERY
         self.held, self.waited = held, self.waited + 1
-        now_asked = (self.pointer, self.heading)
-        if not held or self.waited < EVERY or now_asked == self.asked:  # a camera that moves drags nothing
+        middle = sends == "middle"
+        if not held or self.waited < EVERY or not middle and (self.pointer, self.heading) == self.asked:  # a camera that moves drags no pointer
             return []
-        place = self.place(now.after.props)
-        if place is None:
+        place = self.place(now.after.props, middle)
+        if place is None or self.asked is not None and middle and math.dist(place, self.asked[0]) < DRAGS:
             return []
-        self.asked, self.waited = now_asked, 0
+        self.asked, self.waited = (place if middle else self.pointer, self.heading), 0
         return ["goto={:.2f}/{:.2f}".format(*place) + ("" if self.heading is None else f"/{self.heading}")]
 
-    def place(self, props: Sequence[Prop]) -> tuple[float, float] | None:
-        """Where x, z [m] the pointer is on the floor, or on a box among props; None above the horizon, or too far away."""
+    def place(self, props: Sequence[Prop], middle: bool = False) -> tuple[float, float] | None:
+        """Where x, z [m] the pointer is on the floor, or on a box among props, or the middle of the picture; None above the horizon, or too far away."""
         if self.camera is None:
             return None
         eye = np.asarray(self.camera.eye, float)
-        along = unproject(self.camera, self.aspect, np.array([*self.pointer, 1.0])) - eye
+        along = unproject(self.camera, self.aspect, np.array([*((0.5 * self.aspect, 0.5) if middle else self.pointer), 1.0])) - eye
         if along[1] > -1e-6:
             return None
         far = min((share for share in (_met(eye, along, box) for box in props if isinstance(box, Box)) if share is not None), default=math.inf)

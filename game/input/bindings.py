@@ -118,7 +118,7 @@ DEFAULT = Bindings((
         Binding("turn_left", "turn; flying: down, up", ("Q",), ("LEFT",), held=True),
         Binding("turn_right", "turn; flying: down, up", ("E",), ("RIGHT",), held=True),
         Binding("jump", "hold to aim, let go to jump", ("SPACE",), ("A",), held=True),
-        Binding("go_to", "go where the pointer is; or click", ("T",), held=True),
+        Binding("go_to", "go where the pointer is; or click", ("T",), ("LS",), held=True),
         Binding("strafe", "keep facing", ("F",), ("LT",), held=True),
         Binding("strafe_lock", "keep facing, on or off", ("TAB",), ("RB",)),
         Binding("face", "face a direction", analog="look stick"),

@@ -23,9 +23,8 @@ from ..explain import broken, explained, led, pointed, rows, stepping, with_came
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
-from ..world import DT, RATE, Character, Recorded, World, beginning, figures, follower_of, methods, tracked_of
+from ..world import DT, RATE, Character, Recorded, World, avoiding, beginning, figures, follower_of, methods, tracked_of
 from .actor_table import ActorTable
-from .avoiding import avoiding
 from .camera_operator import Operator
 from .scenario import Scenario
 from .shot_table import ShotTable, overlays, parts

@@ -3,6 +3,7 @@ few points of somebody, and the course that the game opens on.
 """
 
 from .centre_of_mass import jump_of, physique_of
+from .courtesy import avoiding
 from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
@@ -15,7 +16,8 @@ from .world import DT, RATE, Character, FixedStep, World, figures, ground_betwee
 
 __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "STAGES", "TINTS", "Character", "Embodied", "Errors",
-    "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "beginning", "figures", "follower_of",
+    "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
+    "figures", "follower_of",
     "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "switched",
     "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "watches_of",
 ]

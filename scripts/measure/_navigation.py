@@ -13,6 +13,8 @@ from gambol.controllers.navigation.planning import HUMAN, PUBLISHED, plan
 
 RECORDED = Path(__file__).resolve().parents[2].parent / "shared" / "human_paths" / "human_paths.npz"
 CLEARANCE = 0.30
+BODY = 0.22
+"""A body's capsule has this radius [m]."""
 SETS = {"published": PUBLISHED, "human": HUMAN}
 
 

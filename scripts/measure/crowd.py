@@ -20,9 +20,9 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 import numpy as np
 
 from _crowds import SCENES, Scene, facing
+from _limbs import limb_depths
 from _plots import pictures, pyplot
 
-from gambol.controllers.body import forward_kinematics
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import is_box
 from gambol.controllers.navigation.crowd import aims, crowd_intent
@@ -35,14 +35,10 @@ ARRIVED = 0.5
 """Who is as near to his goal gets the next one [m]."""
 LOOKED = 20
 """Everybody looks for his way once in so many steps."""
-LIMBS = {"LeftUpLeg": ("LeftLeg", 0.07), "RightUpLeg": ("RightLeg", 0.07), "LeftLeg": ("LeftFoot", 0.05), "RightLeg": ("RightFoot", 0.05),
-         "LeftFoot": ("LeftToe", 0.04), "RightFoot": ("RightToe", 0.04), "LeftArm": ("LeftForeArm", 0.045), "RightArm": ("RightForeArm", 0.045),
-         "LeftForeArm": ("LeftHand", 0.035), "RightForeArm": ("RightHand", 0.035), "Hips": ("Spine1", 0.13)}
-"""Capsules about bones: where each ends, and how thick it is [m]."""
 
 
 class Walked(NamedTuple):
-    """trails: (T, N, 3). speeds: (N,) wished. touched: how many pairs' capsules overlapped in a frame, summed; deepest [m]. limbs: likewise. walls: (T, N)
+    """trails: (T, N, 3). speeds: (N,) wished. touched: how many pairs' capsules overlapped in a frame, summed; deepest [m]. limbs: likewise, and legs and trunks without arms. walls: (T, N)
     how far capsules were from what stands there [m]. arrivals: (N,). stuck: (N,) bool. rate: steps a second."""
 
     trails: np.ndarray
@@ -51,6 +47,8 @@ class Walked(NamedTuple):
     deepest: float
     limbs: int
     limbs_deepest: float
+    legs: int
+    legs_deepest: float
     walls: float
     arrivals: np.ndarray
     stuck: np.ndarray
@@ -65,8 +63,8 @@ def walked(walker: Locomotion, scene: Scene, seconds: float, rng, speeds=None) -
     goals = np.array([scene.goal(who, 0, rng) for who in range(count)])
     state, aim = walker.start(scene.start), goals.copy()
     trails, spent = np.empty((steps, count, 3)), 0.0
-    touched = limbs = 0
-    deepest = limbs_deepest = 0.0
+    touched = limbs = legs = 0
+    deepest = limbs_deepest = legs_deepest = 0.0
     for step in range(steps):
         for who in np.flatnonzero((np.linalg.norm(state.ground[:, :2] - goals, axis=1) < ARRIVED) & ~done):
             arrivals[who] += 1
@@ -90,12 +88,13 @@ def walked(walker: Locomotion, scene: Scene, seconds: float, rng, speeds=None) -
         touched += int((over > 0).sum())
         deepest = max(deepest, float(over.max(initial=0.0)))
         if step % 3 == 0 and len(pairs):
-            depth = limb_depths(walker, pose, pairs)
-            limbs += int((depth > 0).sum())
-            limbs_deepest = max(limbs_deepest, float(depth.max()))
+            depth = limb_depths(walker.skeleton, pose, pairs)
+            limbs, limbs_deepest = limbs + int((depth > 0).sum()), max(limbs_deepest, float(depth.max()))
+            depth = limb_depths(walker.skeleton, pose, pairs, arms=False)
+            legs, legs_deepest = legs + int((depth > 0).sum()), max(legs_deepest, float(depth.max()))
     late = trails[-min(10 * RATE, steps):]
     moved = np.linalg.norm(late[:, :, :2] - late[:1, :, :2], axis=-1).max(0)
-    return Walked(trails, speeds, touched, deepest, limbs, limbs_deepest, nearest_wall(trails, scene.around), arrivals,
+    return Walked(trails, speeds, touched, deepest, limbs, limbs_deepest, legs, legs_deepest, nearest_wall(trails, scene.around), arrivals,
                   (moved < 0.5) & ~done, steps / spent)
 
 
@@ -104,31 +103,6 @@ def near_pairs(places, within: float) -> tuple[np.ndarray, np.ndarray]:
     gaps = np.linalg.norm(places[:, None] - places[None], axis=-1)
     pairs = np.argwhere(np.triu(gaps < within, 1))
     return pairs, gaps[pairs[:, 0], pairs[:, 1]]
-
-
-def limb_depths(walker: Locomotion, pose, pairs) -> np.ndarray:
-    """How deep (P,) [m] limbs of pairs of people are in each other, negative where apart."""
-    names = list(walker.skeleton.names)
-    bones = np.array([[names.index(a), names.index(b)] for a, (b, _) in LIMBS.items()])
-    thick = np.array([radius for _, radius in LIMBS.values()])
-    who, which = np.unique(pairs, return_inverse=True)
-    which = which.reshape(pairs.shape)
-    joints = forward_kinematics(walker.skeleton, np.asarray(pose.root[who], float), np.asarray(pose.rotations[who], float))[0]
-    ends = joints[:, bones]
-    one, other = ends[which[:, 0]][:, :, None], ends[which[:, 1]][:, None, :]
-    apart = segments_apart(one[..., 0, :], one[..., 1, :], other[..., 0, :], other[..., 1, :])
-    return (thick[:, None] + thick[None] - apart).max((1, 2))
-
-
-def segments_apart(a, b, c, d) -> np.ndarray:
-    """How far (...) stretches a to b and c to d, (..., 3) each, are apart [m]: by turns, each one's nearest place to the other."""
-    u, v = b - a, d - c
-    t = np.full(np.broadcast_shapes(a.shape, c.shape)[:-1], 0.5)
-    uu, vv = np.maximum((u * u).sum(-1), 1e-12), np.maximum((v * v).sum(-1), 1e-12)
-    for _ in range(6):
-        s = np.clip(((a + t[..., None] * u - c) * v).sum(-1) / vv, 0.0, 1.0)
-        t = np.clip(((c + s[..., None] * v - a) * u).sum(-1) / uu, 0.0, 1.0)
-    return np.linalg.norm(a + t[..., None] * u - c - s[..., None] * v, axis=-1)
 
 
 def nearest_wall(trails, around) -> float:
@@ -197,7 +171,7 @@ def main() -> None:
             made = walked(walker, scene, asked.seconds, rng)
             speed = np.linalg.norm(np.diff(made.trails[:, :, :2], axis=0), axis=-1) * RATE
             print(f"{name}: {made.touched} frames of two capsules in each other, deepest {100 * made.deepest:.1f} cm; limbs {made.limbs} of each third frame, deepest "
-                  f"{100 * made.limbs_deepest:.1f} cm; walls {100 * made.walls:.1f} cm away; arrivals {made.arrivals.sum()}, never {(made.arrivals == 0).sum()}; "
+                  f"{100 * made.limbs_deepest:.1f} cm, without arms {made.legs}, {100 * max(made.legs_deepest, 0.0):.1f} cm; walls {100 * made.walls:.1f} cm away; arrivals {made.arrivals.sum()}, never {(made.arrivals == 0).sum()}; "
                   f"stuck {made.stuck.sum()}; mean speed {speed.mean():.2f} of {made.speeds.mean():.2f} m/s; {made.rate:.0f} Hz", flush=True)
             if asked.plots:
                 drawn(asked.plots, name, scene, made)

@@ -19,7 +19,8 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
-from _navigation import CLEARANCE, RECORDED, SETS, around_the_start, draw_rooms
+from _limbs import limbs_in
+from _navigation import BODY, CLEARANCE, RECORDED, SETS, around_the_start, draw_rooms
 from _plots import pictures
 
 from gambol.controllers.body import wrap
@@ -172,16 +173,20 @@ def followed(walker, count: int, rng) -> None:
 
 
 def sent(walker, count: int, seed: int) -> None:
-    """How somebody who is told a goal among ten things follows his plans and arrives, under a supervisor, with plans of his own."""
+    """How somebody who is told a goal among ten things follows his plans and arrives, under a supervisor, with plans of his own; what of his body
+    touches anything in any frame."""
     someone, rng = Supervisor({"locomotion": walker}), np.random.default_rng(seed)
-    rows, failed, steps, planned, near = [], [], [], [], []
+    rows, failed, steps, planned, near, shut, struck = [], [], [], [], [], 0, []
     while len(rows) + len(failed) < count:
         things = tuple(room(rng))
         shapes = shapes_of(things)
         start, goal = ((*rng.uniform(-3.5, 3.5, 2), rng.uniform(-np.pi, np.pi)) for _ in range(2))
         if np.hypot(start[0] - goal[0], start[1] - goal[1]) < 1.0 or nearest(np.array([start[:2], goal[:2]]), shapes) < CLEARANCE:
             continue
-        state, asked, off, way, plans = someone.start(start), Goal(goal[:2], goal[2]), [], [], 0
+        if not len(grid_way(start[:2], goal[:2], shapes, CLEARANCE, 0.025)):
+            shut += 1
+            continue
+        state, asked, off, way, plans, bodies = someone.start(start), Goal(goal[:2], goal[2]), [], [], 0, []
         for _ in range(60 * 40):
             begun = time.process_time()
             state, _ = someone.step(state, Intent(goal=asked, around=things), 1 / 60)
@@ -192,17 +197,22 @@ def sent(walker, count: int, seed: int) -> None:
             where, _ = made.plan.at(made.time)
             off.append((np.hypot(*(where - state.ground)[:2]), abs(wrap(where[2] - state.ground[2]))))
             way.append(state.ground[:2])
+            bodies.append(state.pose)
         if someone.status(state).kind != "done":
             failed.append(someone.status(state).reason or "not there after 40 s")
             continue
         last = made.plan.goal - state.ground
         rows.append((*np.mean(off, 0), *np.max(off, 0), np.hypot(*last[:2]), abs(wrap(last[2])), plans))
         near.append(nearest(np.array(way), shapes))
+        struck.append(limbs_in(walker.skeleton, bodies, things))
     place, heading, worst_place, worst_heading, end, end_heading, plans = np.array(rows).T
-    print(f"sent among ten things: {len(rows)} of {count} arrived; off the plan {100 * place.mean():.1f} cm, {np.degrees(heading.mean()):.1f}° (worst moment "
+    depth, by = np.array([deep for deep, _ in struck]), [name for deep, name in struck if deep > 0]
+    print(f"sent among ten things: {len(rows)} of {count} arrived, beside {shut} goals that no grid search reaches; off the plan {100 * place.mean():.1f} cm, {np.degrees(heading.mean()):.1f}° (worst moment "
           f"{100 * worst_place.max():.1f} cm, {np.degrees(worst_heading.max()):.1f}°); at the goal worst {100 * end.max():.1f} cm, {np.degrees(end_heading.max()):.1f}°; "
           f"{int(plans.sum())} plans; the middle of the body never nearer to anything than {100 * min(near):.1f} cm; a step {np.median(steps):.2f} ms, one that plans "
           f"{np.median(planned):.1f} ms, worst {max(planned):.1f} ms")
+    print(f"  in every frame: bodies of {BODY} m in something in {sum(1 for one in near if one < BODY)} walks; limbs in {(depth > 0).sum()}, deepest "
+          f"{100 * depth.max():.1f} cm ({', '.join(f'{name} {by.count(name)}' for name in sorted(set(by))) or 'none'})")
     for why in sorted(set(failed)):
         print(f"  failed, {failed.count(why)}: {why}")
 
@@ -225,7 +235,7 @@ def main() -> None:
     if given.plots:
         around_the_start(limits, given.plots)
     followed(walker, 10 if given.quick else 50, rng)
-    sent(walker, 10 if given.quick else 50, given.seed)
+    sent(walker, 10 if given.quick else given.scenes, given.seed)
     rooms(limits, 40 if given.quick else given.scenes, given.seed, given.plots)
     costs(limits, 3 if given.quick else 25, rng)
 

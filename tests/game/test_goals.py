@@ -25,7 +25,7 @@ from gambol.game.session.replay import replay
 from gambol.game.session.settings import SettingError
 from gambol.game.world import STAGES
 from gambol.game.world.world import DT, Character, World, figures
-from hands import FRAME, at, press, release, text, wait
+from hands import FRAME, at, pad, press, release, text, wait
 from scenarios import written
 from stand_in import Glide
 
@@ -154,6 +154,26 @@ def test_a_click_sends_and_a_drag_does_not(walker):
     release(game, "LEFT_BUTTON")
     wait(game, 0.1)
     assert game.now.players[0].goal is None, "that was held"
+
+
+def test_a_pad_sends_to_the_middle_of_the_picture(walker):
+    game = Play(walker)
+    game.scene((1600, 900))
+    middle = game.pointing.place((), middle=True)
+    game.handle(pad((0.0, 0.0), (0.0, 0.0), (-1.0, -1.0), "LS"))
+    wait(game, 0.1)
+    assert np.allclose(game.now.players[0].goal.place, middle, atol=0.02) and middle[1] > 1.0
+    plans = game.now.after.characters[0].state.going.plans
+    for _ in range(60):  # the camera goes along
+        game.scene((1600, 900))
+        game.tick(FRAME)
+    assert game.now.players[0].goal.place[1] > middle[1] + 0.1 and 1 < game.now.after.characters[0].state.going.plans - plans < 12, "he is led on"
+    game.handle(pad())
+    wait(game, 0.2)
+    kept = game.now.players[0].goal
+    game.scene((1600, 900))
+    wait(game, 0.3)
+    assert game.now.players[0].goal == kept is not None, "let go, the goal stays"
 
 
 def test_the_pointer_lies_on_what_is_nearest_in_its_way():

@@ -8,7 +8,7 @@ from gambol.controllers.navigation import in_world
 from gambol.controllers.navigation.crowd import Manners, aims, avoid, crowd_intent, stepping
 from gambol.game.scene.scene import Box
 
-AGENTS = Manners(horizon=2.0, halflife=1e-12, aside=0.0, hurry=1e-9, stir=2.0, right=0.0, first=0.0, sight=np.pi + 1e-3, see=10.0, most=10,
+AGENTS = Manners(horizon=2.0, halflife=1e-12, aside=0.0, swing=0.0, hurry=1e-9, stir=2.0, right=0.0, first=0.0, sight=np.pi + 1e-3, see=10.0, most=10,
                  still=1e-9, differ=0.0)
 """What RVO2's agents do: no lag, half of every change each, eyes all round."""
 PLACES = [[-0.11, 0.75], [-1.52, 0.98], [-1.41, 1.83], [0.84, 0.12], [0.61, -1.08], [0.0, -1.66], [-0.88, -0.86], [-1.34, -0.34]]
@@ -49,6 +49,14 @@ def test_all_are_asked_alike_however_many_there_are():
     alone = avoid(PLACES, MOVING, WISHES, 0.22)
     both = avoid(np.vstack([PLACES, far]), np.vstack([MOVING, MOVING]), np.vstack([WISHES, WISHES]), 0.22)
     assert np.array_equal(both[:len(PLACES)], alone)
+
+
+def test_who_walks_needs_more_room_than_who_stands():
+    """Arms swing at a walk: beside each other at the same distance those who walk part, those who stand stay."""
+    places = [[-0.33, 0.0], [0.33, 0.0]]
+    standing = avoid(places, np.zeros((2, 2)), np.zeros((2, 2)), 0.22, headings=[0.0, 0.0])
+    walking = avoid(places, [[0.0, 1.2]] * 2, [[0.0, 1.2]] * 2, 0.22, headings=[0.0, 0.0])
+    assert not standing.any() and walking[1, 0] - walking[0, 0] > 0.05
 
 
 def test_walls_are_kept_off():
@@ -93,7 +101,7 @@ def test_a_crowd_on_a_circle_changes_sides():
     """Everybody's way leads through the middle: the hardest for all."""
     angles = np.arange(12) * 2 * np.pi / 12
     around = 6.0 * np.stack([np.sin(angles), np.cos(angles)], 1)
-    walked(around, -around, 22.0)
+    walked(around, -around, 32.0)
 
 
 def walked(places, goals, seconds):

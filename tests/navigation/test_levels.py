@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gambol.controllers.contract import Goal, Intent
+from gambol.controllers.contract import Goal, Intent, Leap
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.navigation.levels import journey, levels_of, named
 from gambol.controllers.navigation.routes import distance, shapes_of
@@ -115,6 +115,44 @@ def test_he_leaps_over_a_gap_and_walks_on(someone):
     assert {state.active for state in states} == {"locomotion", "jump"} and min(float(state.floor) for state in states) == pytest.approx(0.6)
     assert states[0].going.crossings and not last.going.crossings
     assert len(last.going.barred) <= 1, "one that turns out impossible from where he stands is replaced"
+
+
+LONG = (Box((0.0, 0.3, 0.0), (2.0, 0.6, 5.0)), Box((0.0, 0.3, 5.9), (2.0, 0.6, 5.0)))
+
+
+def test_he_leaps_from_a_walk_and_walks_on(someone):
+    states = going(someone, LONG, (0.0, -2.0, 0.0), 0.6, Goal((0.2, 7.0), 0.0))
+    active = [state.active for state in states]
+    off, on = active.index("jump"), len(active) - active[::-1].index("jump")
+    assert states[off - 1].velocity[0] > 1.2 and states[on].velocity[0] > 1.2, "neither before nor after does he stop"
+    assert someone.status(states[-1]).kind == "done" and np.hypot(*(states[-1].ground[:2] - [0.2, 7.0])) < 0.03
+    assert min(float(state.floor) for state in states) == pytest.approx(0.6) and not states[-1].going.stands
+    assert np.abs([state.ground[0] for state in states]).max() < 0.3, "the leap on the way is taken, not another as short"
+
+
+def test_a_walk_leads_over_gaps_that_are_too_wide_from_a_stand(someone):
+    wide = (LONG[0], Box((0.0, 0.3, 6.2), (2.0, 0.6, 5.0)))
+    leap = Intent(leap=Leap(np.array([0.0, 0.6, 4.06])), around=wide)
+    assert "too far" in someone.refusal(someone.start((0.0, 2.14, 0.0), 0.6), leap)
+    states = going(someone, wide, (0.0, -2.0, 0.0), 0.6, Goal((0.0, 7.0)))
+    assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
+
+
+def test_a_step_that_is_hindered_becomes_a_leap_from_a_stand(someone):
+    """He is held back as he was to leap."""
+    state = someone.start((0.0, -2.0, 0.0), 0.6)
+    for _ in range(60 * 20):
+        aside = np.array([-1.2, 0.0, 0.0]) if state.going is not None and state.going.off is not None and not state.going.stands else None
+        state, _ = someone.step(state, Intent(goal=Goal((0.0, 7.0)), around=LONG, aside=aside), 1 / 60)
+        if someone.status(state).kind != "running":
+            break
+    assert someone.status(state).kind == "done" and float(state.floor) == pytest.approx(0.6)
+
+
+def test_without_room_to_stop_nobody_leaps_from_a_walk(someone):
+    short = (LONG[0], Box((0.0, 0.3, 4.1), (2.0, 0.6, 1.4)))
+    states = going(someone, short, (0.0, -2.0, 0.0), 0.6, Goal((0.0, 4.2)))
+    assert someone.status(states[-1]).kind == "done" and states[0].going.crossings and states[0].going.pace == 0.0
 
 
 def test_who_can_not_leap_there_says_so_and_stays(someone):

@@ -45,6 +45,26 @@ def test_a_plan_begins_as_the_walker_moves_and_ends_at_rest_at_the_goal(goal, ve
 
 
 @few
+@given(goals, starts, st.floats(0.5, 1.35))
+def test_a_plan_may_end_on_the_move(goal, velocity, pace):
+    made = plan(REST, goal, velocity, limits=LIMITS, leaving=(pace, 0.0, 0.0))
+    assert made.reason == "" and 0.0 < made.seconds < 60.0
+    ground, moving = made.at(made.seconds)
+    assert np.allclose(ground[:2], goal[:2], atol=1e-9) and abs(wrap(ground[2] - goal[2])) < 1e-9
+    assert np.allclose(moving, [pace, 0.0, 0.0], atol=1e-9)
+    times = np.linspace(0.0, made.seconds, 4001)
+    middle = 0.5 * (times[1:] + times[:-1])
+    assert np.mean(rate_of_cost(made, middle, HUMAN)) * made.seconds == pytest.approx(made.cost, rel=0.02), "its cost is what it says"
+
+
+def test_on_the_move_a_plan_is_found_that_no_shift_betters():
+    """The derivative by the time is right where both ends move: other times cost more."""
+    made = plan(REST, (0.5, 4.0, 0.1), (0.8, 0.0, 0.0), leaving=(1.2, 0.0, 0.0))
+    straight = plan(REST, (0.5, 4.0, 0.1), (0.8, 0.0, 0.0))
+    assert made.cost < straight.cost and made.seconds < straight.seconds, "who need not stop is there sooner, and for less"
+
+
+@few
 @given(goals, starts)
 def test_poses_velocities_and_accelerations_are_each_others_rates(goal, velocity):
     made = plan(REST, goal, velocity)

@@ -22,7 +22,7 @@ class Manners(NamedTuple):
     """How walkers avoid each other. Times in seconds, lengths in metres.
 
     horizon: no collision may come for so long; soon: who are too near part within this. halflife: of the spring by which legs
-    take up a wish. aside: what each leaves between bodies beside their radii, and wall beside what stands about; brake: how
+    take up a wish. aside: what each leaves between bodies beside their radii, swing: and more as his arms swing, at a walk; wall: beside what stands about; brake: how
     long it takes to come as near to that. hurry: who avoids others goes this much faster than he wishes at most; stir: who wishes for less goes
     this fast at most [m/s]. right: how far beside head-on [sine] people still pass on the right,
     and first: likewise where they cross, lest both dither. sight: what lies farther off the way one looks than
@@ -35,6 +35,7 @@ class Manners(NamedTuple):
     soon: float = 0.5
     halflife: float = 0.22
     aside: float = 0.08
+    swing: float = 0.07
     wall: float = 0.10
     brake: float = 0.4
     hurry: float = 1.15
@@ -94,6 +95,7 @@ def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, mann
         vx, vz = velocities[i, 0], velocities[i, 1]
         speed = math.hypot(wishes[i, 0], wishes[i, 1])
         fastest = max(manners.hurry * speed, manners.stir)
+        own = min(math.hypot(vx, vz), 1.0)
         hard = 0
         for k in range(shapes.shape[0]):  # whoever keeps behind the line at its nearest place does not touch what is convex
             room = distance(places[i, 0], places[i, 1], shapes[k], slope) - radii[i] - manners.wall
@@ -111,7 +113,7 @@ def _avoid(places, velocities, wishes, radii, headings, near, shapes, late, mann
             mine, yours = _care(i, j, places, wishes, headings, manners), _care(j, i, places, wishes, headings, manners)
             if mine == 0.0:
                 continue
-            apart = radii[i] + radii[j] + 2.0 * manners.aside
+            apart = radii[i] + radii[j] + 2.0 * manners.aside + manners.swing * (own + min(math.hypot(velocities[j, 0], velocities[j, 1]), 1.0))
             px, pz = _meeting(places[j, 0] - places[i, 0], places[j, 1] - places[i, 1], late * (velocities[j, 0] - vx), late * (velocities[j, 1] - vz), apart)
             if px == 0.0 and pz == 0.0:
                 px = 1e-3 if i < j else -1e-3

@@ -27,8 +27,8 @@ DENSE = 1.2
 """So many people stand on a square metre before a door, and no more."""
 EASE = 0.6
 """Over so long a way [m] people slow down behind those who wait."""
-SLIPS, FREE = 2, 1.6
-"""So many go on, however many are there; the others stay so far from the door [m], lest they press into it from all sides."""
+SLIPS, FREE = 0.62, 1.6
+"""One goes on for each such width of a door [m], however many are there; the others stay so far from it [m], lest they press into it from all sides."""
 KEPT = 1.5
 """Those who let others out stay so far from the door [m] ..."""
 LANE = 0.5
@@ -111,8 +111,9 @@ def queued(places, wishes, aims, doors: Sequence[Door], going=None) -> np.ndarra
         turn = -1.0 if first[0] <= first[1] else 1.0  # whose side it is
         mine = np.flatnonzero(comes & (side == turn))
         rank = np.argsort(np.argsort(far[mine] + aside[mine], kind="stable"), kind="stable")
-        room = np.sqrt(FREE**2 + 2.0 * np.maximum(rank - SLIPS, 0) / (np.pi * DENSE))
-        found[mine] *= np.where(rank < SLIPS, 1.0, np.clip((far[mine] - room) / EASE, 0.0, 1.0))[:, None]
+        slips = max(round(2.0 * door.half / SLIPS), 1)
+        room = np.sqrt(FREE**2 + 2.0 * np.maximum(rank - slips, 0) / (np.pi * DENSE))
+        found[mine] *= np.where(rank < slips, 1.0, np.clip((far[mine] - room) / EASE, 0.0, 1.0))[:, None]
         if not np.isfinite(min(first)):
             continue
         lets = comes & (side != turn)

@@ -25,13 +25,13 @@ APART = 0.5
 BESIDE = 0.40
 """Who leaps up onto a box, or down from it, stands, or lands, so far from it [m]."""
 FARTHEST, HIGHEST = 2.6, 1.2
-"""No leap from a stand is thought of that goes farther than this [m], or up higher."""
+"""No leap is thought of that goes farther than this [m], or up higher."""
 NEAREST = 6
 """Of the leaps from one box to another so many are thought of, the shortest."""
 SPEED = 1.2
 """How fast one walks between them [m/s]."""
-LEAP = 1.8, 0.5
-"""What a leap takes [s]: turning, crouching and getting up; and for each metre."""
+LEAP = 1.8, 1.5
+"""What a leap counts for [s]: turning, crouching and getting up; and for each metre, more than to walk it, so that the shortest is leapt."""
 ASKED = 60
 """About no more leaps is asked."""
 WEAK = "too "
@@ -122,7 +122,7 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
         without = places + (INSET + BESIDE) * normals
         which, ground = levels.ground(without, height)  # what is higher is another box's matter
         own, theirs = int(levels.regions[box]), levels.regions[which]
-        free = ~levels.shut(without, ground) & (theirs != own)
+        free = ~levels.shut(without, ground) & (theirs != own) & _within(levels, which, without)
         for k in np.flatnonzero(free):
             here, there = (places[k], height), (without[k], float(ground[k]))
             _add(found, here, there, own, int(theirs[k]))
@@ -131,7 +131,8 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
             if levels.regions[other] != own and len(edges[other][0]):
                 onto = _nearest_on(levels, other, places)
                 far = np.linalg.norm(onto - places, axis=1)
-                for k in np.argsort(far, kind="stable")[:NEAREST]:
+                detour = np.linalg.norm(places - ends[0], axis=1) + np.linalg.norm(onto - ends[1], axis=1)
+                for k in np.argsort(far.round(2) + 1e-3 * detour, kind="stable")[:NEAREST]:  # of those as short the ones on the way
                     if far[k] > 0.1:
                         _add(found, (places[k], height), (onto[k], edges[other][2]), own, int(levels.regions[other]))
     return found
@@ -153,6 +154,11 @@ def _nearest_on(levels: Levels, box: int, places: np.ndarray) -> np.ndarray:
     half = np.maximum(levels.halves[box, [0, 2]] - INSET, 0.0)
     c, s = np.cos(levels.headings[box]), np.sin(levels.headings[box])
     return np.clip(levels.local(places)[:, box], -half, half) @ np.array([[c, -s], [s, c]]) + levels.centres[box, [0, 2]]
+
+
+def _within(levels: Levels, which: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Whether places (P, 2) on surfaces (P,) are an inset from where these end: there walks lead to. The floor ends nowhere."""
+    return np.array([box == levels.floor or np.allclose(_nearest_on(levels, box, place[None])[0], place) for box, place in zip(which, places)], bool)
 
 
 def _add(found: list, here: tuple[np.ndarray, float], there: tuple[np.ndarray, float], off: int, onto: int) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...contract import CharacterState, Controller, Goal, Intent, Leap
 from .journeys import Crossing, journey
+from .run_up import farther
 from .surfaces import levels_of
 
 
@@ -37,7 +38,8 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
         return Leg(goal.floor, goal.heading, stops)
 
     def able(leap: Crossing) -> str | None:
-        return walker.refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+        why = walker.refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+        return "" if why and farther(walker, leap, around) else why
 
     way = journey(levels, here, start, goal.floor, end, able, barred)
     if way.crossings:

@@ -46,27 +46,31 @@ FASTEST = 20.0
 
 
 def plan(ground: ArrayLike, goal: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
-         limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0) -> Plan:
-    """The walk from ground (3,) x, z [m], heading [rad] to rest at goal (3,) that costs least: Mombaur 2010.
+         limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0,
+         leaving: ArrayLike = (0.0, 0.0, 0.0)) -> Plan:
+    """The walk from ground (3,) x, z [m], heading [rad] to goal (3,) that costs least: Mombaur 2010.
 
     velocity: (3,) v_f, ω, v_l at the start [m/s, rad/s, m/s]. limits: (H, 4) half-spaces n·(v_f, ω, v_l) + d ≤ 0 that velocities
     keep to, as `ControlSpace.half_spaces` gives them. around: boxes and pillars, of which those count that stop somebody on a
     floor `floor` [m] high. clearance: how far from them the middle of the body stays [m]; as near as he is, where he starts nearer.
-    A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
+    leaving: (3,) how he moves on as he is there; by default he stands. A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
     """
-    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor)[0]
+    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor, leaving)[0]
 
 
 def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
-          limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0) -> list[Plan]:
-    """Plans to many goals (G, 3) in one search, each as of `plan`. ground, velocity: (3,), or (G, 3) for each."""
+          limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0,
+          leaving: ArrayLike = (0.0, 0.0, 0.0)) -> list[Plan]:
+    """Plans to many goals (G, 3) in one search, each as of `plan`. ground, velocity, leaving: (3,), or (G, 3) for each."""
     goals = _numbers("goal", goals)
     if goals.ndim != 2 or goals.shape[1] != 3:
         raise ValueError(f"a goal is x, z [m] and heading [rad], got shape {goals.shape[1:]}")
     grounds = np.broadcast_to(_numbers("ground", ground), goals.shape)
     velocities = np.broadcast_to(_numbers("velocity", velocity), goals.shape)
-    if np.abs(velocities).max(initial=0.0) > FASTEST:
-        raise ValueError(f"nobody starts faster than {FASTEST:g} m/s or rad/s, got {velocities}")
+    onward = np.broadcast_to(_numbers("leaving", leaving), goals.shape)
+    for what, moving in (("starts", velocities), ("leaves", onward)):
+        if np.abs(moving).max(initial=0.0) > FASTEST:
+            raise ValueError(f"nobody {what} faster than {FASTEST:g} m/s or rad/s, got {moving}")
     alpha = _numbers("weights", weights)
     if alpha.shape != (5,) or not (np.all(alpha[:4] > 0.0) and alpha[4] >= 0.0):
         raise ValueError(f"weights: time and the three accelerations cost more than 0, looking away no less than 0; got {tuple(weights)}")
@@ -79,7 +83,7 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
     found: list[Plan | None] = [None] * len(goals)
     same: dict[bytes, tuple[np.ndarray, list]] = {}  # searches among the same shapes, at the same clearances
     for number, (start, goal) in enumerate(zip(grounds, goals)):
-        if np.abs(velocities[number]).max() < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
+        if max(np.abs(velocities[number]).max(), np.abs(onward[number]).max()) < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
             found[number] = Plan(np.repeat(goal[None], 4, 0), 0.0, 0.0, goal)
             continue
         if why := _refused(start, goal, shapes, clearance):
@@ -94,7 +98,7 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
             continue
         same.setdefault(near.tobytes(), (near, []))[1].append((number, routes))
     for near, tasks in same.values():
-        _solve(found, tasks, grounds, velocities, goals, weights, planes, near, shapes, clearance, top)
+        _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, near, shapes, clearance, top)
     return [one for one in found if one is not None]
 
 
@@ -138,7 +142,7 @@ def _round_ends(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearan
     return near
 
 
-def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, around, clearance, top, finer: int = 1) -> None:
+def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, shapes, around, clearance, top, finer: int = 1) -> None:
     """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found`.
     finer: so many times the intervals; where nothing was found it is sought among twice as many."""
     table = basis(finer * max(_intervals(way, weights, top, bool(len(shapes))) for _, routes in tasks for way in routes))
@@ -146,7 +150,8 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
     for number, routes in tasks:
         for way in routes:
             moving = np.append(in_world(grounds[number], velocities[number]), velocities[number, 1])
-            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table, moving)
+            leaving = np.append(in_world(goals[number], onward[number]), onward[number, 1])
+            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table, moving, leaving)
             first.append(guess)
             times.append(seconds)
             aims.append(np.broadcast_to(faced(way, table), (len(guess), len(table.shares), 2)))
@@ -155,11 +160,12 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
     starts, ends = (np.ascontiguousarray(poses[whose]) for poses in (grounds, goals))
     ends[:, 2] = splines[:, -1, 2]
     speeds = np.column_stack([in_world(starts, velocities[whose]), velocities[whose, 1]])
+    leaves = np.column_stack([in_world(ends, onward[whose]), onward[whose, 1]])
 
     def searched(which, margin, shapes, allowed):
         some, times, count = splines[which], seconds[which], len(splines[which])
         costs, faults, steps = np.empty(count), np.empty((count, 2)), np.empty(count, np.int64)
-        search(some, times, starts[which], speeds[which], ends[which], facing[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
+        search(some, times, starts[which], speeds[which], ends[which], leaves[which], facing[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
                clearance + margin, allowed, MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
         splines[which], seconds[which] = some, times
         return costs, faults, np.all(faults <= allowed, 1) & np.isfinite(costs)
@@ -183,7 +189,7 @@ def _solve(found, tasks, grounds, velocities, goals, weights, planes, shapes, ar
             found[number] = Plan.none(grounds[number], goals[number], _why(faults[mine], sound[mine]))
             if finer == 1:
                 task = [(number, routes) for one, routes in tasks if one == number]
-                _solve(found, task, grounds, velocities, goals, weights, planes, shapes, around, clearance, top, finer=2)
+                _solve(found, task, grounds, velocities, goals, onward, weights, planes, shapes, around, clearance, top, finer=2)
 
 
 def _why(faults: np.ndarray, sound: np.ndarray) -> str:

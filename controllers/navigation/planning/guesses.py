@@ -43,11 +43,11 @@ def faced(way: np.ndarray, basis: Basis) -> np.ndarray:
 
 
 def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: float, basis: Basis,
-            moving: np.ndarray = STANDING) -> tuple[np.ndarray, np.ndarray]:
+            moving: np.ndarray = STANDING, leaving: np.ndarray = STANDING) -> tuple[np.ndarray, np.ndarray]:
     """First splines (S, M + 3, 3) and times (S,) [s] along a way (n, 2) [m], from one heading to another [rad].
 
     top: the fastest that is gone ahead [m/s]. moving: (3,) ẋ, ż, ω in the world at the start [m/s, rad/s]: who moves may also go on
-    so at first.
+    so at first. leaving: (3,) likewise, at the goal.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
     length = along[-1]
@@ -75,6 +75,7 @@ def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: f
     guess = np.empty((len(made), len(basis.peaks), 3))
     guess[..., :2] = place
     guess[..., 2] = made
+    guess -= (basis.peaks**2 * (1.0 - basis.peaks) * seconds[:, None])[..., None] * leaving  # a cubic with that velocity in the end
     if direct and np.hypot(*moving[:2]) + 0.5 * abs(moving[2]) > MOVES:
         going = basis.peaks * (1.0 - basis.peaks) ** 2 * seconds[:, None]  # a cubic with that velocity at first, and none in the end
         guess = np.concatenate([guess, guess + going[..., None] * moving])

@@ -26,22 +26,23 @@ LEASH = 0.3
 
 
 @kernel
-def _hold(coefficients, start, speed, goal, seconds):
-    """The outer coefficients, which hold pose and velocity at the start and rest at the goal."""
+def _hold(coefficients, start, speed, goal, leave, seconds):
+    """The outer coefficients, which hold pose and velocity at the start and at the goal."""
     last = coefficients.shape[0] - 1
     reach = seconds / (3.0 * (last - 2))
     for d in range(3):
         coefficients[0, d] = start[d]
         coefficients[1, d] = start[d] + reach * speed[d]
-        coefficients[last, d] = coefficients[last - 1, d] = goal[d]
+        coefficients[last - 1, d] = goal[d] - reach * leave[d]
+        coefficients[last, d] = goal[d]
 
 
 @kernel
-def assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
+def assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
              by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient):
     """Cost with penalties, and all derivatives by the free coefficients and T; also the cost alone, and the worst violations.
 
-    aims: (Q, 2) what the walker likes to face, place by place [m]. band: (n, BAND) lower band by rows, column: (n,) of T, gradient: (n + 1,), overwritten. Returns also ∂²/∂T².
+    speed, leave: (3,) how he moves at both ends. aims: (Q, 2) what the walker likes to face, place by place [m]. band: (n, BAND) lower band by rows, column: (n,) of T, gradient: (n + 1,), overwritten. Returns also ∂²/∂T².
     """
     intervals = coefficients.shape[0] - 3
     n = column.shape[0]
@@ -61,11 +62,11 @@ def assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes,
         if shapes.shape[0]:
             p, worst = keep_clear(y, shapes, clearance, by_shape[place], stiff_space, 1.0, g, h)
             penalty, near = penalty + weight * p, max(near, worst)
-        if first < 2:  # the second coefficient moves with T
-            moved[:] = 0.0
+        if first < 2 or first >= intervals - 2:  # the second coefficient moves with T, and the last but one
             for order in range(3):
                 for d in range(3):
-                    moved[3 * order + d] = base[order, 1 - first] * speed[d] / (3.0 * intervals)
+                    by = base[order, 1 - first] * speed[d] if first < 2 else -base[order, intervals + 1 - first] * leave[d]
+                    moved[3 * order + d] = by / (3.0 * intervals)
             for i in range(9):
                 by_t += g[i] * moved[i]
                 by_tt += 2.0 * mixed[i] * moved[i]
@@ -161,7 +162,7 @@ def _step(band, column, corner, gradient, damping, shifted, factor, border, step
 
 
 @kernel
-def minimise(coefficients, seconds, start, speed, goal, aims, alpha, values, weights, planes, shapes, clearance,
+def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, values, weights, planes, shapes, clearance,
              by_plane, by_shape, stiff_speed, stiff_space, most, tolerance, best):
     """Newton's method from a guess, in place. Returns T, the cost, that with penalties, the worst violations, the steps taken, and
     whether it converged. It gives up where it is not to come below `best`."""
@@ -170,8 +171,8 @@ def minimise(coefficients, seconds, start, speed, goal, aims, alpha, values, wei
     column, border = np.empty(n), np.empty(n)
     gradient, step = np.empty(n + 1), np.empty(n + 1)
     kept = coefficients.copy()
-    _hold(coefficients, start, speed, goal, seconds)
-    cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
+    _hold(coefficients, start, speed, goal, leave, seconds)
+    cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
                                                  by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
     damping = 1e-4
     fresh = True
@@ -198,8 +199,8 @@ def minimise(coefficients, seconds, start, speed, goal, aims, alpha, values, wei
         seconds += share * step[n]
         for i in range(n):
             coefficients[2 + i // 3, i % 3] += share * step[i]
-        _hold(coefficients, start, speed, goal, seconds)
-        new = assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
+        _hold(coefficients, start, speed, goal, leave, seconds)
+        new = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
                        by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
         gained = (cost + penalty) - (new[0] + new[1])
         if gained > 1e-4 * share * promised * 0.5:
@@ -212,7 +213,7 @@ def minimise(coefficients, seconds, start, speed, goal, aims, alpha, values, wei
                 fresh = False
             coefficients[:] = kept
             seconds = before
-            cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, aims, alpha, values, weights, planes, shapes, clearance,
+            cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
                                                          by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
             if not fresh:
                 return seconds, cost, cost + penalty, fast, near, count, True

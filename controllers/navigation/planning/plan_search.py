@@ -21,11 +21,11 @@ ROUNDS = 9
 
 
 @kernel(nogil=True)
-def search(guesses, seconds, starts, speeds, goals, aims, alpha, values, weights, planes, shapes, clearance, allowed, most, tolerance,
+def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values, weights, planes, shapes, clearance, allowed, most, tolerance,
            whose, costs, faults, steps):
     """Every guess (S, M + 3, 3) with its time (S,) [s] becomes the least cost near it, in place.
 
-    starts, speeds, goals: (S, 3), speeds as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), clearance [m]: the limits. allowed: (2,)
+    starts, speeds, goals, leaves: (S, 3), speeds, and those at the goals, as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), clearance [m]: the limits. allowed: (2,)
     how far velocities and distances may break them. whose: (S,) whose guess it is, in order: a guess is given up where it would cost more
     than another of the same one that keeps to its limits. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
     negative where the search did not settle.
@@ -42,7 +42,7 @@ def search(guesses, seconds, starts, speeds, goals, aims, alpha, values, weights
         total, settled, owed = 0, False, 0.0
         for lap in range(ROUNDS):
             seconds[s], costs[s], dual, fast, near, count, settled = minimise(
-                guesses[s], seconds[s], starts[s], speeds[s], goals[s], aims[s], alpha, values, weights, planes, shapes, clearance,
+                guesses[s], seconds[s], starts[s], speeds[s], goals[s], leaves[s], aims[s], alpha, values, weights, planes, shapes, clearance,
                 by_plane, by_shape, stiff[0], stiff[1], most - total, tolerance if lap else 10.0 * tolerance, best + owed)
             total += count
             faults[s, 0], faults[s, 1] = fast, near
