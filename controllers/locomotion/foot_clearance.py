@@ -42,15 +42,13 @@ def aside_kernel(m, body, foot, height, out):
         return
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     there, here = np.empty((3, 2)), np.empty((3, 2))  # heel, ball and toe's end of the other foot and of this one
-    _outline(m, body, other, there)
-    _outline(m, body, foot, here)
+    outline_kernel(m, body, other, there)
+    outline_kernel(m, body, foot, here)
     for i in range(3):  # without what it gives way already
         here[i, 0] -= c * m.aside[foot, 0] - s * m.aside[foot, 2]
         here[i, 1] -= s * m.aside[foot, 0] + c * m.aside[foot, 2]
     side = 1.0 - 2.0 * foot  # the left foot gives way to the left, which is (z, −x)
-    need = 0.0
-    for i in range(3):
-        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
+    need = need_of_room(there, here, side)
     low = min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
     need *= _smooth((HIGH - low + height) / (HIGH - LOW))
     x, z = there[1, 0] - there[0, 0], there[1, 1] - there[0, 1]
@@ -60,10 +58,25 @@ def aside_kernel(m, body, foot, height, out):
 
 
 @kernel
-def _outline(m, body, foot, out):
+def need_of_room(there, here, side):
+    """How far [m] a foot with centre line `here` (3, 2) must still go to that side (1 left, −1 right) of one with the line `there`."""
+    need = 0.0
+    for i in range(3):
+        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
+    return need
+
+
+@kernel
+def outline_kernel(m, body, foot, out):
     """A foot's centre line as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
     shown_kernel(m, 2 * foot, out[0])
     shown_kernel(m, 2 * foot + 1, out[1])
+    with_toe(body, out)
+
+
+@kernel
+def with_toe(body, out):
+    """Add the toe's end to a centre line (3, 2) of which heel and ball are known."""
     x, z = out[1, 0] - out[0, 0], out[1, 1] - out[0, 1]
     share = body.toe_end[2] / max(math.sqrt(x * x + z * z), STEEP)
     out[2, 0], out[2, 1] = out[1, 0] + share * x, out[1, 1] + share * z

@@ -17,17 +17,16 @@ import numpy as np
 
 from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
-from .cycles import EVENTS
 from .foot_clearance import HALFLIFE, aside_kernel
 from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
-from .kernel import DURATION_AT, LABELS_AT
+from .foothold import SWING, swing_progress
+from .kernel import LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
+from .root_motion import cadence_kernel
 from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
 
-SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
-"""The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
 """A point is free while its blended label is below the first, and held while it is above the second: early as it
 comes to stand, so that it does not creep in, and early as it leaves, walking and running, so that the leg is not held
@@ -122,7 +121,7 @@ def _take_hold(m, k, height, dt):
         wanted = share * share * (3.0 - 2.0 * share)
         if m.torn[k // 2]:  # it was let go, until it is well into its swing
             wanted = 0.0
-            if 0.3 < _swing_progress(m, k // 2) < 1.0:
+            if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
         if wanted > m.grip[k] and m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE:
             wanted = m.grip[k]
@@ -140,7 +139,7 @@ def _offset(m, foot, before, now, dt):
     offset, rate = m.offset[foot], m.offset_rate[foot]
     grip = max(m.grip[h], m.grip[b])
     if grip <= 0.0:
-        left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) * m.row[DURATION_AT] / math.sqrt(m.stretch)
+        left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) / cadence_kernel(m)
         u = min(dt / min(max(left, SOONEST), LATEST), 1.0)
         for i in range(3):
             goal = m.land[foot, i] if i < 2 else 0.0
@@ -180,7 +179,7 @@ def _step_aside(m, body, foot, height, dt):
         return
     wanted = np.empty(3)
     aside_kernel(m, body, foot, height, wanted)
-    share = min(_swing_progress(m, foot) / YIELDING, 1.0)
+    share = min(swing_progress(m, foot) / YIELDING, 1.0)
     for i in range(3):
         m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
                                                                 share * wanted[i], HALFLIFE, dt)
@@ -291,16 +290,10 @@ def at_rest(m, legs):
 
 
 @kernel
-def _swing_progress(m, foot):
-    """How far through its swing foot 0 (left) or 1 is, by the phase: 0 … 1, beyond while it stands."""
-    return ((m.phase - 0.5 * foot) % 1.0) / SWING[m.family]
-
-
-@kernel
 def _swing_lift(m, foot, clearance, dt):
     """How high a foot is held over the floor [m]: over the stretch of the phase in which it swings,
     and the more the farther it has to go beyond what the blend does by itself."""
-    wanted, progress = 0.0, _swing_progress(m, foot)
+    wanted, progress = 0.0, swing_progress(m, foot)
     if progress < 1.0 and not m.settled:
         wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * progress)
     m.lift[foot], m.lift_rate[foot] = spring_kernel(m.lift[foot], m.lift_rate[foot], wanted, LIFT_HALFLIFE, dt)

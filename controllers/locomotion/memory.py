@@ -87,7 +87,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("library", "u4"),  # the checksum of the library that the weights are of
         ("ground", "f8", 3),  # x, z [m], θ [rad]
         ("velocity", "f4", 3),  # achieved (v_f, ω, v_l)
-        ("command", "f4", 3), ("rate", "f4", 3),  # the shaped wish and its rate
+        ("command", "f4", 3), ("rate", "f4", 3), ("asked", "f4", 3),  # the shaped wish, its rate, and what it goes to
         ("family", "i4"), ("wanted", "i4"),  # WALK or RUN: what is, and what the wish asks for
         ("simplex", "i4", 2), ("stretch", "f4"),  # last simplex in each one's space; the command over what its gaits reach
         ("weights", "f4", -(-primitives // 128) * 128), ("phase", "f4"),
@@ -101,6 +101,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
         ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where the blend came down in the ground frame; how far aside it will
         ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain
+        ("coming", "f8", (2, 2, 2)),  # where heel and ball of each foot of the blend come down, x, z in the world
         ("pace", "f4"),  # the share of the wished speed that the ground allows
         ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
