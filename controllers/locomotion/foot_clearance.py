@@ -19,7 +19,9 @@ WIDTH = 0.09
 SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m] …"""
 HALFLIFE = 0.012
-"""… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump."""
+"""… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump …"""
+LEAD = 0.02
+"""… so that it looks this far ahead, too [s]."""
 FADE = 0.15
 """Before a foot's heel and beyond its toes the need for room fades over this length [m]."""
 ASTRAY = 0.4
@@ -31,14 +33,15 @@ LOW, HIGH = 0.25, 0.45
 
 
 @kernel
-def aside_kernel(m, body, foot, height, out):
+def aside_kernel(m, body, foot, swings, speed_x, speed_z, height, out):
     """Write into `out` (3,) how far in the world [m] a swinging foot (0 left, 1 right) gives way.
 
-    Nothing while the other foot does not stand.
+    swings: whether it is its turn to, though the other foot does not stand either, as in the flight of a run.
+    speed_x, speed_z: how fast it goes in the world [m/s].
     """
     out[0], out[1], out[2] = 0.0, 0.0, 0.0
     other = 1 - foot
-    if not _stands(m, other) or _stands(m, foot):
+    if _stands(m, foot) or not (swings or _stands(m, other)):
         return
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     there, here = np.empty((3, 2)), np.empty((3, 2))  # heel, ball and toe's end of the other foot and of this one
@@ -49,6 +52,10 @@ def aside_kernel(m, body, foot, height, out):
         here[i, 1] -= s * m.aside[foot, 0] + c * m.aside[foot, 2]
     side = 1.0 - 2.0 * foot  # the left foot gives way to the left, which is (z, −x)
     need = need_of_room(there, here, side)
+    for i in range(3):
+        here[i, 0] += LEAD * (c * speed_x - s * speed_z)
+        here[i, 1] += LEAD * (s * speed_x + c * speed_z)
+    need = max(need, need_of_room(there, here, side))
     low = min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
     need *= _smooth((HIGH - low + height) / (HIGH - LOW))
     x, z = there[1, 0] - there[0, 0], there[1, 1] - there[0, 1]

@@ -41,6 +41,8 @@ LATEST = 0.45
 """… and at most this."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
+STEEPLY, FREED = 1.0, 0.015
+"""A point that leaves its place is lifted by this share of how far it got, up to the second [m]."""
 LAND_HALFLIFE = 0.03
 """A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
@@ -82,7 +84,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
         _take_hold(m, k, legs.height, dt)
     for foot in range(2):
         _offset(m, foot, before, now, dt)
-        _step_aside(m, body, foot, legs.height, dt)
+        _step_aside(m, body, foot, before, now, legs.height, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = 0.0
     for foot in range(2):
@@ -169,7 +171,7 @@ def _offset(m, foot, before, now, dt):
 
 
 @kernel
-def _step_aside(m, body, foot, height, dt):
+def _step_aside(m, body, foot, before, now, height, dt):
     """A foot that swings gives way to the other one; one that lands so keeps it, as an offset."""
     if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
         m.offset[foot, 0] += m.aside[foot, 0]
@@ -178,8 +180,12 @@ def _step_aside(m, body, foot, height, dt):
             m.aside[foot, i] = m.aside_rate[foot, i] = 0.0
         return
     wanted = np.empty(3)
-    aside_kernel(m, body, foot, height, wanted)
-    share = min(swing_progress(m, foot) / YIELDING, 1.0)
+    progress, other = swing_progress(m, foot), swing_progress(m, 1 - foot)
+    ball = 2 * foot + 1
+    aside_kernel(m, body, foot, progress < 1.0 and (progress > other or other >= 1.0),
+                 (now[ball, 0] - before[ball, 0]) / dt + m.offset_rate[foot, 0],
+                 (now[ball, 1] - before[ball, 1]) / dt + m.offset_rate[foot, 1], height, wanted)
+    share = min(progress / YIELDING, 1.0)
     for i in range(3):
         m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
                                                                 share * wanted[i], HALFLIFE, dt)
@@ -194,7 +200,8 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
     for k, out in ((heel, h), (ball, b)):
         shown_kernel(m, k, out)
         out[2] = out[1]
-        out[1] = max(m.points[k, 1] + m.raised[k], height + lie_kernel(m, k) + (1.0 - m.grip[k]) * lift)
+        free = (1.0 - m.grip[k]) * max(lift, _off_the_floor(m, k, foot, out[0], out[2]))
+        out[1] = max(m.points[k, 1] + m.raised[k], height + lie_kernel(m, k) + free)
     x, y, z = b[0] - h[0], b[1] - h[1], b[2] - h[2]
     u = m.points[ball, 0] - m.points[heel, 0]
     v = m.points[ball, 1] - m.points[heel, 1]
@@ -225,6 +232,20 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
         under_heel += orientations[a, 1, k] * body.heel[k]
         under_ball += orientations[a, 1, k] * body.offsets[a + 1, k]
     ankle[1] += max(0.0, height - min(under_heel - lie_kernel(m, heel), under_ball - lie_kernel(m, ball)))
+
+
+@kernel
+def _off_the_floor(m, k, foot, x, z):
+    """How high point k is held over the floor [m] where it is shown in the ground frame, having left: as high as it is far from
+    where it stood, so that it does not slide."""
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x, z = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z
+    if m.grip[k] >= 1.0:
+        m.stood[k, 0], m.stood[k, 1] = x, z
+        return 0.0
+    progress = swing_progress(m, foot)
+    over = STEEPLY * min(math.hypot(x - m.stood[k, 0], z - m.stood[k, 1]), FREED)
+    return over * (min(max(2.0 - 2.0 * progress, 0.0), 1.0) if progress < 1.0 else 1.0)
 
 
 @kernel

@@ -95,7 +95,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame
         ("grip", "f4", 4),  # how firmly each point is held: 0 free … 1
-        ("standing", "i4", 4), ("torn", "i4", 2),  # whether each point stands; feet let go until well into their swing
+        ("stood", "f8", (4, 2)), ("standing", "i4", 4), ("torn", "i4", 2),  # where each point was held, x, z in the world; whether it stands; feet let go until well into their swing
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
