@@ -18,8 +18,8 @@ LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 half by its strides, so that walks and runs meet between them."""
 PUSHES = (1.0, 0.6)
 """The share of the time in which a foot stands to push on, walking and running."""
-PIECES = 3
-"""The way ahead is followed in so many steps."""
+PIECES = 2
+"""The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
 
 
 @kernel
@@ -73,16 +73,15 @@ def look_ahead(m, settings, later, ground, command):
     rate, now = np.empty(3), np.empty(3)
     for i in range(3):
         ground[i], now[i], rate[i] = m.ground[i], m.command[i], m.rate[i]
-        command[i] = now[i]
-    behind = min(settings.weight_halflife / math.log(2.0), later)
-    for k in range(PIECES + 1):
-        dt = (later - behind) / PIECES if k < PIECES else behind
-        if dt <= 0.0:
-            continue
+    # the moment whose command a low-pass that starts now has come to, if commands change evenly
+    lag = settings.weight_halflife / math.log(2.0)
+    moment = later / (1.0 - math.exp(-later / lag)) - lag
+    for k in range(2 * PIECES):
+        dt = (moment if k < PIECES else later - moment) / PIECES
         v_f, omega, v_l = now[0], now[1], now[2]
         _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], dt)
         advance(ground, 0.5 * (v_f + now[0]), 0.5 * (omega + now[1]), 0.5 * (v_l + now[2]), dt)
-        if k < PIECES:
+        if k == PIECES - 1:
             for i in range(3):
                 command[i] = now[i]
 

@@ -60,7 +60,7 @@ LENDING = 0.7
 body's first stride, whose push is weak yet, it does not."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
-YIELDING = 0.25
+YIELDING = 0.15
 """A foot gives way to the other fully once this share of its swing is over."""
 OVER = 0.3
 """A foot swings higher by this share of how much higher or deeper the other stands."""
@@ -282,9 +282,11 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
         rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
         if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
             m.torn[foot] = 1
-        m.rise[foot] = min(rise, m.rise[foot] + RISE_RATE * dt)
+        rise = min(rise, m.rise[foot] + RISE_RATE * dt)
+        m.rise[foot], m.rise_rate[foot] = rise, (rise - m.rise[foot]) / dt
     else:
-        m.rise[foot] *= 2.0 ** (-dt / RISE_HALFLIFE)
+        rise, m.rise_rate[foot] = spring_kernel(m.rise[foot], m.rise_rate[foot], 0.0, RISE_HALFLIFE, dt)
+        m.rise[foot] = max(rise, 0.0)
     tilt_kernel(orientations[a], axis, m.rise[foot], turned)
     for i in range(3):
         ankle[i] = ball[i]

@@ -26,6 +26,8 @@ SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 BESIDE = 0.30
 """The most that a foot is set down beside where the blend has it [m]."""
+SOONEST = 0.002
+"""Nothing is looked up nearer than this [s]."""
 TRIES = 3
 """A foot that must go aside is set down after looking so often."""
 
@@ -66,7 +68,7 @@ def plan_footholds(m, settings, space, table, body, legs, ahead):
         progress = swing_progress(m, foot)
         if m.settled or progress >= 1.0:
             continue
-        later = (1.0 - progress) * SWING[m.family] / cadence_kernel(m)
+        later = max((1.0 - progress) * SWING[m.family] / cadence_kernel(m), SOONEST)
         _foresee(m, foot, later, settings, space, table, body, legs, ahead)
         _beside(m, body, foot, ahead)
 

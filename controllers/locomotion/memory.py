@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..body import compose, contact_height
+from ..body import compose, contact_height, relative
 from .kernel import COLUMNS
 from .library import Library
 
@@ -108,7 +108,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
-        ("rise", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
+        ("rise", "f4", 2), ("rise_rate", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
         ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis
         ("row", "f4", COLUMNS), ("row_rate", "f4", COLUMNS),  # the blended series and its rate
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
@@ -128,7 +128,16 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     turn = (there - here) * [0.0, 0.0, 1.0]
     for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("land", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
+    for name in ("stood", "coming"):
+        memory[name] = _carried(memory[name], memory["ground"], ground)
     memory["ground"], memory["aimed"] = ground, 0
+
+
+def _carried(places: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """Places (..., K, 2) or (..., 2, K, 2) x, z in the world, as seen from one ground frame (..., 3), seen from another."""
+    shape = places.shape
+    flat = places.reshape(here.shape[:-1] + (-1, 2))
+    return compose(there[..., None, :], relative(here[..., None, :], _flat(flat)))[..., :2].reshape(shape)
 
 
 def _flat(places):
