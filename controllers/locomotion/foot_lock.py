@@ -58,6 +58,10 @@ RISE_HALFLIFE = 0.12
 LENDING = 0.7
 """A heel that is free to rise takes this share of what its leg lacks, so that the knee bends nearly as the blend's; in a
 body's first stride, whose push is weak yet, it does not."""
+BENT = 0.015
+"""… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
+STRAINED = (0.15, 0.5)
+"""A ball lets go, the more the farther its heel had to rise [rad] between these."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 YIELDING = 0.15
@@ -120,7 +124,8 @@ def _take_hold(m, k, height, dt):
     if not (m.settled or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
-        wanted = share * share * (3.0 - 2.0 * share)
+        strain = min(max((m.rise[k // 2] - STRAINED[0]) / (STRAINED[1] - STRAINED[0]), 0.0), 1.0) if k % 2 else 0.0
+        wanted = share * share * (3.0 - 2.0 * share) * (1.0 - (1.0 - m.grip[2 * (k // 2)]) * strain * strain * (3.0 - 2.0 * strain))
         if m.torn[k // 2]:  # it was let go, until it is well into its swing
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
@@ -277,8 +282,8 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
     stands = m.standing[2 * foot + 1] == 1
     if stands:
         asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
-        free = max(2.0 * m.anchor[foot] - 1.0, 0.0) * (1.0 - min(m.onset, 1.0)) * LENDING
-        wanted = soft_reach(asked - free * max(asked - blended, 0.0), reach)
+        free = max(2.0 * m.anchor[foot] - 1.0, 0.0) * (1.0 - min(m.onset, 1.0))
+        wanted = soft_reach(asked - free * LENDING * max(asked - blended, 0.0), reach - free * BENT)
         rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
         if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
             m.torn[foot] = 1
