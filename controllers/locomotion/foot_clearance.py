@@ -22,7 +22,7 @@ HALFLIFE = 0.012
 """… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump …"""
 LEAD = 0.02
 """… so that it looks this far ahead, too [s]."""
-FADE = 0.15
+FADE = 0.1
 """Before a foot's heel and beyond its toes the need for room fades over this length [m]."""
 ASTRAY = 0.4
 """A foot this far on the other's side is not called back [m], from half of it on less and less."""
@@ -74,29 +74,22 @@ def need_of_room(there, here, side):
 
 
 @kernel
-def away_kernel(there, here, side, out):
-    """Write into `out` (3,) the way x, z by which a foot with centre line `here` (3, 2) comes no nearer than WIDTH to one with
-    the line `there`, the shortest there is, so that one foot may stand before the other; or, if it is across the other's line
-    or beside it on the wrong side, how far it must go to its own side (1 left, −1 right): whether that is so."""
-    out[0] = out[1] = out[2] = 0.0
+def away_kernel(there, here, out):
+    """Write into `out` (2,) the shortest way x, z by which a foot with centre line `here` (3, 2) comes no nearer than WIDTH to one
+    with the line `there`."""
     least = 1e9
-    for i in (0, 2):
-        for k in range(2):
-            point, line, sign = (here[i], there, 1.0) if k == 0 else (there[i], here, -1.0)
-            x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
-            size = x * x + z * z + 1e-12
-            dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
-            share = (dx * x + dz * z) / size
-            if 0.0 < share < 1.0 and sign * side * (dx * z - dz * x) < 0.0:
-                out[2] = max(out[2], WIDTH - sign * side * (dx * z - dz * x) / math.sqrt(size))
-            share = min(max(share, 0.0), 1.0)
-            dx, dz = sign * (dx - share * x), sign * (dz - share * z)
-            far = math.sqrt(dx * dx + dz * dz)
-            if far < least:
-                least = far
-                room = SOFTNESS * math.log1p(math.exp((WIDTH - far) / SOFTNESS)) / (far + 1e-9)
-                out[0], out[1] = room * dx, room * dz
-    return out[2] > 0.0
+    for k in range(4):
+        i = 2 * (k // 2)
+        point, line, sign = (here[i], there, 1.0) if k % 2 == 0 else (there[i], here, -1.0)
+        x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
+        dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
+        share = min(max((dx * x + dz * z) / (x * x + z * z + 1e-12), 0.0), 1.0)
+        dx, dz = sign * (dx - share * x), sign * (dz - share * z)
+        far = math.sqrt(dx * dx + dz * dz) + 1e-9
+        if far < least:
+            least = far
+            room = SOFTNESS * math.log1p(math.exp((WIDTH - far) / SOFTNESS)) / far
+            out[0], out[1] = room * dx, room * dz
 
 
 @kernel

@@ -17,7 +17,7 @@ from ..compiled import kernel
 from .command import look_ahead, reached
 from .control_space import SCALE
 from .cycles import EVENTS
-from .foot_clearance import away_kernel, outline_kernel, with_toe
+from .foot_clearance import away_kernel, need_of_room, outline_kernel, with_toe
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, query_kernel, series_kernel
 from .root_motion import cadence_kernel
@@ -26,10 +26,10 @@ SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 BESIDE = 0.25
 """The most that a foot is set down beside where the blend has it [m]."""
+TRIES = 2
+"""Then it goes away from the other by the shortest way, so often."""
 SOONEST = 0.002
 """Nothing is looked up nearer than this [s]."""
-TRIES = 3
-"""A foot that must go aside is set down after looking so often."""
 
 
 class Ahead(NamedTuple):
@@ -126,20 +126,17 @@ def _beside(m, body, foot, ahead):
     z = there[1, 1] - there[0, 1] + here[1, 1] - here[0, 1]
     size = math.sqrt(x * x + z * z) + 1e-9
     x, z = side * z / size, -side * x / size  # to its own side of both
-    m.land[foot, 0] = m.land[foot, 1] = 0.0
+    need = min(need_of_room(there, here, side), BESIDE)
     away = ahead.barycentric
-    for _ in range(TRIES):
-        if away_kernel(there, here, side, away):
-            away[0], away[1] = x * away[2], z * away[2]
+    away[0], away[1] = need * x, need * z
+    m.land[foot, 0] = m.land[foot, 1] = 0.0
+    for _ in range(1 + TRIES):
         for i in range(3):
             here[i, 0] += away[0]
             here[i, 1] += away[1]
         m.land[foot, 0] += away[0]
         m.land[foot, 1] += away[1]
-    far = math.hypot(m.land[foot, 0], m.land[foot, 1])
-    if far > BESIDE:
-        m.land[foot, 0] *= BESIDE / far
-        m.land[foot, 1] *= BESIDE / far
+        away_kernel(there, here, away)
 
 
 @kernel
