@@ -20,10 +20,11 @@ SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m] …"""
 HALFLIFE = 0.012
 """… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump …"""
-LEAD = 0.02
+LEAD = 0.025
 """… so that it looks this far ahead, too [s]."""
-FADE = 0.1
-"""Before a foot's heel and beyond its toes the need for room fades over this length [m]."""
+FADE, WIDELY = 0.1, 0.17
+"""Before a foot's heel and beyond its toes the need for room fades over the first length [m], until the middle of a swing over the
+second."""
 ASTRAY = 0.4
 """A foot this far on the other's side is not called back [m], from half of it on less and less."""
 STEEP = 0.08
@@ -33,10 +34,10 @@ LOW, HIGH = 0.25, 0.45
 
 
 @kernel
-def aside_kernel(m, body, foot, swings, speed_x, speed_z, height, out):
+def aside_kernel(m, body, foot, progress, swings, speed_x, speed_z, height, out):
     """Write into `out` (3,) how far in the world [m] a swinging foot (0 left, 1 right) gives way.
 
-    swings: whether it is its turn to, though the other foot does not stand either, as in the flight of a run.
+    progress: through its swing. swings: whether it is its turn to, though the other foot does not stand either, as in the flight of a run.
     speed_x, speed_z: how fast it goes in the world [m/s].
     """
     out[0], out[1], out[2] = 0.0, 0.0, 0.0
@@ -50,12 +51,13 @@ def aside_kernel(m, body, foot, swings, speed_x, speed_z, height, out):
     for i in range(3):  # without what it gives way already
         here[i, 0] -= c * m.aside[foot, 0] - s * m.aside[foot, 2]
         here[i, 1] -= s * m.aside[foot, 0] + c * m.aside[foot, 2]
+    fade = FADE + (WIDELY - FADE) * _smooth(2.0 - 2.5 * progress)
     side = 1.0 - 2.0 * foot  # the left foot gives way to the left, which is (z, −x)
-    need = need_of_room(there, here, side)
+    need = need_of_room(there, here, side, fade)
     for i in range(3):
         here[i, 0] += LEAD * (c * speed_x - s * speed_z)
         here[i, 1] += LEAD * (s * speed_x + c * speed_z)
-    need = max(need, need_of_room(there, here, side))
+    need = max(need, need_of_room(there, here, side, fade))
     low = min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
     need *= _smooth((HIGH - low + height) / (HIGH - LOW))
     x, z = there[1, 0] - there[0, 0], there[1, 1] - there[0, 1]
@@ -65,11 +67,11 @@ def aside_kernel(m, body, foot, swings, speed_x, speed_z, height, out):
 
 
 @kernel
-def need_of_room(there, here, side):
+def need_of_room(there, here, side, fade):
     """How far [m] a foot with centre line `here` (3, 2) must still go to that side (1 left, −1 right) of one with the line `there`."""
     need = 0.0
     for i in range(3):
-        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
+        need = max(need, _room(there, here[i], side, fade), _room(here, there[i], -side, fade))
     return need
 
 
@@ -109,7 +111,7 @@ def with_toe(body, out):
 
 
 @kernel
-def _room(line, point, side):
+def _room(line, point, side, fade):
     """How far [m] a point (2,) must still go to that side (1 left, −1 right) of a foot's line (3, 2)."""
     x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
     length = math.sqrt(x * x + z * z) + 1e-9
@@ -119,7 +121,7 @@ def _room(line, point, side):
     room = SOFTNESS * math.log1p(math.exp((WIDTH - apart) / SOFTNESS))
     if apart < 0.0:  # a foot that is far on the other side stays there
         room *= _smooth((ASTRAY + apart) / (0.5 * ASTRAY))
-    return _smooth(1.0 - max(-along, along - length) / FADE) * _smooth(length / STEEP - 1.0) * room
+    return _smooth(1.0 - max(-along, along - length) / fade) * _smooth(length / STEEP - 1.0) * room
 
 
 @kernel

@@ -187,7 +187,7 @@ def _step_aside(m, body, foot, before, now, height, dt):
     wanted = np.empty(3)
     progress, other = swing_progress(m, foot), swing_progress(m, 1 - foot)
     ball = 2 * foot + 1
-    aside_kernel(m, body, foot, progress < 1.0 and (progress > other or other >= 1.0),
+    aside_kernel(m, body, foot, progress, progress < 1.0 and (progress > other or other >= 1.0),
                  (now[ball, 0] - before[ball, 0]) / dt + m.offset_rate[foot, 0],
                  (now[ball, 1] - before[ball, 1]) / dt + m.offset_rate[foot, 1], height, wanted)
     share = min(progress / YIELDING, 1.0)

@@ -17,7 +17,7 @@ from ..compiled import kernel
 from .command import look_ahead, reached
 from .control_space import SCALE
 from .cycles import EVENTS
-from .foot_clearance import away_kernel, need_of_room, outline_kernel, with_toe
+from .foot_clearance import FADE, away_kernel, need_of_room, outline_kernel, with_toe
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, query_kernel, series_kernel
 from .root_motion import cadence_kernel
@@ -126,7 +126,7 @@ def _beside(m, body, foot, ahead):
     z = there[1, 1] - there[0, 1] + here[1, 1] - here[0, 1]
     size = math.sqrt(x * x + z * z) + 1e-9
     x, z = side * z / size, -side * x / size  # to its own side of both
-    need = min(need_of_room(there, here, side), BESIDE)
+    need = min(need_of_room(there, here, side, FADE), BESIDE)
     away = ahead.barycentric
     away[0], away[1] = need * x, need * z
     m.land[foot, 0] = m.land[foot, 1] = 0.0
