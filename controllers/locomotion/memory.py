@@ -99,7 +99,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
-        ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where the blend came down in the ground frame; how far aside it will
+        ("left", "f8", 2), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; whether it found its own; how far from where the blend does it comes down
         ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain
         ("coming", "f8", (2, 2, 2)),  # where heel and ball of each foot of the blend come down, x, z in the world
         ("pace", "f4"),  # the share of the wished speed that the ground allows
