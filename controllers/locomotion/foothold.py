@@ -19,7 +19,7 @@ from .control_space import SCALE
 from .cycles import EVENTS
 from .foot_clearance import FADE, away_kernel, need_of_room, outline_kernel, with_toe
 from .foot_points import foot_points
-from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, query_kernel, series_kernel
+from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
 from .root_motion import cadence_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
@@ -68,9 +68,19 @@ def plan_footholds(m, settings, space, table, body, legs, ahead):
         progress = swing_progress(m, foot)
         if m.settled or progress >= 1.0:
             continue
-        later = max((1.0 - progress) * SWING[m.family] / cadence_kernel(m), SOONEST)
-        _foresee(m, foot, later, settings, space, table, body, legs, ahead)
+        later = (1.0 - progress) * SWING[m.family] / cadence_kernel(m) * _slower(m, table, (1.0 - progress) * SWING[m.family])
+        _foresee(m, foot, max(later, SOONEST), settings, space, table, body, legs, ahead)
         _beside(m, body, foot, ahead)
+
+
+@kernel
+def _slower(m, table, share):
+    """How much slower the phase runs on average for the next `share` of a cycle than it does now, by Simpson's rule."""
+    total, now = 0.0, duration_kernel(table, m.weights, m.phase)
+    for k in range(5):
+        duration = duration_kernel(table, m.weights, m.phase + 0.25 * k * share) if k > 0 else now
+        total += (1.0, 4.0, 2.0, 4.0, 1.0)[k] / 12.0 * duration
+    return total / max(now, 0.3)
 
 
 @kernel
