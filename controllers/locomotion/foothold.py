@@ -25,7 +25,7 @@ from .root_motion import cadence_kernel
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 BESIDE = 0.25
-"""The most that a foot is set down beside where the blend has it [m]."""
+"""The most that a foot goes to its own side of where the blend has it [m]."""
 TRIES = 2
 """Then it goes away from the other by the shortest way, so often."""
 SOONEST = 0.002
