@@ -19,9 +19,12 @@ WIDTH = 0.09
 SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m] …"""
 HALFLIFE = 0.012
-"""… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump."""
-FADE = 0.15
-"""Before a foot's heel and beyond its toes the need for room fades over this length [m]."""
+"""… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump …"""
+LEAD = 0.025
+"""… so that it looks this far ahead, too [s]."""
+FADE, WIDELY = 0.1, 0.17
+"""Before a foot's heel and beyond its toes the need for room fades over the first length [m], until the middle of a swing over the
+second."""
 ASTRAY = 0.4
 """A foot this far on the other's side is not called back [m], from half of it on less and less."""
 STEEP = 0.08
@@ -31,26 +34,30 @@ LOW, HIGH = 0.25, 0.45
 
 
 @kernel
-def aside_kernel(m, body, foot, height, out):
+def aside_kernel(m, body, foot, progress, swings, speed_x, speed_z, height, out):
     """Write into `out` (3,) how far in the world [m] a swinging foot (0 left, 1 right) gives way.
 
-    Nothing while the other foot does not stand.
+    progress: through its swing. swings: whether it is its turn to, though the other foot does not stand either, as in the flight of a run.
+    speed_x, speed_z: how fast it goes in the world [m/s].
     """
     out[0], out[1], out[2] = 0.0, 0.0, 0.0
     other = 1 - foot
-    if not _stands(m, other) or _stands(m, foot):
+    if _stands(m, foot) or not (swings or _stands(m, other)):
         return
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     there, here = np.empty((3, 2)), np.empty((3, 2))  # heel, ball and toe's end of the other foot and of this one
-    _outline(m, body, other, there)
-    _outline(m, body, foot, here)
+    outline_kernel(m, body, other, there)
+    outline_kernel(m, body, foot, here)
     for i in range(3):  # without what it gives way already
         here[i, 0] -= c * m.aside[foot, 0] - s * m.aside[foot, 2]
         here[i, 1] -= s * m.aside[foot, 0] + c * m.aside[foot, 2]
+    fade = FADE + (WIDELY - FADE) * _smooth(2.0 - 2.5 * progress)
     side = 1.0 - 2.0 * foot  # the left foot gives way to the left, which is (z, −x)
-    need = 0.0
+    need = need_of_room(there, here, side, fade)
     for i in range(3):
-        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
+        here[i, 0] += LEAD * (c * speed_x - s * speed_z)
+        here[i, 1] += LEAD * (s * speed_x + c * speed_z)
+    need = max(need, need_of_room(there, here, side, fade))
     low = min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
     need *= _smooth((HIGH - low + height) / (HIGH - LOW))
     x, z = there[1, 0] - there[0, 0], there[1, 1] - there[0, 1]
@@ -60,17 +67,51 @@ def aside_kernel(m, body, foot, height, out):
 
 
 @kernel
-def _outline(m, body, foot, out):
+def need_of_room(there, here, side, fade):
+    """How far [m] a foot with centre line `here` (3, 2) must still go to that side (1 left, −1 right) of one with the line `there`."""
+    need = 0.0
+    for i in range(3):
+        need = max(need, _room(there, here[i], side, fade), _room(here, there[i], -side, fade))
+    return need
+
+
+@kernel
+def away_kernel(there, here, out):
+    """Write into `out` (2,) the shortest way x, z by which a foot with centre line `here` (3, 2) comes no nearer than WIDTH to one
+    with the line `there`."""
+    least = 1e9
+    for k in range(4):
+        i = 2 * (k // 2)
+        point, line, sign = (here[i], there, 1.0) if k % 2 == 0 else (there[i], here, -1.0)
+        x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
+        dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
+        share = min(max((dx * x + dz * z) / (x * x + z * z + 1e-12), 0.0), 1.0)
+        dx, dz = sign * (dx - share * x), sign * (dz - share * z)
+        far = math.sqrt(dx * dx + dz * dz) + 1e-9
+        if far < least:
+            least = far
+            room = SOFTNESS * math.log1p(math.exp((WIDTH - far) / SOFTNESS)) / far
+            out[0], out[1] = room * dx, room * dz
+
+
+@kernel
+def outline_kernel(m, body, foot, out):
     """A foot's centre line as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
     shown_kernel(m, 2 * foot, out[0])
     shown_kernel(m, 2 * foot + 1, out[1])
+    with_toe(body, out)
+
+
+@kernel
+def with_toe(body, out):
+    """Add the toe's end to a centre line (3, 2) of which heel and ball are known."""
     x, z = out[1, 0] - out[0, 0], out[1, 1] - out[0, 1]
     share = body.toe_end[2] / max(math.sqrt(x * x + z * z), STEEP)
     out[2, 0], out[2, 1] = out[1, 0] + share * x, out[1, 1] + share * z
 
 
 @kernel
-def _room(line, point, side):
+def _room(line, point, side, fade):
     """How far [m] a point (2,) must still go to that side (1 left, −1 right) of a foot's line (3, 2)."""
     x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
     length = math.sqrt(x * x + z * z) + 1e-9
@@ -80,7 +121,7 @@ def _room(line, point, side):
     room = SOFTNESS * math.log1p(math.exp((WIDTH - apart) / SOFTNESS))
     if apart < 0.0:  # a foot that is far on the other side stays there
         room *= _smooth((ASTRAY + apart) / (0.5 * ASTRAY))
-    return _smooth(1.0 - max(-along, along - length) / FADE) * _smooth(length / STEEP - 1.0) * room
+    return _smooth(1.0 - max(-along, along - length) / fade) * _smooth(length / STEEP - 1.0) * room
 
 
 @kernel

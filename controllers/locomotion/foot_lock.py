@@ -17,17 +17,16 @@ import numpy as np
 
 from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
-from .cycles import EVENTS
 from .foot_clearance import HALFLIFE, aside_kernel
 from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
-from .kernel import DURATION_AT, LABELS_AT
+from .foothold import SWING, swing_progress
+from .kernel import LABELS_AT
 from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
                    toe_kernel)
+from .root_motion import cadence_kernel
 from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
 
-SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
-"""The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
 """A point is free while its blended label is below the first, and held while it is above the second: early as it
 comes to stand, so that it does not creep in, and early as it leaves, walking and running, so that the leg is not held
@@ -42,6 +41,8 @@ LATEST = 0.45
 """… and at most this."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
+STEEPLY, FREED = 1.0, 0.015
+"""A point that leaves its place is lifted by this share of how far it got, up to the second [m]."""
 LAND_HALFLIFE = 0.03
 """A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
@@ -57,9 +58,13 @@ RISE_HALFLIFE = 0.12
 LENDING = 0.7
 """A heel that is free to rise takes this share of what its leg lacks, so that the knee bends nearly as the blend's; in a
 body's first stride, whose push is weak yet, it does not."""
+BENT = 0.015
+"""… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
+STRAINED = (0.15, 0.5)
+"""A ball lets go, the more the farther its heel had to rise [rad] between these."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
-YIELDING = 0.25
+YIELDING = 0.15
 """A foot gives way to the other fully once this share of its swing is over."""
 OVER = 0.3
 """A foot swings higher by this share of how much higher or deeper the other stands."""
@@ -83,7 +88,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
         _take_hold(m, k, legs.height, dt)
     for foot in range(2):
         _offset(m, foot, before, now, dt)
-        _step_aside(m, body, foot, legs.height, dt)
+        _step_aside(m, body, foot, before, now, legs.height, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = 0.0
     for foot in range(2):
@@ -119,10 +124,11 @@ def _take_hold(m, k, height, dt):
     if not (m.settled or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
-        wanted = share * share * (3.0 - 2.0 * share)
+        strain = min(max((m.rise[k // 2] - STRAINED[0]) / (STRAINED[1] - STRAINED[0]), 0.0), 1.0) if k % 2 else 0.0
+        wanted = share * share * (3.0 - 2.0 * share) * (1.0 - (1.0 - m.grip[2 * (k // 2)]) * strain * strain * (3.0 - 2.0 * strain))
         if m.torn[k // 2]:  # it was let go, until it is well into its swing
             wanted = 0.0
-            if 0.3 < _swing_progress(m, k // 2) < 1.0:
+            if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
         if wanted > m.grip[k] and m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE:
             wanted = m.grip[k]
@@ -140,7 +146,7 @@ def _offset(m, foot, before, now, dt):
     offset, rate = m.offset[foot], m.offset_rate[foot]
     grip = max(m.grip[h], m.grip[b])
     if grip <= 0.0:
-        left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) * m.row[DURATION_AT] / math.sqrt(m.stretch)
+        left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) / cadence_kernel(m)
         u = min(dt / min(max(left, SOONEST), LATEST), 1.0)
         for i in range(3):
             goal = m.land[foot, i] if i < 2 else 0.0
@@ -170,7 +176,7 @@ def _offset(m, foot, before, now, dt):
 
 
 @kernel
-def _step_aside(m, body, foot, height, dt):
+def _step_aside(m, body, foot, before, now, height, dt):
     """A foot that swings gives way to the other one; one that lands so keeps it, as an offset."""
     if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
         m.offset[foot, 0] += m.aside[foot, 0]
@@ -179,8 +185,12 @@ def _step_aside(m, body, foot, height, dt):
             m.aside[foot, i] = m.aside_rate[foot, i] = 0.0
         return
     wanted = np.empty(3)
-    aside_kernel(m, body, foot, height, wanted)
-    share = min(_swing_progress(m, foot) / YIELDING, 1.0)
+    progress, other = swing_progress(m, foot), swing_progress(m, 1 - foot)
+    ball = 2 * foot + 1
+    aside_kernel(m, body, foot, progress, progress < 1.0 and (progress > other or other >= 1.0),
+                 (now[ball, 0] - before[ball, 0]) / dt + m.offset_rate[foot, 0],
+                 (now[ball, 1] - before[ball, 1]) / dt + m.offset_rate[foot, 1], height, wanted)
+    share = min(progress / YIELDING, 1.0)
     for i in range(3):
         m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
                                                                 share * wanted[i], HALFLIFE, dt)
@@ -195,7 +205,8 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
     for k, out in ((heel, h), (ball, b)):
         shown_kernel(m, k, out)
         out[2] = out[1]
-        out[1] = max(m.points[k, 1] + m.raised[k], height + lie_kernel(m, k) + (1.0 - m.grip[k]) * lift)
+        free = (1.0 - m.grip[k]) * max(lift, _off_the_floor(m, k, foot, out[0], out[2]))
+        out[1] = max(m.points[k, 1] + m.raised[k], height + lie_kernel(m, k) + free)
     x, y, z = b[0] - h[0], b[1] - h[1], b[2] - h[2]
     u = m.points[ball, 0] - m.points[heel, 0]
     v = m.points[ball, 1] - m.points[heel, 1]
@@ -229,6 +240,20 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
 
 
 @kernel
+def _off_the_floor(m, k, foot, x, z):
+    """How high point k is held over the floor [m] where it is shown in the ground frame, having left: as high as it is far from
+    where it stood, so that it does not slide."""
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x, z = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z
+    if m.grip[k] >= 1.0:
+        m.stood[k, 0], m.stood[k, 1] = x, z
+        return 0.0
+    progress = swing_progress(m, foot)
+    over = STEEPLY * min(math.hypot(x - m.stood[k, 0], z - m.stood[k, 1]), FREED)
+    return over * (min(max(2.0 - 2.0 * progress, 0.0), 1.0) if progress < 1.0 else 1.0)
+
+
+@kernel
 def _roll(m, foot, x, y, z, orientation, axis, turned):
     """Turn a foot that points along x, y, z in the ground frame about that line, as far as its ground rises to its left."""
     flat, size = math.sqrt(x * x + z * z) + 1e-9, math.sqrt(x * x + y * y + z * z) + 1e-9
@@ -257,14 +282,16 @@ def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, wor
     stands = m.standing[2 * foot + 1] == 1
     if stands:
         asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
-        free = max(2.0 * m.anchor[foot] - 1.0, 0.0) * (1.0 - min(m.onset, 1.0)) * LENDING
-        wanted = soft_reach(asked - free * max(asked - blended, 0.0), reach)
+        free = max(2.0 * m.anchor[foot] - 1.0, 0.0) * (1.0 - min(m.onset, 1.0))
+        wanted = soft_reach(asked - free * LENDING * max(asked - blended, 0.0), reach - free * BENT)
         rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
         if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
             m.torn[foot] = 1
-        m.rise[foot] = min(rise, m.rise[foot] + RISE_RATE * dt)
+        rise = min(rise, m.rise[foot] + RISE_RATE * dt)
+        m.rise[foot], m.rise_rate[foot] = rise, (rise - m.rise[foot]) / dt
     else:
-        m.rise[foot] *= 2.0 ** (-dt / RISE_HALFLIFE)
+        rise, m.rise_rate[foot] = spring_kernel(m.rise[foot], m.rise_rate[foot], 0.0, RISE_HALFLIFE, dt)
+        m.rise[foot] = max(rise, 0.0)
     tilt_kernel(orientations[a], axis, m.rise[foot], turned)
     for i in range(3):
         ankle[i] = ball[i]
@@ -291,16 +318,10 @@ def at_rest(m, legs):
 
 
 @kernel
-def _swing_progress(m, foot):
-    """How far through its swing foot 0 (left) or 1 is, by the phase: 0 … 1, beyond while it stands."""
-    return ((m.phase - 0.5 * foot) % 1.0) / SWING[m.family]
-
-
-@kernel
 def _swing_lift(m, foot, clearance, dt):
     """How high a foot is held over the floor [m]: over the stretch of the phase in which it swings,
     and the more the farther it has to go beyond what the blend does by itself."""
-    wanted, progress = 0.0, _swing_progress(m, foot)
+    wanted, progress = 0.0, swing_progress(m, foot)
     if progress < 1.0 and not m.settled:
         wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * progress)
     m.lift[foot], m.lift_rate[foot] = spring_kernel(m.lift[foot], m.lift_rate[foot], wanted, LIFT_HALFLIFE, dt)

@@ -191,6 +191,23 @@ def series_kernel(table, weights, phase, row):
                 row[d] += np.float32(w * ca) * table[p, rows - 2, d] + np.float32(w * sa) * table[p, rows - 1, d]
 
 
+@kernel
+def duration_kernel(table, weights, phase):
+    """The duration [s] that the weighted sum of all primitives' series has at `phase`: one column of `series_kernel`."""
+    c1, s1 = math.cos(2 * math.pi * phase), math.sin(2 * math.pi * phase)
+    total = 0.0
+    for p in range(table.shape[0]):
+        w = weights[p]
+        if w <= 0.0:
+            continue
+        total += w * table[p, 0, DURATION_AT]
+        c, s = c1, s1
+        for k in range(1, table.shape[1] - 1, 2):
+            total += w * (c * table[p, k, DURATION_AT] + s * table[p, k + 1, DURATION_AT])
+            c, s = c * c1 - s * s1, s * c1 + c * s1
+    return total
+
+
 # sin x / x and (1 − cos x) / x² as polynomials in x²: Taylor, exact to float32 for |x| < π
 _SINC = tuple(np.float32((-1) ** n / math.factorial(2 * n + 1)) for n in range(10))
 _VERS = tuple(np.float32((-1) ** n / math.factorial(2 * n + 2)) for n in range(10))

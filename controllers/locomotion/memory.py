@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..body import compose, contact_height
+from ..body import compose, contact_height, relative
 from .kernel import COLUMNS
 from .library import Library
 
@@ -87,7 +87,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("library", "u4"),  # the checksum of the library that the weights are of
         ("ground", "f8", 3),  # x, z [m], θ [rad]
         ("velocity", "f4", 3),  # achieved (v_f, ω, v_l)
-        ("command", "f4", 3), ("rate", "f4", 3),  # the shaped wish and its rate
+        ("command", "f4", 3), ("rate", "f4", 3), ("asked", "f4", 3),  # the shaped wish, its rate, and what it goes to
         ("family", "i4"), ("wanted", "i4"),  # WALK or RUN: what is, and what the wish asks for
         ("simplex", "i4", 2), ("stretch", "f4"),  # last simplex in each one's space; the command over what its gaits reach
         ("weights", "f4", -(-primitives // 128) * 128), ("phase", "f4"),
@@ -95,19 +95,20 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame
         ("grip", "f4", 4),  # how firmly each point is held: 0 free … 1
-        ("standing", "i4", 4), ("torn", "i4", 2),  # whether each point stands; feet let go until well into their swing
+        ("stood", "f8", (4, 2)), ("standing", "i4", 4), ("torn", "i4", 2),  # where each point was held, x, z in the world; whether it stands; feet let go until well into their swing
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
-        ("left", "f8", 2), ("struck", "f4", (2, 2)), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; where the blend came down in the ground frame; how far aside it will
+        ("left", "f8", 2), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; whether it found its own; how far from where the blend does it comes down
         ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain
+        ("coming", "f8", (2, 2, 2)),  # where heel and ball of each foot of the blend come down, x, z in the world
         ("pace", "f4"),  # the share of the wished speed that the ground allows
         ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
-        ("rise", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
+        ("rise", "f4", 2), ("rise_rate", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
         ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis
         ("row", "f4", COLUMNS), ("row_rate", "f4", COLUMNS),  # the blended series and its rate
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
@@ -127,7 +128,16 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     turn = (there - here) * [0.0, 0.0, 1.0]
     for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("land", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
+    for name in ("stood", "coming"):
+        memory[name] = _carried(memory[name], memory["ground"], ground)
     memory["ground"], memory["aimed"] = ground, 0
+
+
+def _carried(places: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """Places (..., K, 2) or (..., 2, K, 2) x, z in the world, as seen from one ground frame (..., 3), seen from another."""
+    shape = places.shape
+    flat = places.reshape(here.shape[:-1] + (-1, 2))
+    return compose(there[..., None, :], relative(here[..., None, :], _flat(flat)))[..., :2].reshape(shape)
 
 
 def _flat(places):

@@ -36,7 +36,7 @@ def follow_command(m, dt):
     v_f, omega, v_l = m.velocity[0], m.velocity[1], m.velocity[2]
     for i in range(3):
         m.velocity[i] = 0.0 if m.settled else m.command[i]
-    _advance(m, 0.5 * (v_f + m.velocity[0]), 0.5 * (omega + m.velocity[1]), 0.5 * (v_l + m.velocity[2]), dt)
+    advance(m.ground, 0.5 * (v_f + m.velocity[0]), 0.5 * (omega + m.velocity[1]), 0.5 * (v_l + m.velocity[2]), dt)
 
 
 @kernel
@@ -67,17 +67,17 @@ def follow_feet(m, body, legs, positions, orientations, velocities, dt):
     m.drift[0] += gain * (share * (lateral / trust / dt - v_l) - m.drift[0])
     m.drift[1] += gain * (share * (forward / trust / dt - v_f) - m.drift[1])
     m.velocity[0], m.velocity[1], m.velocity[2] = v_f + m.drift[1], omega, v_l + m.drift[0]
-    _advance(m, m.velocity[0], omega, m.velocity[2], dt)
+    advance(m.ground, m.velocity[0], omega, m.velocity[2], dt)
 
 
 @kernel
-def _advance(m, v_f, omega, v_l, dt):
-    """The ground frame after dt at a velocity, by the middle of the turn."""
+def advance(ground, v_f, omega, v_l, dt):
+    """Lead a ground frame (3,) on for dt at a velocity, by the middle of the turn."""
     turn = omega * dt
-    c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
-    m.ground[0] += (c * v_l + s * v_f) * dt
-    m.ground[1] += (-s * v_l + c * v_f) * dt
-    m.ground[2] = math.pi - (math.pi - m.ground[2] - turn) % (2.0 * math.pi)
+    c, s = math.cos(ground[2] + 0.5 * turn), math.sin(ground[2] + 0.5 * turn)
+    ground[0] += (c * v_l + s * v_f) * dt
+    ground[1] += (-s * v_l + c * v_f) * dt
+    ground[2] = math.pi - (math.pi - ground[2] - turn) % (2.0 * math.pi)
 
 
 @kernel

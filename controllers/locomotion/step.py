@@ -8,22 +8,21 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
+from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command
 from .control_space import SCALE
 from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
+from .foothold import plan_footholds, room_to_plan, stride
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
 from .idle import add_idle, idle_kernel
 from .foot_points import foot_points, on_floor
-from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, clamp_kernel, inner_kernel,
-                     pose_kernel, query_kernel, series_kernel)
+from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, pose_kernel, query_kernel,
+                     series_kernel)
 from .memory import RUN, WALK
 from .root_motion import cadence_kernel, follow_command, to_world_kernel
 from .uneven_ground import stand_on
 
-LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
-"""A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
-half by its strides, so that walks and runs meet between them."""
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
 HEAVY = 2.0
@@ -51,10 +50,11 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     work = np.empty((5, 3, 3), np.float64)
     before = np.empty((4, 2))
     b, p, q, c = np.empty(4), np.empty(3), np.empty(3), np.empty(3)
+    ahead = room_to_plan(memory["weights"].shape[1], joints)
     for n in range(memory.shape[0]):
         m = memory[n]
         leave_rest(m, wish[n])
-        _shape_command(m, wish[n], dt, settings, walk, run, p, q)
+        shape_command(m, wish[n], leans(m, _share_of_cycle(m, settings.agility, 0.5 * dt)), dt, settings, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
         advance_phase(m, settings.agility, dt)
         start_kernel(m, start, wish[n], dt)
@@ -67,8 +67,9 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         on_floor(m, before)
         follow_command(m, dt)
         foot_points(body, legs, positions, orientations, m.points)
-        _stride(m, positions)
+        stride(m, m.points, positions)
         if settings.footing:
+            plan_footholds(m, settings, walk if m.family == WALK else run, table, body, legs, ahead)
             place_feet(m, body, legs, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
@@ -79,61 +80,6 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         to_world_kernel(m, fresh, root[n], local[n])
         if tops.shape[0] > 0:
             floors[n] += stand_on(m)
-
-
-@kernel
-def _shape_command(m, wish, dt, settings, walk, run, p, inner):
-    """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
-    no faster than legs can push, and only while a foot stands to push on."""
-    m.wanted = RUN if wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
-    for i in range(3):
-        p[i] = wish[i] / SCALE[i]
-    _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
-    for i in range(3):
-        p[i] *= SCALE[i]
-    p[0], p[2] = p[0] * m.pace, p[2] * m.pace
-    most = settings.acceleration * settings.agility
-    round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
-    p[1] = min(max(p[1], -round_curve), round_curve)
-    halflife = settings.command_halflife / settings.agility
-    lean = leans(m, _share_of_cycle(m, settings.agility, 0.5 * dt))
-    before = m.command[1]  # shoulders turn in half the time, and in the air, too
-    m.command[1], m.rate[1] = spring_kernel(before, m.rate[1], p[1], 0.5 * halflife, lean * dt)
-    turn = (m.command[1] - before) / (4.0 * most * dt)
-    if abs(turn) > 1.0:
-        m.command[1], m.rate[1] = before + math.copysign(4.0 * most * dt, turn), math.copysign(4.0 * most, turn)
-    push = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
-    if push <= 0.0:
-        return
-    push *= lean
-    forward, forward_rate = spring_kernel(m.command[0], m.rate[0], p[0], halflife, push * dt)
-    lateral, lateral_rate = spring_kernel(m.command[2], m.rate[2], p[2], halflife, push * dt)
-    forward, lateral = forward - m.command[0], lateral - m.command[2]
-    over = math.hypot(forward, lateral) / (most * push * dt)
-    if over > 1.0:
-        forward, lateral = forward / over, lateral / over
-        forward_rate, lateral_rate = forward / (push * dt), lateral / (push * dt)
-    m.command[0] += forward
-    m.command[2] += lateral
-    m.rate[0], m.rate[2] = forward_rate, lateral_rate
-
-
-@kernel
-def _within(space, p, inner, family):
-    """Bring a scaled wish `p` (3,) into a space. Walks go a little faster than any that was recorded, runs
-    slower, straight on, so that the two meet."""
-    ahead = p[0]
-    p[0] = _reached(space, ahead, family)
-    stretch = ahead / p[0] if p[0] > 0.0 else 1.0
-    inner_kernel(space, p, inner)
-    clamp_kernel(space, p, inner)
-    p[0] *= min(max(stretch, LEAST_STRETCH), MOST_STRETCH)
-
-
-@kernel
-def _reached(space, ahead, family):
-    """The scaled forward speed, of one that is stretched to, that a family has recorded."""
-    return min(ahead, space.straight[1]) if family == WALK else max(ahead, space.straight[0])
 
 
 @kernel
@@ -151,7 +97,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     space = walk if m.family == WALK else run
     for i in range(3):
         c[i] = m.command[i]
-    c[0] = _reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
+    c[0] = reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
     stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
     simplex = query_kernel(space, c, m.simplex[m.family], settings.correct, b, p, q)
@@ -179,16 +125,6 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
         series_kernel(table, m.weights, (m.phase + _share_of_cycle(m, settings.agility, dt)) % 1.0, fresh)
         for d in range(LABELS_AT):
             m.blend_rate[d] = m.row_rate[d] - (fresh[d] - (m.row[d] - m.blend[d])) / dt
-
-
-@kernel
-def _stride(m, positions):
-    """Lengthen or shorten the stride, about the pelvis, by what the cadence leaves of the stretch."""
-    longer = math.sqrt(m.stretch) - 1.0
-    for foot in range(2):
-        shift = longer * (0.5 * (m.points[2 * foot, 2] + m.points[2 * foot + 1, 2]) - positions[0, 2])
-        m.points[2 * foot, 2] += shift
-        m.points[2 * foot + 1, 2] += shift
 
 
 @kernel

@@ -32,8 +32,6 @@ CERTAIN = 0.35
 FARTHEST, ASTRAY = 0.6, 0.06
 """… unless that gets farther away than the first [m]; a foot that came down farther from it than the second stands on what
 lies there."""
-NEARS = 0.6
-"""Until this share of its swing where a foot will come down is told from its last step alone."""
 SLOWEST, RECOVERS = 0.4, 0.35
 """Who must take shorter steps slows down, to no less than the first share of the wish, and takes up speed again by so much a
 second."""
@@ -85,7 +83,7 @@ LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
-FOOT, TOE = 0.14, 0.08
+FOOT, TOE = 0.14, 0.09
 """From heel to ball and on to the toes' end [m]: a foot comes down on the higher of what lies under heel and ball."""
 SAME = 0.02
 """Grounds nearer to each other than this are the same one [m]."""
@@ -121,13 +119,10 @@ def follow_ground(m, tops, floor, swing, dt):
                     m.tilt[foot, 0], m.tilt[foot, 1] = aim[3], aim[4]
             m.left[foot] = bears[foot] = m.base[foot]
             if firm:
-                early = min(max(1.0 - passed, -0.3), 0.3) * swing / cadence_kernel(m)  # told for the swing's end
-                m.struck[foot, 0] = m.points[ball, 0] - early * m.velocity[2]
-                m.struck[foot, 1] = m.points[ball, 2] - early * m.velocity[0]
                 m.held[foot], m.aimed[foot] = 1, 0
             continue
         m.held[foot] = 0
-        _come_down(m, tops, floor, foot, progress, (1.0 - progress) * swing / cadence_kernel(m), under)
+        _come_down(m, tops, floor, foot, progress, under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
         path = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
@@ -177,27 +172,23 @@ def _beneath(m, tops, floor, foot, highest, place):
 
 
 @kernel
-def _come_down(m, tops, floor, foot, progress, later, out):
-    """Where a foot comes down in `later` seconds, and the ground (3,) there: as far beside where it would as it must to
-    stand whole and no step too high. Once its swing is CERTAIN, it keeps to the place."""
-    turn = m.velocity[1] * later
-    c, s = math.cos(m.ground[2] + 0.5 * turn), math.sin(m.ground[2] + 0.5 * turn)
-    x = m.ground[0] + (c * m.velocity[2] + s * m.velocity[0]) * later
-    z = m.ground[1] + (-s * m.velocity[2] + c * m.velocity[0]) * later
-    c, s = math.cos(m.ground[2] + turn), math.sin(m.ground[2] + turn)
-    x, z = x + c * m.struck[foot, 0] + s * m.struck[foot, 1], z - s * m.struck[foot, 0] + c * m.struck[foot, 1]
-    near = max((progress - NEARS) / (1.0 - NEARS), 0.0) ** 2  # the nearer it is, the more where it is tells
-    here_x, here_z = m.points[2 * foot + 1, 0], m.points[2 * foot + 1, 2]
-    c_now, s_now = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x += near * (m.ground[0] + c_now * here_x + s_now * here_z - x)
-    z += near * (m.ground[1] - s_now * here_x + c_now * here_z - z)
+def _come_down(m, tops, floor, foot, progress, out):
+    """The ground (3,) where a foot comes down: as far from where it was planned to as it must to stand whole and no step too
+    high. Once its swing is CERTAIN, it keeps to the place."""
+    heel, ball = m.coming[foot, 0], m.coming[foot, 1]
+    size = math.hypot(ball[0] - heel[0], ball[1] - heel[1]) + 1e-9
+    c, s = (ball[1] - heel[1]) / size, (ball[0] - heel[0]) / size
+    beside_x, beside_z = m.land[foot, 0], m.land[foot, 1]
+    x, z = ball[0] + beside_x, ball[1] + beside_z
     aim = m.aim[foot]
     if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
-        m.land[foot, 0], m.land[foot, 1] = aim[0] - x, aim[1] - z
+        m.land[foot, 0], m.land[foot, 1] = aim[0] - ball[0], aim[1] - ball[1]
         out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
         return
     found, shift, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
-    aim[0], aim[1] = x + m.land[foot, 0], z + m.land[foot, 1]
+    m.land[foot, 0] += beside_x
+    m.land[foot, 1] += beside_z
+    aim[0], aim[1] = ball[0] + m.land[foot, 0], ball[1] + m.land[foot, 1]
     aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
     even = shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
     m.aimed[foot] = 1 if found and progress > CERTAIN and not even and m.family == WALK else 0

@@ -1,0 +1,104 @@
+"""The command: a wish as legs can take it up, now and in the time to come."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..body import spring_kernel
+from ..compiled import kernel
+from .control_space import SCALE
+from .kernel import clamp_kernel, inner_kernel
+from .memory import RUN, WALK
+from .root_motion import advance
+
+LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
+"""A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
+half by its strides, so that walks and runs meet between them."""
+PUSHES = (1.0, 0.6)
+"""The share of the time in which a foot stands to push on, walking and running."""
+PIECES = 2
+"""The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
+
+
+@kernel
+def shape_command(m, wish, lean, dt, settings, walk, run, p, inner):
+    """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
+    no faster than legs can push, and only while a foot stands to push on. lean: the share of its strength with which a
+    body pushes."""
+    m.wanted = RUN if wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
+    for i in range(3):
+        p[i] = wish[i] / SCALE[i]
+    _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
+    for i in range(3):
+        p[i] *= SCALE[i]
+    p[0], p[2] = p[0] * m.pace, p[2] * m.pace
+    most = settings.acceleration * settings.agility
+    round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
+    p[1] = min(max(p[1], -round_curve), round_curve)
+    for i in range(3):
+        m.asked[i] = p[i]
+    push = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
+    _take_up(m.command, m.rate, p, settings, lean, lean * push, dt)
+
+
+@kernel
+def _take_up(command, rate, asked, settings, turning, push, dt):
+    """Lead a command (3,) and its rate (3,) towards what is asked (3,): shoulders turn in half the time, and in the air, too."""
+    most, halflife = settings.acceleration * settings.agility, settings.command_halflife / settings.agility
+    before = command[1]
+    command[1], rate[1] = spring_kernel(before, rate[1], asked[1], 0.5 * halflife, turning * dt)
+    turn = (command[1] - before) / (4.0 * most * dt)
+    if abs(turn) > 1.0:
+        command[1], rate[1] = before + math.copysign(4.0 * most * dt, turn), math.copysign(4.0 * most, turn)
+    if push <= 0.0:
+        return
+    forward, forward_rate = spring_kernel(command[0], rate[0], asked[0], halflife, push * dt)
+    lateral, lateral_rate = spring_kernel(command[2], rate[2], asked[2], halflife, push * dt)
+    forward, lateral = forward - command[0], lateral - command[2]
+    over = math.hypot(forward, lateral) / (most * push * dt)
+    if over > 1.0:
+        forward, lateral = forward / over, lateral / over
+        forward_rate, lateral_rate = forward / (push * dt), lateral / (push * dt)
+    command[0] += forward
+    command[2] += lateral
+    rate[0], rate[2] = forward_rate, lateral_rate
+
+
+@kernel
+def look_ahead(m, settings, later, ground, command):
+    """Where the ground frame (3,) will be in `later` seconds, and the command (3,) that the blend's weights will have come to by then,
+    if the same is asked for all the while."""
+    rate, now = np.empty(3), np.empty(3)
+    for i in range(3):
+        ground[i], now[i], rate[i] = m.ground[i], m.command[i], m.rate[i]
+    # the moment whose command a low-pass that starts now has come to, if commands change evenly
+    lag = settings.weight_halflife / math.log(2.0)
+    moment = later / (1.0 - math.exp(-later / lag)) - lag
+    for k in range(2 * PIECES):
+        dt = (moment if k < PIECES else later - moment) / PIECES
+        v_f, omega, v_l = now[0], now[1], now[2]
+        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], dt)
+        advance(ground, 0.5 * (v_f + now[0]), 0.5 * (omega + now[1]), 0.5 * (v_l + now[2]), dt)
+        if k == PIECES - 1:
+            for i in range(3):
+                command[i] = now[i]
+
+
+@kernel
+def _within(space, p, inner, family):
+    """Bring a scaled wish `p` (3,) into a space. Walks go a little faster than any that was recorded, runs
+    slower, straight on, so that the two meet."""
+    ahead = p[0]
+    p[0] = reached(space, ahead, family)
+    stretch = ahead / p[0] if p[0] > 0.0 else 1.0
+    inner_kernel(space, p, inner)
+    clamp_kernel(space, p, inner)
+    p[0] *= min(max(stretch, LEAST_STRETCH), MOST_STRETCH)
+
+
+@kernel
+def reached(space, ahead, family):
+    """The scaled forward speed, of one that is stretched to, that a family has recorded."""
+    return min(ahead, space.straight[1]) if family == WALK else max(ahead, space.straight[0])
