@@ -153,12 +153,12 @@ class Jump(Controller):
         return None, told
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
-        """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can."""
+        """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""
         start, floor = self.start_of(state), float(level(state.floor))
         if intent.leap is None:
             return "nobody asked for a jump"
         place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
-        return self.survey(start, place, floor, intent.leap.airtime, intent.around)[1]
+        return self._made(start, place, floor, intent.leap.airtime, intent.around)[1]
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                around: Sequence[Any] = ()) -> tuple[Path, str]:

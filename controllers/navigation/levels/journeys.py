@@ -22,7 +22,7 @@ ROOM = 0.5
 """Nobody leaps onto, or off, what is narrower than this [m]."""
 APART = 0.5
 """From one place at a side to the next [m]."""
-BESIDE = 0.40
+BESIDE = 0.48
 """Who leaps up onto a box, or down from it, stands, or lands, so far from it [m]."""
 FARTHEST, HIGHEST = 2.6, 1.2
 """No leap is thought of that goes farther than this [m], or up higher."""
