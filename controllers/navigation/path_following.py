@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from ..compiled import kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,17 +49,30 @@ class Path:
         itself and progress never runs backward.
         """
         position, since = np.asarray(position, float), np.asarray(since, float)
-        a, steps = self.points[:-1], np.diff(self.points, axis=0)
-        lengths = np.diff(self.start)
-        offset = position[..., None, :] - a
-        along = self.start[:-1] + np.clip(np.sum(offset * steps, -1) / lengths, 0.0, lengths)
-        until = np.minimum(since + reach, self.length)
-        along = np.clip(along, since[..., None], until[..., None])
-        along = np.minimum(np.maximum(along, self.start[:-1]), self.start[1:])
-        gap = np.linalg.norm(self.at(along) - position[..., None, :], axis=-1)
-        outside = (self.start[1:] < since[..., None]) | (self.start[:-1] > until[..., None])
-        best = np.argmin(np.where(outside, np.inf, gap), -1)
-        return np.take_along_axis(along, best[..., None], -1)[..., 0]
+        shape = np.broadcast_shapes(position.shape[:-1], since.shape)
+        out = np.empty(shape)
+        nearest_kernel(self.points, self.start, np.ascontiguousarray(np.broadcast_to(position, (*shape, 2))).reshape(-1, 2),
+                       np.ascontiguousarray(np.broadcast_to(since, shape)).reshape(-1), float(reach), out.reshape(-1))
+        return out[()]
+
+
+@kernel
+def nearest_kernel(points, start, positions, since, reach, out):
+    """Write how far along a polyline the places nearest to positions (M, 2) are, see `Path.nearest`."""
+    for m in range(len(positions)):
+        until, least = min(since[m] + reach, start[-1]), np.inf
+        out[m] = min(since[m], start[-1])
+        for n in range(len(points) - 1):
+            if start[n + 1] < since[m] or start[n] > until:
+                continue
+            length = start[n + 1] - start[n]
+            x, z = (points[n + 1, 0] - points[n, 0]) / length, (points[n + 1, 1] - points[n, 1]) / length
+            dx, dz = positions[m, 0] - points[n, 0], positions[m, 1] - points[n, 1]
+            along = min(max(start[n] + dx * x + dz * z, since[m]), until)
+            along = min(max(along, start[n]), start[n + 1])
+            gap = math.hypot(dx - (along - start[n]) * x, dz - (along - start[n]) * z)
+            if gap < least:
+                least, out[m] = gap, along
 
 
 def follow(path: Path, ground, progress, speed, ahead: float = 0.6, brake: float = 0.5

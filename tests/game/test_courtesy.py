@@ -1,7 +1,6 @@
 """Actors who are told where to be and avoid each other: nobody touches anybody, all arrive."""
 
 import numpy as np
-import pytest
 
 from gambol.controllers.locomotion import Locomotion
 from gambol.game.scenario import film
@@ -59,13 +58,16 @@ def test_alone_a_goal_is_walked_to_as_without_others(tmp_path):
     assert np.array_equal(with_manners, without)
 
 
-@pytest.mark.parametrize("name", ["corridor_free"])
-def test_the_corridor_needs_no_script(name):
-    scenario = load(name)
-    nearest = np.inf
-    for act in film.acts(scenario, Locomotion.load()):
-        one, other = (character.state.ground for character in act.world.characters)
-        nearest = min(nearest, np.hypot(*(one - other)[:2]))
-        if act.world.time >= scenario.duration:
-            break
+def test_the_two_at_the_corner_would_meet_and_pass_without_a_script():
+    def met(avoid, until):
+        nearest = np.inf
+        for act in film.acts(load("corridor_free").model_copy(update={"avoid": avoid}), Locomotion.load()):
+            one, other = (character.state.ground for character in act.world.characters)
+            nearest = min(nearest, np.hypot(*(one - other)[:2]))
+            if act.world.time >= until:
+                return act, nearest
+    act, nearest = met(True, load("corridor_free").duration)
     assert nearest > 0.5 and all(script.done and not script.refused for script in act.scripts)
+    one, other = (character.state.ground for character in act.world.characters)
+    assert one[1] > 10 and other[1] < 1, "both get where they were going"
+    assert met(False, 6.0)[1] < 0.3, "they would meet"

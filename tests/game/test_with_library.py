@@ -67,15 +67,6 @@ def test_the_two_in_the_corridor_meet_and_pass(locomotion):
     assert np.all(np.abs(a[:, 0]) < 1.1)
 
 
-def test_the_two_in_the_corridor_pass_without_a_script(locomotion):
-    places = np.array([[c.state.ground[:2] for c in frame.before.characters] for frame in run(load("corridor_free").at_fps(20), locomotion)])
-    assert np.linalg.norm(places[:, 0] - places[:, 1], axis=1).min() > 0.44, "nobody is walked through"
-    assert places[-1, 0, 1] > 10 and places[-1, 1, 1] < 1, "both get where they were going"
-    blind = load("corridor_free").model_copy(update={"avoid": False}).at_fps(20)
-    through = np.array([[c.state.ground[:2] for c in frame.before.characters] for frame in run(blind, locomotion)])
-    assert np.linalg.norm(through[:, 0] - through[:, 1], axis=1).min() < 0.3, "they would meet"
-
-
 def test_a_game_replays_to_the_bit_from_its_log(locomotion, tmp_path):
     path = tmp_path / "a.gambol"
     game = Play(locomotion, log=LogWriter(path, locomotion, 1))
