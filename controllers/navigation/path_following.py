@@ -42,38 +42,6 @@ class Path:
         """Points (..., 2) [m] at distances `along` (...) [m] from its start, held at its ends."""
         return np.stack([np.interp(along, self.start, self.points[:, i]) for i in range(2)], -1)
 
-    def nearest(self, position, since, reach: float) -> np.ndarray:
-        """Distances along the path (...) [m] nearest to `position` (..., 2) [m].
-
-        Only the stretch from `since` (...) to `since + reach` counts, so that a path may cross
-        itself and progress never runs backward.
-        """
-        position, since = np.asarray(position, float), np.asarray(since, float)
-        shape = np.broadcast_shapes(position.shape[:-1], since.shape)
-        out = np.empty(shape)
-        nearest_kernel(self.points, self.start, np.ascontiguousarray(np.broadcast_to(position, (*shape, 2))).reshape(-1, 2),
-                       np.ascontiguousarray(np.broadcast_to(since, shape)).reshape(-1), float(reach), out.reshape(-1))
-        return out[()]
-
-
-@kernel
-def nearest_kernel(points, start, positions, since, reach, out):
-    """Write how far along a polyline the places nearest to positions (M, 2) are, see `Path.nearest`."""
-    for m in range(len(positions)):
-        until, least = min(since[m] + reach, start[-1]), np.inf
-        out[m] = min(since[m], start[-1])
-        for n in range(len(points) - 1):
-            if start[n + 1] < since[m] or start[n] > until:
-                continue
-            length = start[n + 1] - start[n]
-            x, z = (points[n + 1, 0] - points[n, 0]) / length, (points[n + 1, 1] - points[n, 1]) / length
-            dx, dz = positions[m, 0] - points[n, 0], positions[m, 1] - points[n, 1]
-            along = min(max(start[n] + dx * x + dz * z, since[m]), until)
-            along = min(max(along, start[n]), start[n + 1])
-            gap = math.hypot(dx - (along - start[n]) * x, dz - (along - start[n]) * z)
-            if gap < least:
-                least, out[m] = gap, along
-
 
 def follow(path: Path, ground, progress, speed, ahead: float = 0.6, brake: float = 0.5
            ) -> tuple[np.ndarray, np.ndarray]:
@@ -83,11 +51,52 @@ def follow(path: Path, ground, progress, speed, ahead: float = 0.6, brake: float
     ago, 0 at first. speed: (...) [m/s]. ahead: how far ahead the character looks [m].
     brake: the wish fades over the last `brake` metres, so that the character arrives rather
     than overshoots.
+
+    Only the stretch from `progress` to twice `ahead` beyond it counts as near, so that a path may
+    cross itself and progress never runs backward.
     """
-    position = np.asarray(ground, float)[..., :2]
-    progress = path.nearest(position, progress, reach=2.0 * ahead)
-    aim = path.at(progress + ahead)
-    offset = aim - position
-    gap = np.linalg.norm(offset, axis=-1, keepdims=True)
-    speed = np.asarray(speed, float) * np.clip((path.length - progress) / brake, 0.0, 1.0)
-    return offset / np.maximum(gap, 1e-9) * np.asarray(speed)[..., None], progress
+    ground, progress, speed = np.asarray(ground, float), np.asarray(progress, float), np.asarray(speed, float)
+    shape = np.broadcast_shapes(ground.shape[:-1], progress.shape, speed.shape)
+    wish, made = np.empty((*shape, 2)), np.empty(shape)
+    follow_kernel(path.points, path.start, _rows(ground, (*shape, ground.shape[-1])).reshape(-1, ground.shape[-1]),
+                  _rows(progress, shape).reshape(-1), _rows(speed, shape).reshape(-1), float(ahead), float(brake),
+                  wish.reshape(-1, 2), made.reshape(-1))
+    return wish, made[()]
+
+
+def _rows(value: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    return np.ascontiguousarray(value if value.shape == shape else np.broadcast_to(value, shape))
+
+
+@kernel
+def follow_kernel(points, start, grounds, since, speeds, ahead, brake, wish, made):
+    """Write wishes (M, 2) and progress (M,) of characters (M, ≥ 2) along a polyline, see `follow`."""
+    for m in range(len(grounds)):
+        x, z = grounds[m, 0], grounds[m, 1]
+        made[m] = nearest_kernel(points, start, x, z, since[m], 2.0 * ahead)
+        along = min(max(made[m] + ahead, 0.0), start[-1])
+        n = min(max(np.searchsorted(start, along, side="right") - 1, 0), len(points) - 2)
+        share = (along - start[n]) / (start[n + 1] - start[n])
+        dx = points[n, 0] + share * (points[n + 1, 0] - points[n, 0]) - x
+        dz = points[n, 1] + share * (points[n + 1, 1] - points[n, 1]) - z
+        fast = speeds[m] * min(max((start[-1] - made[m]) / brake, 0.0), 1.0) / max(math.hypot(dx, dz), 1e-9)
+        wish[m, 0], wish[m, 1] = dx * fast, dz * fast
+
+
+@kernel
+def nearest_kernel(points, start, x, z, since, reach):
+    """How far along a polyline [m] the place nearest to x, z is, of the stretch from `since` to `since + reach`."""
+    until, least = min(since + reach, start[-1]), np.inf
+    nearest = min(since, start[-1])
+    for n in range(len(points) - 1):
+        if start[n + 1] < since or start[n] > until:
+            continue
+        length = start[n + 1] - start[n]
+        along_x, along_z = (points[n + 1, 0] - points[n, 0]) / length, (points[n + 1, 1] - points[n, 1]) / length
+        dx, dz = x - points[n, 0], z - points[n, 1]
+        along = min(max(start[n] + dx * along_x + dz * along_z, since), until)
+        along = min(max(along, start[n]), start[n + 1])
+        gap = math.hypot(dx - (along - start[n]) * along_x, dz - (along - start[n]) * along_z)
+        if gap < least:
+            least, nearest = gap, along
+    return nearest

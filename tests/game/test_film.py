@@ -206,14 +206,14 @@ def test_shipped_films_show_whom_they_are_about(name, walker, monkeypatch):
     """In every shot and view, whoever it is about is in the picture; a camera is never in a prop.
 
     Who follows points walks after them: what makes a body of them plays no part, and costs a hundred times as much.
+    Nor do overlays.
     """
     monkeypatch.setattr(film, "follower_of", lambda performer, *_: walker)
     monkeypatch.setattr(film, "tracked_of", lambda *_: walker)
-    monkeypatch.setattr(film, "with_cameras", lambda ink, *_: ink)
     monkeypatch.setattr(Watches, "sighting", lambda *_: None)
     scenario = load(name).at_fps(4)
     lost = seen = 0
-    for frame, scenes in film.scenes(scenario, walker):
+    for frame, scenes in film.scenes(scenario, walker, Overlays()):
         shot = [s for s in scenario.shots if s.at <= frame.time][-1]
         for table, scene in zip(shot.cameras, scenes, strict=True):
             assert blocked(scene.camera.eye, scenario.stage(), 0.0) is None and scene.camera.eye[1] > 0.1

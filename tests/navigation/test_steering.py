@@ -115,15 +115,28 @@ def test_a_path_is_walked_to_its_end_even_where_it_crosses_itself():
 
 
 @given(st.floats(-1, 5), st.floats(-1, 1), st.floats(0, 4))
-def test_nearest_lies_in_its_window_and_is_nearest_there(x, z, since):
+def test_progress_lies_in_its_window_and_is_nearest_there(x, z, since):
     path = Path(np.array([[0, 0], [1.5, 0.2], [4, 0]]))
-    found = path.nearest(np.array([x, z]), since, reach=1.0)
+    wish, found = follow(path, np.array([x, z, 0.3]), since, 1.2, ahead=0.5)
     until = min(since + 1.0, path.length)
     since = min(since, path.length)
     assert since - 1e-9 <= found <= until + 1e-9
     samples = path.at(np.linspace(since, until, 200))
     gap = np.linalg.norm(path.at(found) - [x, z])
     assert gap <= np.linalg.norm(samples - [x, z], axis=1).min() + 1e-9
+    way = path.at(found + 0.5) - [x, z]
+    speed = 1.2 * min((path.length - found) / 0.5, 1.0)
+    np.testing.assert_allclose(wish, speed * way / max(np.linalg.norm(way), 1e-9), atol=1e-12)
+
+
+def test_a_batch_follows_as_each_does():
+    path = Path(np.array([[0, 0], [1.5, 0.2], [4, 0]]))
+    grounds, since = np.random.default_rng(0).uniform(-1, 4, (3, 2, 3)), np.array([0.0, 2.0])
+    wish, made = follow(path, grounds, since, 1.2)
+    for i in np.ndindex(3, 2):
+        one, there = follow(path, grounds[i], since[i[1]], 1.2)
+        np.testing.assert_array_equal(wish[i], one)
+        assert made[i] == there
 
 
 @pytest.mark.parametrize("points", [[[0, 0]], [[0, 0], [0, 0]], [0, 1]])
