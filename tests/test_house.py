@@ -9,8 +9,6 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(p for wing in ("controllers", "game", "assets", "scripts", "tests") for p in (ROOT / wing).rglob("*.py")
                  if "__pycache__" not in p.parts)
@@ -68,23 +66,27 @@ def test_imports_run_one_way():
                 assert not any(n.split(".")[0] in ("game", "moderngl", "glfw") for n in names), path
 
 
+NAMES = {dotted(p) for p in MODULES}
+
+
+@cache
 def taken(path):
     """What of ours a module takes, whenever it does: the module that it names, and the name that it takes from there."""
-    own, names = dotted(path), {dotted(p) for p in MODULES}
+    own, found = dotted(path), []
     room = own if path.name == "__init__.py" else own.rpartition(".")[0]
     for node in ast.walk(parsed(path)):
         if isinstance(node, ast.Import):
-            yield from ((alias.name, "") for alias in node.names if alias.name in names)
+            found += [(alias.name, "") for alias in node.names if alias.name in NAMES]
         elif isinstance(node, ast.ImportFrom):
             above = room.split(".")[:len(room.split(".")) + 1 - node.level] if node.level else []
             source = ".".join([*above, node.module] if node.module else above)
-            yield from ((source, alias.name) for alias in node.names if f"{source}.{alias.name}" in names or source in names)
+            found += [(source, alias.name) for alias in node.names if f"{source}.{alias.name}" in NAMES or source in NAMES]
+    return found
 
 
 def imported(path):
     """Those of our modules that a module imports."""
-    names = {dotted(p) for p in MODULES}
-    yield from (f"{source}.{name}" if f"{source}.{name}" in names else source for source, name in taken(path))
+    return [f"{source}.{name}" if f"{source}.{name}" in NAMES else source for source, name in taken(path)]
 
 
 PACKAGES = {dotted(p) for p in MODULES if p.name == "__init__.py"}
@@ -193,11 +195,10 @@ def test_the_plan_has_no_circle():
 OUTSIDE = [p for p in SOURCES if p.relative_to(ROOT).parts[0] != "tests"]
 
 
-@pytest.mark.parametrize("path", OUTSIDE, ids=lambda p: str(p.relative_to(ROOT)))
-def test_nothing_reaches_past_a_door(path):
+def test_nothing_reaches_past_a_door():
     """What is outside a room takes what it needs from the room's door; tests alone may look into it."""
-    here = dotted(path)
-    assert not [source for source, _ in taken(path) if source != room_of(source) and not within(here, room_of(source))]
+    assert not [f"{dotted(path)} takes {source}" for path in OUTSIDE for source, _ in taken(path)
+                if source != room_of(source) and not within(dotted(path), room_of(source))]
 
 
 def test_few_files_stand_beside_folders():
@@ -215,13 +216,12 @@ def test_no_two_files_are_called_the_same_in_a_wing():
         assert twice <= {"controller"}
 
 
-@pytest.mark.parametrize("path", MODULES, ids=dotted)
-def test_nobody_guesses_what_a_controller_has(path):
+def test_nobody_guesses_what_a_controller_has():
     """What the game asks of a controller is in the contract, with a null answer."""
-    for node in ast.walk(parsed(path)):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("getattr", "hasattr"):
-            asked = ast.unparse(node.args[0])
-            assert not re.search(r"(controller|performer|someone|state\.memory)$", asked), ast.unparse(node)
+    guesses = [(path, node) for path in MODULES for node in ast.walk(parsed(path))
+               if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("getattr", "hasattr")]
+    assert not [f"{dotted(path)}: {ast.unparse(node)}" for path, node in guesses
+                if re.search(r"(controller|performer|someone|state\.memory)$", ast.unparse(node.args[0]))]
 
 
 def test_nothing_imports_what_imports_it():
@@ -252,35 +252,36 @@ def test_a_machines_path_would_be_seen():
         assert not ABSOLUTE.search(line)
 
 
-@pytest.mark.parametrize("path", MODULES, ids=dotted)
-def test_every_module_says_what_it_is_for(path):
-    tree = parsed(path)
-    assert ast.get_docstring(tree), "no docstring"
+def test_every_module_says_what_it_is_for():
+    assert not [dotted(path) for path in MODULES if not ast.get_docstring(parsed(path))]
 
 
-@pytest.mark.parametrize("path", MODULES, ids=dotted)
-def test_public_functions_and_classes_say_what_they_do(path):
-    tree = parsed(path)
-    silent = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
-              and not node.name.startswith("_") and not ast.get_docstring(node)
-              and "overload" not in map(ast.unparse, node.decorator_list)]  # which only says types again
-    assert not silent
+def test_public_functions_and_classes_say_what_they_do():
+    assert not [f"{dotted(path)}.{node.name}" for path in MODULES for node in parsed(path).body
+                if isinstance(node, ast.FunctionDef | ast.ClassDef)
+                and not node.name.startswith("_") and not ast.get_docstring(node)
+                and "overload" not in map(ast.unparse, node.decorator_list)]  # which only says types again
 
 
 ROOMS = [p for p in MODULES if p.name == "__init__.py"]
 
 
-@pytest.mark.parametrize("path", ROOMS, ids=dotted)
-def test_rooms_hand_out_what_they_promise(path):
+def promised(path):
+    """A room, and what its `__all__` says that it hands out."""
     room = importlib.import_module(dotted(path))
-    names = getattr(room, "__all__", ())
-    assert len(set(names)) == len(names)
-    assert all(hasattr(room, name) for name in names)
+    return room, list(getattr(room, "__all__", ()))
 
 
-@pytest.mark.parametrize("path", ROOMS, ids=dotted)
-def test_rooms_promise_what_they_import(path):
+def test_rooms_hand_out_what_they_promise():
+    for path in ROOMS:
+        room, names = promised(path)
+        assert len(set(names)) == len(names), dotted(path)
+        assert not [name for name in names if not hasattr(room, name)], dotted(path)
+
+
+def test_rooms_promise_what_they_import():
     """Whatever an `__init__` imports from its own files is in `__all__`: nothing is handed out by accident."""
-    names = [alias.asname or alias.name for node in parsed(path).body
-             if isinstance(node, ast.ImportFrom) and node.level for alias in node.names]
-    assert set(names) <= set(getattr(importlib.import_module(dotted(path)), "__all__", ()))
+    for path in ROOMS:
+        names = [alias.asname or alias.name for node in parsed(path).body
+                 if isinstance(node, ast.ImportFrom) and node.level for alias in node.names]
+        assert set(names) <= set(promised(path)[1]), dotted(path)
