@@ -29,14 +29,7 @@ def two_bone(root: np.ndarray, mid: np.ndarray, end: np.ndarray, target: np.ndar
     """
     if pole is None:
         pole = pole_of(root, mid, end)
-    arrays = [np.asarray(a) for a in (root, mid, end, target, pole)]
-    dtype = np.result_type(*arrays)
-    dtype = dtype if dtype.kind == "f" else np.dtype(float)
-    arrays = np.broadcast_arrays(*arrays)
-    shape = arrays[0].shape
-    if shape[-1:] != (3,):
-        raise ValueError(f"joints and target must be (..., 3), together they are {shape}")
-    flat = [np.ascontiguousarray(a, dtype).reshape(-1, 3) for a in arrays]
+    flat, shape, dtype = _flat(root, mid, end, target, pole)
     new_mid, new_end = np.empty_like(flat[0]), np.empty_like(flat[0])
     _two_bones(*flat, dtype.type(buffer), new_mid, new_end)
     return new_mid.reshape(shape), new_end.reshape(shape)
@@ -52,13 +45,21 @@ def two_bone_turns(root: np.ndarray, mid: np.ndarray, end: np.ndarray, target: n
     the same hinge axis in their own frames, so a hinge stays a hinge: the frame of bone and hinge
     is carried over, not the bone alone.
     """
-    here = pole_of(root, mid, end) if pole is None else pole
-    new_mid, new_end = two_bone(root, mid, end, target, here, buffer=buffer)
-    before = np.cross(here, end - root)
-    after = np.cross(here, new_end - root)
-    upper = _frame(new_mid - root, after) @ _swap(_frame(mid - root, before))
-    lower = _frame(new_end - new_mid, after) @ _swap(_frame(end - mid, before))
-    return upper, lower
+    flat, shape, dtype = _flat(root, mid, end, target, pole_of(root, mid, end) if pole is None else pole)
+    upper, lower = np.empty((len(flat[0]), 3, 3), dtype), np.empty((len(flat[0]), 3, 3), dtype)
+    _turns(*flat, dtype.type(buffer), upper, lower)
+    return upper.reshape(*shape, 3), lower.reshape(*shape, 3)
+
+
+def _flat(*places):
+    """Places of one type and shape, in rows (N, 3); what they are together, and of which type."""
+    arrays = [np.asarray(a) for a in places]
+    dtype = np.result_type(*arrays)
+    dtype = dtype if dtype.kind == "f" else np.dtype(float)
+    shape = np.broadcast_shapes(*(a.shape for a in arrays))
+    if shape[-1:] != (3,):
+        raise ValueError(f"joints and target must be (..., 3), together they are {shape}")
+    return [np.ascontiguousarray(np.broadcast_to(a, shape), dtype).reshape(-1, 3) for a in arrays], shape, dtype
 
 
 def pole_of(root: np.ndarray, mid: np.ndarray, end: np.ndarray) -> np.ndarray:
@@ -66,20 +67,6 @@ def pole_of(root: np.ndarray, mid: np.ndarray, end: np.ndarray) -> np.ndarray:
     line = np.asarray(end) - root
     along = np.sum((mid - root) * line, -1, keepdims=True)
     return mid - root - line * along / np.maximum(np.sum(line * line, -1, keepdims=True), 1e-12)
-
-
-def _frame(bone, hinge):
-    """Orthonormal frames (..., 3, 3) whose first column is the bone, the second near the hinge."""
-    x = bone / np.linalg.norm(bone, axis=-1, keepdims=True)
-    y = hinge - x * np.sum(x * hinge, -1, keepdims=True)
-    size = np.linalg.norm(y, axis=-1, keepdims=True)
-    spare = np.cross(x, np.eye(3)[np.argmin(np.abs(x), -1)])
-    y = np.where(size > 1e-9, y / np.maximum(size, 1e-12), spare / np.linalg.norm(spare, axis=-1, keepdims=True))
-    return np.stack([x, y, np.cross(x, y)], -1)
-
-
-def _swap(matrix):
-    return np.swapaxes(matrix, -1, -2)
 
 
 @kernel
@@ -127,6 +114,34 @@ def _two_bones(root, mid, end, target, pole, buffer, new_mid, new_end):
         lower = math.sqrt((end[n, 0] - mid[n, 0]) ** 2 + (end[n, 1] - mid[n, 1]) ** 2
                           + (end[n, 2] - mid[n, 2]) ** 2)
         two_bone_kernel(root[n], upper, lower, target[n], pole[n], buffer, new_mid[n], new_end[n])
+
+
+@kernel
+def _turns(root, mid, end, target, pole, buffer, upper, lower):
+    """Write the rotations (N, 3, 3) of `two_bone_turns`."""
+    was, now, made = np.empty_like(upper[0]), np.empty_like(upper[0]), np.empty((2, 3), root.dtype)
+    for n in range(len(root)):
+        _two_bones(root[n:n + 1], mid[n:n + 1], end[n:n + 1], target[n:n + 1], pole[n:n + 1], buffer, made[:1], made[1:])
+        before, after = np.cross(pole[n], end[n] - root[n]), np.cross(pole[n], made[1] - root[n])
+        for old, new, out in ((mid[n] - root[n], made[0] - root[n], upper[n]), (end[n] - mid[n], made[1] - made[0], lower[n])):
+            _frame(old, before, was)
+            _frame(new, after, now)
+            for i in range(3):
+                for k in range(3):
+                    out[i, k] = now[i, 0] * was[k, 0] + now[i, 1] * was[k, 1] + now[i, 2] * was[k, 2]
+
+
+@kernel
+def _frame(bone, hinge, frame):
+    """Write an orthonormal frame (3, 3) whose first column is the bone, the second near the hinge."""
+    x = bone / math.sqrt(bone[0] ** 2 + bone[1] ** 2 + bone[2] ** 2)
+    y = hinge - x * (x[0] * hinge[0] + x[1] * hinge[1] + x[2] * hinge[2])
+    size = math.sqrt(y[0] ** 2 + y[1] ** 2 + y[2] ** 2)
+    if size <= 1e-9:  # no hinge that would tell: any
+        y = np.cross(x, np.eye(3, dtype=x.dtype)[np.argmin(np.abs(x))])
+        size = math.sqrt(y[0] ** 2 + y[1] ** 2 + y[2] ** 2)
+    frame[:, 0], frame[:, 1] = x, y / size
+    frame[:, 2] = np.cross(frame[:, 0], frame[:, 1])
 
 
 @kernel
