@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from functools import lru_cache
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -91,6 +89,9 @@ def done(job: Job) -> tuple[Job, int]:
 
 def at_once(jobs: Sequence[Job], workers: int) -> Iterator[tuple[Job, int]]:
     """Jobs done by so many programs, in the order in which they end. Whatever goes wrong ends all of them."""
+    from concurrent.futures import ProcessPoolExecutor, as_completed  # slow to load, and no game films so
+    from multiprocessing import get_context
+
     with ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn")) as crew:
         waiting = [crew.submit(done, job) for job in jobs]
         try:

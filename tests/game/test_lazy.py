@@ -8,7 +8,7 @@ import pytest
 
 from gambol import controllers, game
 
-LATER = ("scipy.optimize", "scipy.interpolate", "scipy.ndimage", "scipy.stats", "pydantic", "rich", "imgui_bundle", "av",
+LATER = ("scipy.optimize", "scipy.sparse.csgraph", "concurrent.futures.process", "scipy.interpolate", "scipy.ndimage", "scipy.stats", "pydantic", "rich", "imgui_bundle", "av",
          *(f"{controllers.__name__}.{name}" for name in ("reconstruction", "mocap")),
          *(f"{game.__name__}.{name}" for name in ("hud", "character", "scenario")))
 

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse.csgraph import dijkstra
 
 from ..obstacles import SHOULDER
 from .surfaces import Levels
@@ -67,6 +66,8 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
     """
     if levels.regions[start] == levels.regions[end]:
         return Journey(())
+    from scipy.sparse.csgraph import dijkstra  # slow to load, and most ways lead over one floor
+
     barred = set(barred)
     leaps = [leap for leap in crossings(levels, np.array([here, goal])) if named(leap[0]) not in barred]
     times = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
