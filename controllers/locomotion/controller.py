@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from copy import copy
 from dataclasses import replace
+from functools import cached_property
 from os import PathLike
 
 import numpy as np
@@ -22,7 +23,7 @@ from .kernel import DURATION_AT
 from .library import Library
 from .memory import Settings, memory_dtype, plain, put
 from .step import step_kernel
-from .tables import tables_of
+from .tables import Tables, tables_of
 from .uneven_ground import FLAT, tops
 from .velocity_correction import space_of
 
@@ -43,9 +44,17 @@ class Locomotion(Controller):
         self.run = space_of(library, "run")
         if self.run is None:  # no runs recorded: walking serves at any speed
             self.settings = self.settings._replace(run_above=np.inf)
-        self.tables = tables_of(library, self.walk, self.run)
         self._dtype = memory_dtype(len(library.primitives))
-        self._library = zlib.crc32(self.tables.series.tobytes())
+
+    @cached_property
+    def tables(self) -> Tables:
+        """What its kernels read, told once somebody walks: telling it runs kernels, which a first picture does not wait for."""
+        return tables_of(self.library, self.walk, self.run)
+
+    @cached_property
+    def _library(self) -> int:
+        """What tells its memories from those over other libraries."""
+        return zlib.crc32(self.tables.series.tobytes())
 
     @staticmethod
     def load(path: str | PathLike[str] | None = None, settings: Settings = Settings()) -> Locomotion:

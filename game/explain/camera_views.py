@@ -45,14 +45,14 @@ def with_cameras(ink: Ink | None, world: World, size: tuple[int, int]) -> Ink | 
 
 def camera_views(tracked: Character, world: World) -> np.ndarray | None:
     """The pictures (H, W, 3) uint8 of those who watch a character's performer, two beside each other; None where nobody does."""
-    from gambol.controllers.tracking.silhouettes import contour_of, rendered
-
     if isinstance(tracked.controller, Filmed):
         return _beside_each_other([_smaller(one) for one in _filmed(tracked.controller, tracked.state.memory)])
     watches = tracked.watches
     performer = next((one for one in world.characters if watches is not None and one.name == watches.performer), None)
     if watches is None or performer is None:
         return None
+    from gambol.controllers.tracking.silhouettes import contour_of, rendered  # a game that nobody watches starts without
+
     sighting = watches.sighting(*performer.joints, world.number)
     tracking, watching = tracking_of(tracked)
     vertices = None if watching is None else tracked_vertices(tracking, watching, sighting.place)

@@ -9,7 +9,7 @@ import pytest
 from gambol import controllers, game
 
 LATER = ("scipy.optimize", "scipy.sparse.csgraph", "concurrent.futures.process", "scipy.interpolate", "scipy.ndimage", "scipy.stats", "pydantic", "rich", "imgui_bundle", "av",
-         *(f"{controllers.__name__}.{name}" for name in ("reconstruction", "mocap")),
+         *(f"{controllers.__name__}.{name}" for name in ("reconstruction", "mocap", "tracking")),
          *(f"{game.__name__}.{name}" for name in ("hud", "character", "scenario")))
 
 
@@ -24,7 +24,9 @@ def loaded(code):
 def playing():
     return loaded("from gambol.game.cli import main\nfrom gambol.game.hosts import run_window\nfrom gambol.game.input.remap import load\n"
                   "from gambol.game.session.input_log import LogWriter\nfrom gambol.game.world.learnt_methods import methods\nfrom gambol.game.app.app import Play\n"
-                  "from gambol.game.app.capture import Capture\nfrom gambol.controllers.person import person\nload()")
+                  "from gambol.game.app.capture import Capture\nfrom gambol.controllers.person import person\nload()\n"
+                  "from gambol.controllers.locomotion import Locomotion\ngame = Play(person(Locomotion.load()))\n"
+                  "game.tick(0.1)\ngame.scene((640, 360))\ngame.close()")
 
 
 @pytest.mark.parametrize("module", LATER)
