@@ -5,8 +5,9 @@ from .capture import OUT, Capture, log_file
 from .hints import Teacher
 from .opening import Opening
 from .preparing import Preparing
+from .sending import Sending, sure
 from .views import filmed, frames
 
 __all__ = [
-    "OUT", "Capture", "Opening", "Play", "Preparing", "Teacher", "filmed", "frames", "log_file",
+    "OUT", "Capture", "Opening", "Play", "Preparing", "Sending", "Teacher", "filmed", "frames", "log_file", "sure",
 ]

@@ -137,6 +137,8 @@ class Play(Game):
             self.held += (due - (self.now.number - number)) * DT
             if self.teacher is not None and self._taught and not self.now.paused:
                 self.teacher.tick(self.now, seconds)
+        if self.sending is not None:
+            self.sending.send(self.now.after)
         self.kept.save_sometimes(seconds, self.now)
 
     def _tick(self) -> None:
@@ -213,3 +215,5 @@ class Play(Game):
         self.kept.close(self.now, self.showing.names)
         self.showing.close()
         self.held_points.close()
+        if self.sending is not None:
+            self.sending.close()

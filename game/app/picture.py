@@ -18,6 +18,7 @@ from .past import History
 from .pointing import Pointing
 from .preparing import Preparing
 from .recordings import Recordings
+from .sending import Sending
 from .showing import Showing, moving
 from .views import Previews, previews, scenes
 from .watching import Watching
@@ -30,18 +31,19 @@ class Game:
     overlays and panels.
     kept: what is kept of it all. watching: a log, until somebody walks. clock, held: the time that was dropped, and spent
     in help, past or halt [s]. held_points: what pointer and stream do with the points of a comparison. preparing: what
-    is compiled meanwhile; None where everything is. teacher: who shows hints; None shows none.
+    is compiled meanwhile; None where everything is. teacher: who shows hints; None shows none. sending: who hears of every
+    frame; None where nobody does.
     """
 
     def __init__(self, controller: Any, players: int = 1, world: World | None = None, bindings: Bindings = DEFAULT,
                  log: LogWriter | None = None, capture: Capture | None = None, tape: Log | None = None,
                  learnt: Methods | None = None, stream: Any = None, preparing: Preparing | None = None,
-                 teacher: Teacher | None = None):
+                 teacher: Teacher | None = None, sending: Sending | None = None):
         self.past = History(opening(controller, players, learnt) if world is None else begin(world, players, learnt))
         self.hands, self.showing, self.kept = Hands(bindings), Showing(), Recordings(log, capture)
         self.watching = None if tape is None else Watching(tape)
         self.held_points, self.pointing = HeldPoints(self.now.methods, stream), Pointing()
-        self.preparing, self.teacher, self.refused = preparing, teacher, False
+        self.preparing, self.teacher, self.sending, self.refused = preparing, teacher, sending, False
         self.done = self.helping = self.full_screen = self.wants_picture = False
         self.clock, self.held = FixedStep(), 0.0
         self.previews: Previews = ()  # the jumps that are aimed at, as they were drawn last

@@ -67,6 +67,8 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
     from gambol.controllers.reconstruction import towards
     from gambol.controllers.supervisor import Supervisor
 
+    from ..app import sure
+
     someone = Supervisor({"locomotion": Locomotion.load(), "reconstruction": controller})
     someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
     poses, contacts, lost = [], [], 0
@@ -85,7 +87,7 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
                 state, pose = someone.step(state, intent, 1 / FPS)
                 lost += someone.active(state)[0] != "reconstruction"
                 if sender is not None:
-                    sender.send(pose, state.ground, now, _sure(state))
+                    sender.send(pose, state.ground, now, sure(state))
                 if out is not None:
                     poses.append(pose)
                     contacts.append(state.contacts)
@@ -104,14 +106,6 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
         say(f"{source.foreign} packets of another machine than the first were left out")
     if sender is not None and sender.lost:
         say(f"{sender.lost} frames could not be sent")
-
-
-def _sure(state: Any) -> float:
-    """How sure a body is of its pose: the share of the points that are followed; none while it follows nothing."""
-    from gambol.controllers.reconstruction import Following
-
-    following = state.memory.memory
-    return float(following.gate.trusted.mean()) if isinstance(following, Following) else 0.0
 
 
 def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:

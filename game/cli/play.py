@@ -25,6 +25,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
          cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
          footage: Annotated[Path | None, typer.Option(help="A folder of footage, of `gambol film` or `gambol footage`: the first who is seen in it moves as a tracker makes them, and is whom you watch.")] = None,
+         send: Annotated[str | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539.")] = None,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from ..input import load as load_bindings
@@ -37,10 +38,11 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         walker = Locomotion.load(library)
         programs = preparing.begun(walker, library)  # while the rest is loaded
 
-        from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
+        from ..app import OUT, Capture, Opening, Play, Preparing, Sending, Teacher, log_file
         from ..session import LogWriter
         from ..world import methods
 
+    sending = None if send is None else Sending(send)
     controller = in_body(person(walker), body)
     tape, clip, database = None, None, None
     if replay is not None:
@@ -65,7 +67,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
 
     def begun() -> Play:
         game = Play(controller, players, bindings=hands, log=log, capture=capture, tape=tape, learnt=methods(database),
-                    preparing=beside, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)))
+                    preparing=beside, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)), sending=sending)
         if cameras and tape is None:
             game.do("track")
         return game
@@ -91,10 +93,10 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
 
 
 def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
-          size: str = "1280x720", preset: Preset = Preset.full) -> None:
+          size: str = "1280x720", preset: Preset = Preset.full, send: str | None = None) -> None:
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
-    stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
+    send: HOST:PORT that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
     """
     from gambol.controllers.reconstruction import SETS
 
@@ -104,7 +106,7 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
-    from ..app import OUT, Capture, Play, log_file
+    from ..app import OUT, Capture, Play, Sending, log_file
     from ..input import load as load_bindings
     from ..session import Comparison, LogWriter
     from ..world import Recorded, methods
@@ -112,7 +114,8 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
     capture = Capture(OUT)
-    game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream)
+    game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream,
+                sending=None if send is None else Sending(send))
     game.open(Comparison(wanted, points))
     show(game, pixels, preset, log, capture)
 

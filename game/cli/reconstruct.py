@@ -30,7 +30,8 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
-                send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None) -> None:
+                send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
+                window: Annotated[bool, typer.Option("--window", help="Show the body in a window, too, while it is sent on.")] = False) -> None:
     """Make a whole body's motion from the way of two to six points on it."""
     if (clip is None) == (stream is None):
         raise Mistake("reconstruct needs either a motion file or --stream osc")
@@ -45,8 +46,10 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
+    if window and (send is None or out is not None or heard_again):
+        raise Mistake("--window goes with --stream and --send: without --send a window opens by itself, and none with -o")
     if out is None:
-        for option, given in (*recorded, *(() if send else (("--seconds", seconds),))):
+        for option, given in (*recorded, *(() if send and not window else (("--seconds", seconds),))):
             if given is not None:
                 raise Mistake(f"{option} goes with -o")
         if heard_again and send is None:
@@ -72,9 +75,9 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     worn_on = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn_on.values())
     with live.heard(worn_on, clip, port, host, keep) as source:
-        if out is None and send is None:
+        if out is None and (send is None or window):
             source.placement = live.placement(source, height)
-            watch(method, names, database, stream=source)
+            watch(method, names, database, stream=source, send=send)
         else:
             with live.sent(send) as sender:
                 live.record(source, _controller(method, database, names), out, height, seconds, sender)

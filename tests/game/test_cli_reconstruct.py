@@ -249,6 +249,7 @@ def test_packets_that_were_kept_are_heard_again_into_a_motion_and_for_another_pr
 @pytest.mark.parametrize("arguments, why", [
     (["take.packets"], "into a motion, -o FILE, or for another program"), (["take.packets", "-o", "o.bvh", "--keep", "b.packets"], "--keep goes with --stream"),
     (["take.packets", "-o", "o.bvh", "--noise", "1"], "--noise goes with a motion file"), (["a.bvh", "--send", "x"], "--send goes with --stream"),
+    (["--stream", "osc", "--window"], "--window goes with"), (["--stream", "osc", "--send", "x", "--window", "--seconds", "1"], "--seconds goes with"),
     (["take.packets", "-o", "o.bvh"], "can't be read"), (["take.packets", "--send", "a:b"], "can't be read")])
 def test_mistakes_about_packets_are_told_in_a_line(arguments, why, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
