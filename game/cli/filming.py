@@ -103,12 +103,14 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
 
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
+    from ..footage import checked as complete
     from ..footage import clicked_pose, first_poses, person_in, read_footage, seen_in, settled
     from ..studio import error_of, followed, late, overlaid
 
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
+    complete(film, masks)
     who, clicks = person_in(film, person), start is not None and start.suffix.lower() == ".toml"
     checked(out, [film.people[who]])
     if clicks and start is not None:

@@ -123,20 +123,23 @@ def rivals(runs: Runs, seeds: int, _plots: Path | None) -> None:
     bare, ours = followed("no penalty"), followed("ours, joints at rest")
     told("none", off(bare))
     told("our penalty, in the loop", off(ours))
+    causal: dict[str, list[Callable]] = {
+        "One-Euro": [lambda p, c=c, b=b: smoothed(chain, p, OneEuro(RATE, c, b)) for c in (1.0, 2.0, 4.0, 8.0) for b in (0.3, 1.0, 3.0, 10.0)],
+        "Kalman, constant velocity": [lambda p, q=q: smoothed(chain, p, KalmanFilter(RATE, q, 0.05)) for q in (3.0, 10.0, 30.0, 60.0, 120.0)]}
+    made = {name: [[way(one) for one in bare] for way in ways] for name, ways in causal.items()}
+    waited = {(name, lag): _best([off([poses[lag:] + poses[-1:] * lag for poses in tracks]) for tracks in made[name]]) for name in made for lag in LAGS}
     for lag in LAGS:
-        def later(poses: list[Configuration]) -> list[Configuration]:
-            return poses[lag:] + poses[-1:] * lag
-        families: dict[str, list[Callable]] = {
-            "One-Euro": [lambda p, c=c, b=b: later(smoothed(chain, p, OneEuro(RATE, c, b))) for c in (1.0, 2.0, 4.0, 8.0) for b in (0.3, 1.0, 3.0, 10.0)],
-            "Kalman, constant velocity": [lambda p, q=q: later(smoothed(chain, p, KalmanFilter(RATE, q, 0.05))) for q in (3.0, 10.0, 30.0, 60.0, 120.0)],
-            "Savitzky-Golay": [lambda p, r=r: savitzky_golay(chain, p, r, ahead=lag) for r in (3, 5, 8, 12)]}
-        for name, ways in families.items():
-            best = min(([way(one) for one in bare] for way in ways), key=lambda made: np.mean([e.angles.mean() for e in off(made)]))
-            told(f"lag {lag}: {name}", off(best))
-        best = min(([way(one) for one in ours] for way in families["Savitzky-Golay"]), key=lambda made: np.mean([e.angles.mean() for e in off(made)]))
-        told(f"lag {lag}: Savitzky-Golay after ours", off(best))
+        for name in causal:  # what lags less by itself is taken earlier
+            told(f"lag {lag}: {name}", _best([waited[name, less] for less in LAGS if less <= lag]))
+        for what, tracks in (("Savitzky-Golay", bare), ("Savitzky-Golay after ours", ours)):
+            told(f"lag {lag}: {what}", _best([off([savitzky_golay(chain, one, reach, ahead=lag) for one in tracks]) for reach in (3, 5, 8, 12)]))
         if lag:
             told(f"lag {lag}: ours, in hindsight", off(followed("ours, joints at rest", lag)))
+
+
+def _best(trials: Sequence[list[Errors]]) -> list[Errors]:
+    """Those whose angles are least off."""
+    return min(trials, key=lambda made: float(np.mean([one.angles.mean() for one in made])))
 
 
 def times(folder: Path, frames: int) -> None:
