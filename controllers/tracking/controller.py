@@ -122,4 +122,4 @@ def _shifted(track: Track, by: np.ndarray) -> Track:
         root[:3, 3] += by
         return Configuration(root, one.angles)
     fit = track.fit if track.fit is None else replace(track.fit, where=moved(track.fit.where))
-    return Track(moved(track.now), moved(track.before), track.evidence, fit)
+    return Track(moved(track.now), moved(track.before), track.evidence, fit, tuple(replace(one, where=moved(one.where)) for one in track.recent))

@@ -13,7 +13,8 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import SETTINGS, Evidence, Fit, SolverSettings, calmed, carried, judged, observed, overlap, penalty_of, predicted, solve
+from .pose import (SETTINGS, Evidence, Fit, Glimpse, SolverSettings, calmed, carried, in_hindsight, judged, observed, overlap, penalty_of, predicted,
+                   solve)
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, View, redrawn, rendered, skinned
 from .together import together
@@ -27,6 +28,8 @@ CLEANEST, ROUGHEST = 0.03, 1.5
 """Nobody is believed to be better than that [pixels], or worse."""
 EXPLAINED, COLOURED = 0.72, 0.88
 """A pose that covers so much of the usual in every silhouette explains them; where colours say how much, which agree with more."""
+PAST = 8
+"""So many frames before the one that is looked back at say how it moved."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,8 @@ class TrackerSettings:
     """start: where a frame's search begins, at the prediction or at the last pose. penalty: draw it to the prediction, too.
     pace: how far joints go on as before where the penalty draws them, 1 as the paper's eq. (16), 0 not at all.
     gate: leave out cameras whose picture is not what could be expected. firmness: of the penalty, times what bounds on
-    acceleration say. carriage: how firmly arms are drawn to how people carry them where contours are ROUGH [1/rad²]. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each."""
+    acceleration say. carriage: how firmly arms are drawn to how people carry them where contours are ROUGH [1/rad²]. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each.
+    lag: so many frames late may a pose come, by `Tracker.hindsight`; 0 keeps nothing for that."""
 
     start: Literal["prediction", "last"] = "prediction"
     penalty: bool = True
@@ -46,16 +50,19 @@ class TrackerSettings:
     rounds: int = 2
     pictures: SolverSettings = replace(SETTINGS, outer=2)
     segmentation: Segmentation = replace(SEGMENTATION, rounds=1)
+    lag: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """What is known after a frame. now, before: the last two poses. fit: how the last one was found; None at the start."""
+    """What is known after a frame. now, before: the last two poses. fit: how the last one was found; None at the start.
+    recent: what the last frames said, where a pose may come late."""
 
     now: Configuration
     before: Configuration
     evidence: Evidence
     fit: Fit | None = None
+    recent: tuple[Glimpse, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +117,15 @@ class Tracker:
             fit, evidence = second
         elif not fit.believed.any():  # nothing speaks against going on
             fit = replace(fit, where=target)
-        return Track(fit.where, track.now, evidence, fit)
+        recent: tuple[Glimpse, ...] = ()
+        if chosen.lag:
+            sure = (ROUGH / min(max(fit.residual, CLEANEST), ROUGHEST)) ** 2
+            recent = (*track.recent, Glimpse(fit.where, sure * fit.matrix, sure * fit.vector))[-(PAST + 1 + chosen.lag):]
+        return Track(fit.where, track.now, evidence, fit, recent)
+
+    def hindsight(self, track: Track) -> list[Configuration]:
+        """The poses of the last frames as they look now, the newest last: the one `settings.lag` before it is as good as it gets."""
+        return in_hindsight(self.surface.chain, track.recent, self.rate)
 
     def _second_look(self, seen: Sequence[np.ndarray | None], there: np.ndarray, shown: np.ndarray, track: Track, target: Configuration,
                      evidence: Evidence) -> tuple[Fit, Evidence] | None:

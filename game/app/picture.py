@@ -8,8 +8,8 @@ from typing import Any
 from ..explain import broken, on_the_way, rows, with_cameras
 from ..input import DEFAULT, Bindings, help_sheet
 from ..scene import Scene
-from ..session import Log, LogWriter, SessionState, begin, opening
-from ..world import FixedStep, Methods, World
+from ..session import Log, LogWriter, SessionState, begin, opening, unpenalised
+from ..world import Filmed, FixedStep, Methods, Recorded, World
 from .capture import Capture
 from .hands import Hands
 from .held_points import HeldPoints
@@ -113,8 +113,8 @@ class Game:
 
     @property
     def _taught(self) -> bool:
-        """Whether somebody plays whom hints could help: nobody looks back or watches."""
-        return self.past.look is None and self.watching is None
+        """Whether somebody plays whom hints could help: nobody looks back, or watches a log, a recording or somebody in footage."""
+        return self.past.look is None and self.watching is None and not isinstance(self.now.after.characters[0].controller, (Filmed, Recorded))
 
     def _texts(self, moment: SessionState) -> tuple[tuple[str, ...], ...]:
         """The lines in each player's corner; what concerns all stands in the first one's."""
@@ -129,6 +129,8 @@ class Game:
             lines.append(f"paused: {self.hands.key('pause')} goes on, {self.hands.key('step')} makes one step")
         if moment.slow > 1:
             lines.append(f"slow motion 1/{moment.slow}")
+        if unpenalised(moment.after):
+            lines.append(f"tracked without the penalty on jitter: {self.hands.key('penalty')} brings it back")
         if self.preparing is not None:
             lines += self.preparing.said
         told = (*lines, *self.held_points.status(moment, self.hands.key), *self.kept.status(self.now), *self.kept.notices, f"{self.hands.key('help')} help")

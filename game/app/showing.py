@@ -10,6 +10,7 @@ from ..explain import rows
 from ..input import jumping
 from ..scene import OVERLAYS, PANELS, Overlays, Scene
 from ..session import SessionState
+from ..world import Filmed
 
 if TYPE_CHECKING:  # ImGui is loaded for those only who open a panel
     from ..hud import Hud
@@ -79,8 +80,11 @@ class Showing:
 
 def moving(moment: SessionState, who: int) -> str:
     """What a player is at, in words."""
-    if jumping(moment.after.characters[who].state) is not None:
+    one = moment.after.characters[who]
+    if jumping(one.state) is not None:
         return "jumping"
+    if isinstance(one.controller, Filmed) and one.controller.status(one.state).kind == "done":
+        return "the film is over"
     v_f, omega, v_l = moment.after.characters[who].state.velocity
     if math.hypot(v_f, v_l) < SHOWN_SPEED and abs(omega) < SHOWN_SPEED:
         words = "standing"

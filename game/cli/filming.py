@@ -90,6 +90,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
           start: Annotated[Path | None, typer.Option(help="A motion file whose first two frames are the poses to begin with, or a .toml file of where joints are seen in the first; the truth's by default.")] = None,
           fit: Annotated[int, typer.Option(min=0, max=60, help="Find stature and girth in so many frames first, where --start says where joints are seen.")] = 6,
           masks: Annotated[bool, typer.Option("--masks", help="Follow the true masks instead of the pictures.")] = False,
+          lag: Annotated[int, typer.Option(min=0, max=60, help="Look so many frames ahead before a pose is settled: calmer, and nearer to the truth.")] = 0,
           overlay: Annotated[Path | None, typer.Option(help="A .mp4 film, or a folder, of the contours found, blue, and the model's, red.")] = None) -> None:
     """Follow somebody through what calibrated cameras filmed, without markers: the motion as a file."""
     from contextlib import nullcontext
@@ -97,17 +98,19 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     import numpy as np
 
     from gambol.controllers.body import STATURE, human
-    from gambol.controllers.tracking import Tracker, fitted_shape
+    from gambol.controllers.tracking import Tracker, TrackerSettings, fitted_shape
     from gambol.controllers.tracking.twists import local_turns
 
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
+    from ..footage import checked as complete
     from ..footage import clicked_pose, first_poses, person_in, read_footage, seen_in, settled
-    from ..studio import error_of, followed, overlaid
+    from ..studio import error_of, followed, late, overlaid
 
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
+    complete(film, masks)
     who, clicks = person_in(film, person), start is not None and start.suffix.lower() == ".toml"
     checked(out, [film.people[who]])
     if clicks and start is not None:
@@ -123,13 +126,14 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     else:
         surface = surface_of(freedom="full")
         poses = list(first_poses(film, surface, who, start))
-    tracker, known = Tracker(surface, film.lenses, float(film.fps)), len(poses)
+    tracker, known = Tracker(surface, film.lenses, float(film.fps), TrackerSettings(lag=lag)), len(poses)
     drawn = None if overlay is None else overlaid(film, surface, known - 1, poses[-1])
     with (nullcontext() if drawn is None or overlay is None else recorder(overlay, (drawn.shape[1], drawn.shape[0]), film.fps)) as tape, progress_bar() as bar:
-        for number, one in enumerate(bar.track(followed(film, tracker, poses, who, masks), film.frames - known, description=film.people[who]), known):
-            poses.append(one.now)
+        tracks = bar.track(followed(film, tracker, tuple(poses), who, masks), film.frames - known, description=film.people[who])
+        for number, pose in enumerate(late(tracker, tracks), known):
+            poses.append(pose)
             if tape is not None:
-                tape.write(overlaid(film, surface, number, one.now))
+                tape.write(overlaid(film, surface, number, pose))
     turned = [local_turns(surface.chain, pose) for pose in poses]
     files = write(out, [Take(film.people[who], surface.chain.skeleton, tuple(turned), np.zeros((len(poses), 4), bool))], film.fps)
     off = error_of(film, surface, poses, who)

@@ -12,9 +12,10 @@ from .rewind import Look
 from .settings import SETTINGS, Setting
 from .state import SessionState, begin, opening, owners
 from .tick import Timeline, refused
+from .tracking import unpenalised
 
 __all__ = [
     "ACTIONS", "GHOST", "SETTINGS", "SUFFIX", "Comparison", "Log", "LogWriter", "Look", "SessionState", "Setting",
     "Timeline", "begin", "comparison", "digest", "of_library", "opening", "owners", "performer_of", "read", "refused",
-    "replay", "settings", "strayed", "wanted", "written",
+    "replay", "settings", "strayed", "unpenalised", "wanted", "written",
 ]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..world import RATE, Character, World, beginning, lately, switched, tracked_of, watches_of
+from ..world import RATE, Character, Filmed, World, beginning, lately, switched, tracked_of, watches_of
 from .comparison import ASIDE
 from .state import SessionState
 
@@ -41,6 +41,8 @@ def otherwise(moment: SessionState) -> SessionState:
     """The moment with every tracker's penalty on jitter off, or on again; whoever is lost begins anew."""
     performer, made = moment.after.characters[0], []
     for one in moment.after.characters:
+        if isinstance(one.controller, Filmed):
+            one = replace(one, controller=one.controller.switched())
         if one.watches is not None:
             one = replace(one, controller=switched(one.controller))
             now = lately(one.told)
@@ -48,3 +50,10 @@ def otherwise(moment: SessionState) -> SessionState:
                 one = replace(one, state=beginning(one.controller, performer.state, one.watches.beside), told=one.told[:0])
         made.append(one)
     return replace(moment, after=replace(moment.after, characters=tuple(made)))
+
+
+def unpenalised(world: World) -> bool:
+    """Whether somebody is tracked without the penalty on jitter."""
+    trackings = [one.controller.tracker if isinstance(one.controller, Filmed) else one.controller.parts["tracking"]
+                 for one in world.characters if isinstance(one.controller, Filmed) or one.watches is not None]
+    return any(not one.settings.penalty for one in trackings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -23,6 +23,16 @@ def followed(footage: Footage, tracker: Tracker, start: Sequence[Configuration],
     for number in range(len(start), footage.frames):
         track = tracker.step(track, seen_in(footage, number, person, masks))
         yield track
+
+
+def late(tracker: Tracker, tracks: Iterable[Track]) -> Iterator[Configuration]:
+    """The pose of each frame of a track, as it looks when so many more were seen as the tracker's settings let it be late."""
+    lag, seen, poses = tracker.settings.lag, 0, []
+    for seen, track in enumerate(tracks, 1):
+        poses = tracker.hindsight(track) if lag else [track.now]
+        if seen > lag:
+            yield poses[-1 - lag]
+    yield from poses[-min(lag, seen):] if lag else ()
 
 
 def error_of(footage: Footage, surface: Surface, poses: Sequence[Configuration], person: int = 0) -> np.ndarray | None:

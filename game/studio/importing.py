@@ -20,11 +20,16 @@ BORDER = 16
 
 
 def paired(films: Sequence[Path], lenses: Sequence[Lens]) -> list[Path]:
-    """A film for each camera: by name where they are named after them, else in order. FootageError for another number of them."""
+    """A film for each camera: by name where they are named after them, else in order. FootageError for another number of them, or
+    where some are named after cameras and others are not."""
     if len(films) != len(lenses):
         raise FootageError(f"{len(films)} films, but {len(lenses)} cameras: {', '.join(lens.name for lens in lenses)}")
-    named = {film.stem: film for film in films}
-    return [named[lens.name] for lens in lenses] if set(named) == {lens.name for lens in lenses} else list(films)
+    named, names = {film.stem: film for film in films}, {lens.name for lens in lenses}
+    if names & set(named) and set(named) != names:
+        strange = next(film for film in films if film.stem not in names or films.count(film) > 1)
+        raise FootageError(f"{strange}: is named after no camera, or twice there, while other films are; still without a film: "
+                           f"{', '.join(sorted(names - set(named)))}")
+    return [named[lens.name] for lens in lenses] if set(named) == names else list(films)
 
 
 def imported(films: Sequence[Path], lenses: Sequence[Lens], folder: str | Path, width: int | None = None, name: str = "somebody") -> Iterator[int]:
@@ -63,7 +68,7 @@ def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
     try:
         with av.open(str(film)) as file:
             if not file.streams.video:
-                raise FootageError(f"{film}: holds no pictures")
+                raise FootageError(f"{film}: holds no pictures: no film, or one that is cut short")
             stream = file.streams.video[0]
             yield stream.average_rate or 30
             for frame in file.decode(stream):
@@ -74,7 +79,8 @@ def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
                                        f"{lens.size[0]} × {lens.size[1]}")
                 yield np.pad(picture, ((0, more[0]), (0, more[1]), (0, 0)))
     except (FFmpegError, OSError) as fault:
-        raise FootageError(f"{film}: {reason(fault) if isinstance(fault, OSError) else fault}") from None
+        told = fault.strerror if isinstance(fault, FFmpegError) else reason(fault)
+        raise FootageError(f"{film}: {str(told)[:1].lower()}{str(told)[1:]}: no film, or one that is cut short") from None
 
 
 def _kept(picture: np.ndarray, size: tuple[int, int], file: Path) -> None:

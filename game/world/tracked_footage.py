@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -65,6 +66,12 @@ class Filmed(Controller):
             surface = surface_of(freedom="full", level="middle")
             begun = first_poses(footage, surface, who, start)
         return Filmed(footage, surface, begun, walker, who, masks)
+
+    def switched(self) -> Filmed:
+        """The same with the penalty on jitter off, or on again."""
+        other, settings = copy(self), self.tracker.settings
+        other.tracker = replace(self.tracker, settings=replace(settings, penalty=not settings.penalty))
+        return other
 
     @property
     def kind(self) -> str:

@@ -14,19 +14,27 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
 
 from _plots import pictures
-from _tracking import RATE, errors, films, overlay, silhouette
+from _tracking import RATE, Errors, Film, errors, films, overlay, silhouette
 from _tracking_ways import WAYS, Runs, lied, perfect, told, track, with_lies, with_noise
 
 from gambol.controllers.tracking import Tracker
 from gambol.controllers.tracking.rivals import KalmanFilter, OneEuro, savitzky_golay, smoothed
 from gambol.controllers.tracking.segmentation import segmented
+from gambol.controllers.tracking.twists import Configuration
+from gambol.game.studio import late
+
+LAGS = (0, 1, 2, 4, 8)
+"""So many frames late may a pose come."""
+
 
 def clean(runs: Runs, _seeds: int, _plots: Path | None) -> None:
     """Perfect silhouettes."""
@@ -99,24 +107,39 @@ def images(runs: Runs, seeds: int, plots: Path | None) -> None:
 
 
 def rivals(runs: Runs, seeds: int, _plots: Path | None) -> None:
-    """Filters after each frame of a bare track, tuned to lag as far as the penalty does, or as little as they can; and both."""
-    film, bare, ours = runs.film, [], []
-    for seed in range(seeds):
-        for name, to in (("no penalty", bare), ("ours, joints at rest", ours)):
-            to.append(runs.poses("noise", seed, name, lambda: with_noise(film, seed)))
-    base = [errors(film.chain, one, film.truth) for one in ours]
-    lag = float(np.mean([one.lag for one in base]))
-    told("none", [errors(film.chain, one, film.truth) for one in bare])
-    told("our penalty, in the loop", base)
-    families: dict[str, list[Callable]] = {
-        "One-Euro": [lambda p, c=c, b=b: smoothed(film.chain, p, OneEuro(RATE, c, b)) for c in (1.0, 2.0, 4.0, 8.0) for b in (0.3, 1.0, 3.0)],
-        "Kalman, constant velocity": [lambda p, q=q: smoothed(film.chain, p, KalmanFilter(RATE, q, 0.05)) for q in (10.0, 30.0, 60.0, 120.0)],
-        "Savitzky-Golay, sees the future": [lambda p, r=r: savitzky_golay(film.chain, p, r) for r in (3, 5, 8)]}
-    for name, ways in families.items():
-        trials = [[errors(film.chain, way(one), film.truth) for one in bare] for way in ways]
-        near = [one for one in trials if np.mean([e.lag for e in one]) <= max(lag, 0.0) + 0.25] or [
-            min(trials, key=lambda one: np.mean([e.lag for e in one]))]
-        told(name, min(near, key=lambda one: np.mean([e.angles.mean() for e in one])))
+    """At lags of 0 to 8 frames: filters after each frame of a bare track, as good as their settings get at each lag, and ours, by one setting."""
+    film, chain = runs.film, runs.film.chain
+
+    def followed(way: str, lag: int = 0) -> list[list[Configuration]]:
+        def follow(film: Film, masks: list) -> list[Configuration]:
+            tracker = Tracker(film.surface, film.lenses, RATE, replace(WAYS[way], lag=lag))
+            tracks = accumulate(masks, tracker.step, initial=tracker.start(film.truth[1], film.truth[0]))
+            next(tracks)  # the start itself
+            return [*film.truth[:2], *late(tracker, tracks)]
+        return [runs.poses("noise", seed, way + f" {lag} late" * bool(lag), lambda: with_noise(film, seed), follow if lag else None) for seed in range(seeds)]
+
+    def off(tracks: Sequence[list[Configuration]]) -> list[Errors]:
+        return [errors(chain, one, film.truth) for one in tracks]
+    bare, ours = followed("no penalty"), followed("ours, joints at rest")
+    told("none", off(bare))
+    told("our penalty, in the loop", off(ours))
+    causal: dict[str, list[Callable]] = {
+        "One-Euro": [lambda p, c=c, b=b: smoothed(chain, p, OneEuro(RATE, c, b)) for c in (1.0, 2.0, 4.0, 8.0) for b in (0.3, 1.0, 3.0, 10.0)],
+        "Kalman, constant velocity": [lambda p, q=q: smoothed(chain, p, KalmanFilter(RATE, q, 0.05)) for q in (3.0, 10.0, 30.0, 60.0, 120.0)]}
+    made = {name: [[way(one) for one in bare] for way in ways] for name, ways in causal.items()}
+    waited = {(name, lag): _best([off([poses[lag:] + poses[-1:] * lag for poses in tracks]) for tracks in made[name]]) for name in made for lag in LAGS}
+    for lag in LAGS:
+        for name in causal:  # what lags less by itself is taken earlier
+            told(f"lag {lag}: {name}", _best([waited[name, less] for less in LAGS if less <= lag]))
+        for what, tracks in (("Savitzky-Golay", bare), ("Savitzky-Golay after ours", ours)):
+            told(f"lag {lag}: {what}", _best([off([savitzky_golay(chain, one, reach, ahead=lag) for one in tracks]) for reach in (3, 5, 8, 12)]))
+        if lag:
+            told(f"lag {lag}: ours, in hindsight", off(followed("ours, joints at rest", lag)))
+
+
+def _best(trials: Sequence[list[Errors]]) -> list[Errors]:
+    """Those whose angles are least off."""
+    return min(trials, key=lambda made: float(np.mean([one.angles.mean() for one in made])))
 
 
 def times(folder: Path, frames: int) -> None:

@@ -14,9 +14,10 @@ from test_gambol_track import footage  # noqa: F401, a fixture
 from test_log import play
 
 from gambol.controllers.contract import Intent
+from gambol.game.app import Play, Teacher
 from gambol.game.explain import camera_views
 from gambol.game.footage import FootageError
-from gambol.game.input import Wish
+from gambol.game.input import DEFAULT, Wish
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load
 from gambol.game.session.input_log import read
@@ -73,6 +74,25 @@ def test_cameras_show_what_was_filmed(shots, masks):
     shown = camera_views(replace(someone, controller=filmed, state=state), World())
     found, model = ((shown == colour).all(-1).sum() for colour in ((70, 150, 255), (255, 64, 48)))
     assert shown.shape[1] > 190 and model > 100 and found > 0, "the model's contour lies over the one found, nearly everywhere"
+
+
+def test_a_game_on_footage_teaches_nothing_says_when_it_is_over_and_whether_jitter_is_penalised(shots, tmp_path):
+    """Nobody plays, so no hint; Z takes the penalty of the tracker away and brings it back, and a line says so."""
+    game = Play(Filmed.load(shots, Glide()), teacher=Teacher.ready(DEFAULT, file=tmp_path / "hints.toml"))
+
+    def corner():
+        view = game.scene((320, 180))
+        lines = (view[0] if isinstance(view, tuple) else view).text
+        assert (view[0] if isinstance(view, tuple) else view).hint is None
+        return " / ".join(part for group in lines for part in (group if isinstance(group, tuple) else (group,)))
+    assert "film is over" not in corner() and "penalty" not in corner()
+    game.do("penalty")
+    for _ in range(30):
+        game.tick(DT)
+    assert "the film is over" in corner() and "without the penalty on jitter: Z brings it back" in corner()
+    game.do("penalty")
+    game.tick(DT)
+    assert "penalty" not in corner()
 
 
 def test_who_was_filmed_stands_where_the_game_begins_and_a_log_plays_again_to_the_bit(shots, tmp_path):

@@ -129,6 +129,11 @@ def test_what_cannot_be_tracked_is_told_in_a_line(footage, tmp_path):
     broken = copied(footage, tmp_path / "two")
     (broken / "cam1" / "frame_00003.png").unlink()
     one_line(run(broken, "-o", out), "frame_00003.png")
+    whole = (footage.path / "cam1" / "frame_00003.png").read_bytes()
+    (broken / "cam1" / "frame_00003.png").write_bytes(whole[:len(whole) // 2])
+    one_line(run(broken, "-o", out), "frame_00003.png", "truncated")
+    Image.new("RGB", (64, 96)).save(broken / "cam1" / "frame_00003.png")
+    one_line(run(broken, "-o", out), "frame_00003.png", "64 × 96", "96 × 96")
     Image.new("RGBA", (96, 96)).save(broken / "cam1" / "frame_00003.png")
     one_line(run(broken, "-o", out), "frame_00003.png", "red, green and blue")
     about = json.loads((broken / "footage.json").read_text())
@@ -136,7 +141,26 @@ def test_what_cannot_be_tracked_is_told_in_a_line(footage, tmp_path):
     one_line(run(broken, "-o", out), "shows nobody")
     (broken / "footage.json").write_text(json.dumps(about | {"complete": False}))
     one_line(run(broken, "-o", out), "not filmed to its end")
+    for old, new, says in (("matrix = [[", "matrix = [[nan, 0, 0], [", "cam0.matrix: needs 3 × 3 finite numbers"),
+                           ("translation = [", "translation = [nan, ", "cam0.translation: needs 3 finite numbers"),
+                           ("[96, 96]", "[96, 95]", "frame_00000.png: 96 × 96 pixels, but cam0 has 96 × 95"),
+                           ('name = "cam2"', 'name = "left"', "No such file")):
+        broken = copied(footage, tmp_path / str(len(list(tmp_path.iterdir()))))
+        (broken / "footage.json").write_text(json.dumps(about | {"people": ["Ann"], "complete": True, "dropped": {}, "corrupted": {}}))
+        text = (broken / "cameras.toml").read_text()
+        (broken / "cameras.toml").write_text(text.replace(old, new, 1))
+        one_line(run(broken, "-o", out), says)
     assert not out.exists()
+
+
+def test_looking_back_is_for_the_command_too(footage, tmp_path):
+    """--lag moves poses, only where something was tracked, and leaves their number as it is."""
+    for name, lag in (("now", 0), ("late", 2), ("all", 60)):
+        assert run(footage.path, "-o", tmp_path / f"{name}.bvh", "--masks", "--lag", lag).exit_code == 0
+    now, then, whole = (load_motion(tmp_path / f"{name}.bvh") for name in ("now", "late", "all"))
+    assert len(now) == len(then) == len(whole) == 6
+    assert np.array_equal(now.root[:2], then.root[:2]) and not np.array_equal(now.root[3:], then.root[3:])
+    np.testing.assert_allclose(whole.root, footage.truth()["joints"][:, 0, 0], atol=0.03)
 
 
 def test_dropped_frames_are_none(footage, tmp_path):
@@ -193,3 +217,9 @@ def test_films_that_cannot_be_footage_are_told_in_a_line(footage, tmp_path):
     one_line(make(*[tmp_path / "no.mp4"] * 3), "no.mp4")
     one_line(make(*[tmp_path / "gone.mp4"] * 3), "gone.mp4")
     one_line(make(*[tmp_path / "small.mp4"] * 3), "small.mp4", "32 × 32", "96 × 96")
+    whole = (tmp_path / "small.mp4").read_bytes()
+    (tmp_path / "short.mp4").write_bytes(whole[:len(whole) // 2])
+    one_line(make(*[tmp_path / "short.mp4"] * 3), "short.mp4", "no film, or one that is cut short")
+    for name in ("cam0", "cam1", "other"):
+        mp4(tmp_path / f"{name}.mp4", [np.zeros((96, 96, 3), np.uint8)] * 2)
+    one_line(make(*[tmp_path / f"{name}.mp4" for name in ("cam1", "cam0", "other")]), "other.mp4", "named after no camera", "without a film: cam2")

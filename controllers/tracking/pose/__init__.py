@@ -5,8 +5,9 @@ from .observed import Observed, observed
 from .penaliser import Penalty, calmed, carried, penalty_of, penalty_rows, predicted
 from .plucker import constraint, normal_rows, plucker_rows
 from .pose_solver import SETTINGS, Fit, SolverSettings, solve
+from .hindsight import Glimpse, in_hindsight
 
 __all__ = [
-    "SETTINGS", "Evidence", "Fit", "Observed", "Penalty", "SolverSettings", "calmed", "carried", "constraint", "judged", "normal_rows", "observed",
+    "SETTINGS", "Evidence", "Fit", "Glimpse", "Observed", "Penalty", "SolverSettings", "calmed", "carried", "constraint", "in_hindsight", "judged", "normal_rows", "observed",
     "overlap", "penalty_of", "penalty_rows", "plucker_rows", "predicted", "solve",
 ]

@@ -62,9 +62,13 @@ def penalty_of(chain: Chain, target: Configuration, rate: float, firmness: float
 
     Beyond a rate of 60 it gets no firmer: jitter comes from pictures, not from the rate.
     """
+    return Penalty(target, firmness / bounds(chain, rate) ** 2)
+
+
+def bounds(chain: Chain, rate: float) -> np.ndarray:
+    """How much the hips' pace [m], their turning [rad] and the joints' [rad] change at most from frame to frame (6 + D,)."""
     interval = 1.0 / min(rate, 60.0) ** 2
-    sigma = np.concatenate([np.full(3, ACCELERATION * interval), np.full(3, TURNING * interval), np.full(len(chain), JOINT_ACCELERATION * interval)])
-    return Penalty(target, firmness / sigma**2)
+    return interval * np.concatenate([np.full(3, ACCELERATION), np.full(3, TURNING), np.full(len(chain), JOINT_ACCELERATION)])
 
 
 def carried(chain: Chain, penalty: Penalty, firmness: float) -> Penalty:

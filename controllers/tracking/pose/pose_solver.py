@@ -11,7 +11,7 @@ from scipy.linalg import solve as solved
 from ..cameras import Lens, direction_kernel, project_kernel
 from ..silhouettes import Surface, View, contour_of, redrawn, skinned
 from ..together import together
-from ..twists import Configuration, posed, retract_kernel
+from ..twists import Configuration, adjoint, posed, retract_kernel
 from .evidence import overlap
 from .matching import closest_kernel, model_points_kernel, shift_kernel, sums_kernel
 from .observed import Observed
@@ -45,12 +45,15 @@ AROUND = 4
 @dataclass(frozen=True, eq=False)
 class Fit:
     """where: the pose. residual: mean distance of contours [pixels]. overlaps: (C,) of the starting pose with each mask.
-    believed: (C,) which cameras had a say."""
+    believed: (C,) which cameras had a say. matrix (6 + D, 6 + D), vector (6 + D,): what cameras say of a step from there, which
+    costs ½ δᵀ M δ − vᵀ δ [pixels²] without the penalty; the root's part is a shift of the hips and a turn about them."""
 
     where: Configuration
     residual: float
     overlaps: np.ndarray
     believed: np.ndarray
+    matrix: np.ndarray
+    vector: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +80,7 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
     overlaps, residual, believed = np.zeros(len(views)), 0.0, np.ones(len(views), bool)
     buffers: list[View | None] = [None] * len(views) if shown is None else shown
     views = list(views)
+    seen, left = np.zeros((size, size)), np.zeros(size)
     for outer in range(settings.outer):
         world = root.copy()
         world[:3, 3] += centre
@@ -106,18 +110,23 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
             matrix, vector, residual = _sums(surface, views, drawn, columns, centre, settings, moved_by, turned_about)
             here = Configuration(root, angles)
             regular = settings.damping * max(float(np.trace(matrix)) / size, 1e-9)
-            full = matrix + np.triu(matrix, 1).T
+            seen = matrix + np.triu(matrix, 1).T
+            full, pull = seen.copy(), vector
             full[np.arange(size), np.arange(size)] += regular
             if penalty is not None:
                 moved = Configuration(penalty.target.root.copy(), penalty.target.angles)
                 moved.root[:3, 3] -= centre
                 full[np.arange(size), np.arange(size)] += penalty.weights
-                vector = vector + penalty.weights * penalty_rows(chain, Penalty(moved, penalty.weights), here, np.zeros(3))
-            step = solved(full, vector, assume_a="pos", check_finite=False)
+                pull = vector + penalty.weights * penalty_rows(chain, Penalty(moved, penalty.weights), here, np.zeros(3))
+            step = solved(full, pull, assume_a="pos", check_finite=False)
             step *= min(1.0, 0.5 / max(float(np.abs(step[3:]).max()), 1e-12))
+            left = vector - seen @ step  # of what cameras say, after it
             retract_kernel(chain.first, chain.count, step, root, angles, chain.lower, chain.upper)
+    about_hips, shifted = np.eye(size), np.eye(4)
+    shifted[:3, 3] = root[:3, 3]
+    about_hips[:6, :6] = adjoint(shifted)
     root[:3, 3] += centre
-    return Fit(Configuration(root, angles), residual, overlaps, believed)
+    return Fit(Configuration(root, angles), residual, overlaps, believed, about_hips.T @ seen @ about_hips, about_hips.T @ left)
 
 
 def _around(box: tuple[int, int, int, int], reach: float) -> tuple[int, int, int, int]:

@@ -80,11 +80,11 @@ def smoothed(chain: Chain, poses: Sequence[Configuration], how: OneEuro | Kalman
     return out
 
 
-def savitzky_golay(chain: Chain, poses: Sequence[Configuration], reach: int = 5, order: int = 3) -> list[Configuration]:
-    """Each pose moved onto the polynomial through `reach` frames on both sides of it: it knows the future."""
+def savitzky_golay(chain: Chain, poses: Sequence[Configuration], reach: int = 5, order: int = 3, ahead: int | None = None) -> list[Configuration]:
+    """Each pose moved onto the polynomial through `reach` frames before it and `ahead` after it, as many by default: it knows the future."""
     out = []
     for t, pose in enumerate(poses):
-        near = range(max(t - reach, 0), min(t + reach + 1, len(poses)))
+        near = range(max(t - reach, 0), min(t + (reach if ahead is None else ahead) + 1, len(poses)))
         away = np.stack([_difference(chain, pose, poses[k]) for k in near])
         times = np.array([k - t for k in near], float)
         powers = np.vander(times, min(order, len(near) - 1) + 1, increasing=True)
