@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from gambol.controllers.contract import Intent
-from gambol.controllers.navigation import Going, in_world, wish
+from gambol.controllers.navigation import Going, in_world
 from gambol.controllers.navigation.crowd import Manners, avoid, doors_of, queued, stepping, together
 
 from ..input import STEERING, jumping
@@ -60,7 +60,7 @@ def _wished(one: Character, intent: Intent) -> np.ndarray:
     way = _way(one, intent)
     if intent.goal is None:
         return np.asarray(intent.velocity, float)
-    return np.zeros(3) if way is None or way.there else wish(way.plan, way.time, one.state.ground, one.state.velocity)
+    return np.zeros(3) if way is None else way.wished(one.state.ground, one.state.velocity)
 
 
 def _ahead(one: Character, intent: Intent, straight: np.ndarray) -> np.ndarray:
