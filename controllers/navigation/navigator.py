@@ -7,12 +7,11 @@ in a step: what is thought of beside is used some steps later, for where he will
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..contract import CharacterState, Controller, Goal, Intent, Leap
+from ..contract import CharacterState, Controller, Goal, Intent, Leap, but
 from .goal import arrived, progress
 from .levels import SOON, levels_of, named, onto
 from .thinking import NEARER, Going, another, astray, began, landed, poised, ready, run_up, steps_of, within
@@ -46,7 +45,7 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
         return None, intent
     if not walks:
         on = ONWARD if now is not None and not now.there and not now.plan.reason else 0.0
-        return now if now is None else now.but(leapt=True, thinking=None), replace(intent, velocity=np.array([on, 0.0, 0.0]))
+        return now if now is None else now.but(leapt=True, thinking=None), but(intent, velocity=np.array([on, 0.0, 0.0]))
     now = _stays(state, intent, goal) if now is None else now
     if now.goal != goal:
         now = now.but(goal=goal, spent=0.0, stood=0.0)
@@ -61,10 +60,10 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
     if intent.aside is not None:
         share, velocity = progress(velocity, velocity + intent.aside), velocity + intent.aside
         now = _kept(now, state, share, dt)
-    if now.crossings and leap is None and _leaps(now, state):
+    if now.crossings and leap is None and not intent.held and _leaps(now, state):
         leap, now = Leap(onto(now.crossings[0], now.pace)), now.but(asked=now.asked + dt)
     now = now.but(time=now.time + share * dt * float(walker.readiness(state)), spent=now.spent + dt)
-    return now, replace(intent, velocity=velocity, leap=leap)
+    return now, but(intent, velocity=velocity, leap=leap)
 
 
 def _stays(state: CharacterState, intent: Intent, goal: Goal) -> Going:
@@ -107,12 +106,13 @@ def _thinks(now: Going, state: CharacterState, intent: Intent, walker: Controlle
         return now.but(thinking=began(now, *asked[1:], np.zeros(3)))
     if now.plan.reason:
         return now
-    if run and now.off is not None:
-        if now.off > 0:
-            return now.but(off=now.off - 1)
-        now = now.but(stands=(*now.stands, named(now.crossings[0])))  # he has not leapt at that step
+    if run and now.off is not None and now.off > 0:
+        return now.but(off=now.off - 1)
+    late = run and now.off is None and now.time > now.plan.seconds - SOON - dt * steps_of(0, dt)
+    if run and (now.off is not None or late and intent.held):
+        now = now.but(stands=(*now.stands, named(now.crossings[0])))  # he has not leapt at that step, or may not
         return now.but(thinking=began(now, *asked[1:], np.zeros(3)))
-    if run and now.time > now.plan.seconds - SOON - dt * steps_of(0, dt):
+    if late:
         return now.but(thinking=run_up(*asked))
     if now.crossings and not run and not now.poised and ready(now, state):
         return now.but(thinking=poised(*asked))

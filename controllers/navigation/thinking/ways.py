@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...contract import CharacterState, Controller, Intent, Leap
+from ...contract import CharacterState, Controller, Intent, Leap, but
 from ..goal import wish
 from ..levels import Leg, named, next_leg, onto, runs, take_off
 from ..obstacles import SHOULDER
@@ -101,14 +100,14 @@ def poised(now: Going, state: CharacterState, intent: Intent, walker: Controller
     """A leap from a stand is thought of: it is planned for where he will be, so that nothing is left to plan as it goes off."""
     def act(ask: Callable[[], None]) -> Mapping[str, Any]:
         then = foreseen(now, state, intent, walker, steps_of(0, dt), dt, None)
-        walker.refusal(then, replace(intent, leap=Leap(onto(now.crossings[0], 0.0))))
+        walker.refusal(then, but(intent, leap=Leap(onto(now.crossings[0], 0.0))))
         return {"poised": True}
     return _thinking(act, dt)
 
 
 def foreseen(now: Going, state: CharacterState, intent: Intent, walker: Controller, steps: int, dt: float, carries: np.ndarray | None) -> CharacterState:
     """The state after so many steps of dt [s], if nobody comes in his way: he is played ahead."""
-    asked, time = replace(intent, goal=None, aside=None, leap=None), now.time
+    asked, time = but(intent, goal=None, aside=None, leap=None), now.time
     for step in range(steps):
         velocity = carried(carries, step, dt)
         if velocity is None:
@@ -116,7 +115,7 @@ def foreseen(now: Going, state: CharacterState, intent: Intent, walker: Controll
         elif not velocity.any() and np.abs(state.velocity).max() < REST:
             return state
         time += dt * float(walker.readiness(state))
-        state, _ = walker.step(state, replace(asked, velocity=velocity), dt)
+        state, _ = walker.step(state, but(asked, velocity=velocity), dt)
     return state
 
 
