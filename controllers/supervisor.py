@@ -50,8 +50,8 @@ class Supervisor(Controller):
     """Several controllers as one. The first is where every character starts and what always can go on.
 
     controllers: by name, all for the same skeleton. Characters come singly: for a crowd that only
-    walks, step the locomotion itself. Where an intent has a goal, the way is planned by what the first can walk: a step that
-    plans takes some 2 to 40 ms longer.
+    walks, step the locomotion itself. Where an intent has a goal, the way is planned by what the first can walk, beside the
+    steps: what is planned is used some steps later.
     """
 
     def __init__(self, controllers: Mapping[str, Controller]):

@@ -78,6 +78,7 @@ def main() -> None:
     asked = parser.parse_args()
     for _ in clicks(3, 9):  # compiled, loaded
         pass
+    time.sleep(4.0)  # the last of them is still thought of
     told("go_across", scenario("go_across"))
     told("clicks on the course", clicks(asked.clicks, 0))
     told("goals among twelve boxes", imported(asked.clicks, 0))

@@ -92,9 +92,9 @@ class Thought(Generic[T]):
 
 @lru_cache
 def _crew() -> ThreadPoolExecutor | None:
-    """A thread beside the steps; None where there is but one core."""
+    """Two threads beside the steps, lest a thought waits for one that nobody minds any more; none where there is but one core."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return ThreadPoolExecutor(1, "thought") if cores > 1 else None
+    return ThreadPoolExecutor(2, "thought") if cores > 1 else None
 
 
 if hasattr(os, "register_at_fork"):
