@@ -10,14 +10,24 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
 from .body import Pose, Skeleton
 
+T = TypeVar("T")
+
 HIGHEST = 1e5
 """No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
+
+
+def but(value: T, **changes: Any) -> T:
+    """The same value with other fields, as `dataclasses.replace` gives it, in a tenth of its time: what every step of everybody asks for. Fields are
+    not looked at again."""
+    made = object.__new__(type(value))
+    vars(made).update(vars(value), **changes)
+    return made
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +95,7 @@ class Intent:
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
     goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way. aside: (3,) what is added to
     the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
+    held: no leap of the way goes off now, as somebody is where it leads.
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
     """
 
@@ -95,6 +106,7 @@ class Intent:
     look: np.ndarray | None = None
     goal: Goal | None = None
     aside: np.ndarray | None = None
+    held: bool = False
     sighting: Sighting | None = None
 
     @staticmethod

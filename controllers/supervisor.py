@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, seconds
+from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, but, seconds
 from .navigation import going
 
 
@@ -50,8 +50,8 @@ class Supervisor(Controller):
     """Several controllers as one. The first is where every character starts and what always can go on.
 
     controllers: by name, all for the same skeleton. Characters come singly: for a crowd that only
-    walks, step the locomotion itself. Where an intent has a goal, the way is planned by what the first can walk: a step that
-    plans takes some 2 to 40 ms longer.
+    walks, step the locomotion itself. Where an intent has a goal, the way is planned by what the first can walk, beside the
+    steps: what is planned is used some steps later.
     """
 
     def __init__(self, controllers: Mapping[str, Controller]):
@@ -105,12 +105,12 @@ class Supervisor(Controller):
         way = None
         if intent.goal is not None:
             way, intent = going(state, intent, self, duty.active == self.first, dt)
-        own = replace(state, memory=duty.memory)
+        own = but(state, memory=duty.memory)
         duty, own = self._choose(duty, own, intent)
         before = state.pose
         after, pose = self.parts[duty.active].step(own, intent, dt)
-        duty = replace(duty, memory=after.memory)
-        return replace(after, memory=duty, previous=before, elapsed=dt, going=way), pose
+        duty = but(duty, memory=after.memory)
+        return but(after, memory=duty, previous=before, elapsed=dt, going=way), pose
 
     def _choose(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState]:
         """Who acts in this step, and the state it starts from."""
@@ -137,7 +137,7 @@ class Supervisor(Controller):
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"
             return Duty(name, entered.memory, why, gone_wrong), entered
-        return replace(duty, refused=gone_wrong or refused, asked=asked), own
+        return but(duty, refused=gone_wrong or refused, asked=asked), own
 
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""
@@ -146,7 +146,7 @@ class Supervisor(Controller):
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
         """Who is on duty, and the state as that controller sees it."""
-        return state.memory.active, replace(state, memory=state.memory.memory)
+        return state.memory.active, but(state, memory=state.memory.memory)
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """As good as its best."""

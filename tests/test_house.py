@@ -102,6 +102,7 @@ PLAN = {
         "navigation": "compiled body contract",
         "navigation.routes": "compiled",
         "navigation.levels": "contract navigation.planning",
+        "navigation.thinking": "contract navigation.levels navigation.planning navigation.routes",
         "navigation.crowd": "compiled contract navigation.routes",
         "navigation.planning": "compiled files body navigation.routes",
         "navigation.identification": "files body navigation.planning",

@@ -43,6 +43,8 @@ PULLS = 0.1, 100.0
 """How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
+KEPT = 32
+"""So many plans are known for a while: who asks whether a leap can be made makes it soon."""
 MOST_HITS = 3
 """A body that still touches something after so many hits slips by."""
 
@@ -76,6 +78,7 @@ class Jump(Controller):
 
     def __init__(self, physique: Physique = Physique(), gravity=GRAVITY, prior: Prior | None = None):
         self.physique, self.prior = physique, prior or Prior.load()
+        self._lately: tuple[tuple[Any, Sequence[Any], tuple[Plan | None, str]], ...] = ()
         self.gravity = np.asarray(gravity, float)
         if self.gravity.shape != (3,) or not np.isfinite(self.gravity).all() or not PULLS[0] <= -self.gravity[1] <= PULLS[1] \
                 or np.hypot(self.gravity[0], self.gravity[2]) > 1e-9:
@@ -136,7 +139,19 @@ class Jump(Controller):
     def _made(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
               around: Sequence[Any], tries: int | None = None) -> tuple[Plan | None, str]:
         """A plan that touches nothing, or None and why there is none. Where something is in the way of its limbs, they are drawn up, or
-        it jumps higher. tries: so many plans at most."""
+        it jumps higher. tries: so many plans at most. What was asked just now is not planned again."""
+        asked = (*(part if part is None or isinstance(part, float | int) else part.tobytes() for part in vars(start).values()),
+                 place.tobytes(), floor, airtime, tries)
+        for known, things, made in self._lately:
+            if known == asked and (things is around or list(things) == list(around)):
+                return made
+        made = self._planned(start, place, floor, airtime, around, tries)
+        self._lately = (*self._lately[1 - KEPT:], (asked, around, made))
+        return made
+
+    def _planned(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
+                 around: Sequence[Any], tries: int | None) -> tuple[Plan | None, str]:
+        """What `_made` gives, planned."""
         why = self.footing(start, place, floor, around)
         if why:
             return None, why

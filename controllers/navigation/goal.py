@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..body import relative, wrap
-
 if TYPE_CHECKING:  # whoever has a plan has loaded what it takes
     from .planning import Plan
 
@@ -48,12 +46,7 @@ def wish(plan: Plan, time: float, ground: np.ndarray, velocity: np.ndarray, foll
     """
     if plan.reason or arrived(plan, time, ground, following):
         return np.zeros(3)
-    wanted, moving = plan.at(time)
-    lead = 0.5 * np.array([following.halflife, following.turning_halflife, following.halflife]) / math.log(2.0)  # 1 / y
-    change, jerk = plan.acceleration(time), _change_of_acceleration(plan, time)
-    off = relative(np.asarray(ground, float), wanted)
-    missing = np.array([following.place * off[1], following.heading * wrap(off[2]), following.place * off[0]])
-    return moving + 2.0 * lead * change + lead**2 * jerk + missing + following.speed * (moving - velocity)
+    return plan.wished(time, ground, velocity, following)
 
 
 def progress(wanted: np.ndarray, chosen: np.ndarray) -> float:
@@ -66,13 +59,5 @@ def progress(wanted: np.ndarray, chosen: np.ndarray) -> float:
 
 def arrived(plan: Plan, time: float, ground: np.ndarray, following: Following = Following()) -> bool:
     """Whether a plan is over and the walker at its goal."""
-    ground = np.asarray(ground, float)
-    return (time >= plan.seconds and float(np.hypot(*(plan.goal - ground)[:2])) <= following.near
-            and abs(float(wrap(plan.goal[2] - ground[2]))) <= following.straight)
-
-
-def _change_of_acceleration(plan: Plan, time: float, over: float = 0.05) -> np.ndarray:
-    """v̈ (3,) over some time about a moment of the plan."""
-    ends = np.clip([time - over, time + over], 0.0, plan.seconds)
-    before, after = plan.acceleration(ends)
-    return (after - before) / max(ends[1] - ends[0], over)
+    return (time >= plan.seconds and math.hypot(plan.goal[0] - ground[0], plan.goal[1] - ground[1]) <= following.near
+            and abs(math.remainder(plan.goal[2] - ground[2], math.tau)) <= following.straight)

@@ -89,7 +89,7 @@ class Play(Game):
 
     def _ask(self, action: str, player: int) -> None:
         """Something that the next tick is to do, unless one looks back or watches."""
-        if "=" in action and action.partition("=")[0] not in {*comparison.ACTIONS, "goto"}:
+        if "=" in action and action.partition("=")[0] not in {*comparison.ACTIONS, "goto", "crowd"}:
             try:
                 settings.read(action)
             except settings.SettingError as error:

@@ -26,6 +26,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
          footage: Annotated[Path | None, typer.Option(help="A folder of footage, of `gambol film` or `gambol footage`: the first who is seen in it moves as a tracker makes them, and is whom you watch.")] = None,
          send: Annotated[str | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539.")] = None,
+         crowd: Annotated[int, typer.Option(min=0, max=50, help="So many passers-by walk about, past each other and you.")] = 0,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
     from ..input import load as load_bindings
@@ -70,6 +71,8 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
                     preparing=beside, teacher=None if hints is False else Teacher.ready(hands, afresh=bool(hints)), sending=sending)
         if cameras and tape is None:
             game.do("track")
+        if crowd and tape is None:
+            game.do(f"crowd={crowd}")
         return game
     show(Opening(begun, beside), pixels, preset, log, capture)
 

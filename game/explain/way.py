@@ -40,7 +40,7 @@ def led(figures: Sequence[Figure], after: World, overlays: Overlays) -> tuple[Fi
 
 
 def _way(way: Going, floor: float) -> list[Sketch]:
-    tint, levels = CANNOT if way.plan.reason else CAN, levels_of(way.around)
+    tint, levels = CANNOT if way.status.reason else CAN, levels_of(way.around)
     drawn: list[Sketch] = []
     walked = way.plan.at(np.arange(math.ceil(way.time / LOOKS) * LOOKS, way.plan.seconds + LOOKS, LOOKS))[0]  # the last one is its end
     heights = levels.floors(walked[:, :2], floor)
@@ -81,6 +81,8 @@ def on_the_way(state: CharacterState) -> tuple[str, ...]:
     way = state.going
     if way is None:
         return ()
+    if way.planned is None:
+        return ("which way?",)
     if way.plan.reason:
         return (f"no way there: {way.plan.reason}",)
     if way.there:

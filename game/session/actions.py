@@ -9,16 +9,17 @@ from dataclasses import replace
 from gambol.controllers.contract import Goal
 
 from ..camera import Follow, cycled
-from ..input import Aim, Pilot
+from ..input import Aim, Pilot, Script
 from ..world import Character, World
 from . import comparison, settings, tracking
 from .comparison import Comparison
+from .passers import peopled
 from .state import TINTS, SessionState, Player, newcomer, owners
 
 SLOWER = (1, 2, 4, 10)
 """Slow motion: how many ticks one step of the world takes."""
 ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode", "track", "penalty"))
-"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", where to go, `goal_of`, and `comparison.ACTIONS`."""
+"""What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", where to go, `goal_of`, how many passers-by there are, `peopled`, and `comparison.ACTIONS`."""
 
 
 def done(moment: SessionState, who: int, action: str) -> SessionState:
@@ -27,6 +28,8 @@ def done(moment: SessionState, who: int, action: str) -> SessionState:
     player = moment.players[who]
     if name in comparison.ACTIONS:
         return _compared(moment, action)
+    if name == "crowd":
+        return peopled(moment, action)
     if name == "goto":
         return _with(moment, who, replace(player, goal=goal_of(action)))
     if equals and name != "back":
@@ -83,7 +86,8 @@ def _reset(moment: SessionState) -> SessionState:
     for old, character in zip(moment.players, world.characters):
         camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
         players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim(), goal=None))
-    return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0),
+    passers = tuple(Script(script.moves) for script in moment.passers)
+    return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0, passers=passers),
                      None if moment.comparison is None else replace(moment.comparison, pins=None))
 
 

@@ -11,7 +11,7 @@ from gambol.controllers.contract import Goal
 from gambol.controllers.navigation import Steering
 
 from ..camera import Follow, PlayerCamera, between
-from ..input import STEERING, Aim, Pilot
+from ..input import STEERING, Aim, Pilot, Script
 from ..scene import TINT, Camera, Figure
 from ..world import COURSE, Character, Methods, World, figures, methods
 from . import settings
@@ -54,7 +54,7 @@ class SessionState:
     character i. opening: the world that a reset returns to. number: ticks since the session began,
     whatever became of the world meanwhile. slow: ticks that a step of the world takes. phase: those
     made since the last step. comparison: what is reconstructed of the first player, by characters that come last in the
-    worlds; methods: where what they need is learnt.
+    worlds; methods: where what they need is learnt. passers: what passers-by do, whose characters come after the players.
     """
 
     before: World
@@ -67,6 +67,7 @@ class SessionState:
     phase: int = 0
     comparison: Comparison | None = None
     methods: Methods = field(default_factory=methods)
+    passers: tuple[Script, ...] = ()
 
     def fraction(self, alpha: float) -> float:
         """How far from `before` to `after` the world is, `alpha` of the way through the last tick."""

@@ -22,10 +22,13 @@ from ..input import Aim, Wish, jumping
 from ..world import DT, RATE, ground_between, jump_of
 from . import settings
 from .actions import done
+from .passers import asked, polite
 from .state import SessionState, Player
 
 KEPT = 30 * RATE
-"""How many steps of the world one can go back."""
+"""How many steps of the world one can go back ..."""
+CAST = 8
+"""... with so many characters; with more, fewer."""
 
 
 def advance(moment: SessionState, wishes: Sequence[Wish], past: Sequence[SessionState] = ()) -> SessionState:
@@ -77,9 +80,11 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
         leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
         intents.append(replace(command.intent(state, player.steering), leap=leap, goal=goal))
+    passers, theirs = asked(moment)
+    intents += theirs
     held = None if moment.comparison is None else moment.comparison.goals
     intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
-    return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)
+    return replace(moment, before=moment.after, after=moment.after.step(polite(moment, intents)), players=tuple(players), phase=0, passers=passers)
 
 
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
@@ -124,6 +129,8 @@ class Timeline:
             self.past.pop()
         if not back and moment.after.characters[0].state is not self.now.after.characters[0].state:
             self.past.append(self.now)
+        while len(self.past) * max(len(moment.after.characters), CAST) > KEPT * CAST:
+            self.past.popleft()
         self.now = moment
 
 

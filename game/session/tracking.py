@@ -25,7 +25,7 @@ def tracked(moment: SessionState) -> SessionState:
         return replace(world, characters=tuple(one for one in world.characters if one.watches is None))
     if any(one.watches is not None for one in moment.after.characters):
         return replace(moment, before=without(moment.before), after=without(moment.after))
-    performer, count = moment.after.characters[0], len(moment.players)
+    performer, count = moment.after.characters[0], len(moment.players) + len(moment.passers)
     heading = float(performer.state.ground[2])
     beside = np.array([ASIDE * math.cos(heading), 0.0, -ASIDE * math.sin(heading)])
     watches = watches_of(performer.name, performer.controller.skeleton, beside=beside, **SPOILT)

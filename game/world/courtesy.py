@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from gambol.controllers.contract import Intent
-from gambol.controllers.navigation import Going, in_world, wish
+from gambol.controllers.navigation import Going, in_world
 from gambol.controllers.navigation.crowd import Manners, avoid, doors_of, queued, stepping, together
+from gambol.controllers.navigation.levels import levels_of
 
 from ..input import STEERING, jumping
+from ..scene import Prop
 from .world import Character, World
 
 RADIUS = 0.22
@@ -20,6 +24,10 @@ GIVEN_WAY = 0.2
 """Who is led off what he was asked by more than this [m/s] turns to where he is led."""
 LOOKS = 1.5
 """So far ahead [s] people see a door that they go to."""
+LEDGE = 0.21
+"""Whose ground lies no higher than this over his floor stands on it [m]."""
+FREE, BEHIND = 0.7, 0.6
+"""Nobody leaps where another is so near to his way [m], up to so far behind where he lands [m]."""
 MANNERS = Manners()
 
 
@@ -29,30 +37,62 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
     ways: (2,) [m/s] along x and z, where each would go in the world, if he were turned to it; None where his intent says all.
     groups: who walks with whom, as `together` takes it. At doors they queue.
 
-    Who goes to a goal follows his plan and leaves it as far as others make him. Who jumps, follows points or is not there neither avoids nor is avoided.
+    Who goes to a goal follows his plan and leaves it as far as others make him, and leaps only where nobody is. Who jumps is avoided, and avoids nobody;
+    who follows points or is not there does neither.
     """
     found = list(intents)
-    who = [i for i, (one, intent) in enumerate(zip(world.characters, intents))
-           if one.there(world.number) and one.follows is None and intent.leap is None and jumping(one.state) is None]
+    who = [i for i, one in enumerate(world.characters) if one.there(world.number) and one.follows is None]
     if len(who) < 2:
         return found
+    jumps = [intents[i].leap is not None or jumping(world.characters[i].state) is not None for i in who]
     ground = np.array([world.characters[i].state.ground for i in who], float)
     velocity = np.array([world.characters[i].state.velocity for i in who], float)
-    asked = np.array([_wished(world.characters[i], found[i]) for i in who], float)
+    asked = np.array([np.zeros(3) if leaps else _wished(world.characters[i], found[i]) for i, leaps in zip(who, jumps)], float)
     wishes = in_world(ground, asked)
     for k, i in enumerate(who):
-        wishes[k] = wishes[k] if ways[i] is None else ways[i]
+        wishes[k] = wishes[k] if ways[i] is None or jumps[k] else ways[i]
     aims = np.array([_ahead(world.characters[i], found[i], place + LOOKS * w) for i, place, w in zip(who, ground[:, :2], wishes)])
     alone, moving = wishes, in_world(ground, velocity)
     wishes = together(ground[:, :2], wishes, [groups[i] for i in who])
     wishes = queued(ground[:, :2], wishes, aims, doors_of(world.props), moving)
-    chosen = avoid(ground[:, :2], moving, wishes, RADIUS, world.props, ground[:, 2], MANNERS)
+    regions = _regions(world, ground[:, :2], np.array([float(world.characters[i].state.floor) for i in who]))
+    chosen = np.empty_like(wishes)
+    for region in np.unique(regions):  # what is a wall to one is a floor to another
+        some = regions == region
+        chosen[some] = avoid(ground[:, :2], moving, wishes, RADIUS, _walls(world.props, int(region)), ground[:, 2], MANNERS)[some]
     led = stepping(ground, velocity, chosen, STEERING, MANNERS)
     share = np.minimum(np.linalg.norm(chosen - alone, axis=1, keepdims=True) / GIVEN_WAY, 1.0)
-    for i, own, change, part in zip(who, asked, share * (led - asked), share[:, 0]):
-        if part > 1e-6:
+    for k, (i, own, change, part) in enumerate(zip(who, asked, share * (led - asked), share[:, 0])):
+        way = _way(world.characters[i], found[i])
+        if way is not None and way.crossings and _taken(way, ground[:, :2], k):
+            found[i] = replace(found[i], held=True)
+        if part > 1e-6 and not jumps[k]:
             found[i] = replace(found[i], velocity=own + change) if found[i].goal is None else replace(found[i], aside=change)
     return found
+
+
+def _regions(world: World, places: np.ndarray, floors: np.ndarray) -> np.ndarray:
+    """The regions of levels (N,) on which people stand at places (N, 2), so high (N,) [m]."""
+    levels = levels_of(world.props)
+    return levels.regions[levels.ground(places, floors + LEDGE)[0]]
+
+
+@lru_cache(maxsize=32)
+def _walls(props: tuple[Prop, ...], region: int) -> Sequence[Any]:
+    """What stops somebody who walks in a region: of a level floor all that stands on it, else the ends of the ground, too."""
+    levels = levels_of(props)
+    level = levels.regions[levels.floor] == region and np.count_nonzero(levels.regions == region) == 1 and not levels.slopes.any()
+    return props if level else levels.stops(region)
+
+
+def _taken(way: Going, places: np.ndarray, who: int) -> bool:
+    """Whether another of the people at places (N, 2) is where the next leap of one of them leads, or on the way there."""
+    off, to = way.crossings[0].ground[:2], way.crossings[0].place[[0, 2]]
+    along = (to - off) / max(float(np.linalg.norm(to - off)), 1e-9)
+    far = np.clip((places - to) @ along, -float(np.linalg.norm(to - off)), BEHIND)
+    gaps = np.linalg.norm(places - to - far[:, None] * along, axis=1)
+    gaps[who] = np.inf
+    return bool(gaps.min() < FREE)
 
 
 def _wished(one: Character, intent: Intent) -> np.ndarray:
@@ -60,7 +100,7 @@ def _wished(one: Character, intent: Intent) -> np.ndarray:
     way = _way(one, intent)
     if intent.goal is None:
         return np.asarray(intent.velocity, float)
-    return np.zeros(3) if way is None or way.there else wish(way.plan, way.time, one.state.ground, one.state.velocity)
+    return np.zeros(3) if way is None else way.wished(one.state.ground, one.state.velocity)
 
 
 def _ahead(one: Character, intent: Intent, straight: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import Pose, forward_kinematics, wrap
-from gambol.controllers.contract import CharacterState, Intent
+from gambol.controllers.contract import CharacterState, Intent, but
 from gambol.controllers.navigation import drift
 from gambol.controllers.navigation.levels import levels_of
 
@@ -87,10 +87,10 @@ class Character:
         if number % TRAIL_EVERY == 0:
             here = np.array([[state.ground[0], float(state.floor) + FLOOR_LIFT, state.ground[1]]])
             trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
-        made = replace(self, state=state, intent=intent, trail=trail)
+        made = but(self, state=state, intent=intent, trail=trail)
         centre = centre_of(made.controller, made.joints)
         centre_of_mass = self.centre_of_mass or CentreOfMass.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
-        return replace(made, centre_of_mass=centre_of_mass.step(centre, DT))
+        return but(made, centre_of_mass=centre_of_mass.step(centre, DT))
 
     def tracked(self, performers: Mapping[str, Character], number: int) -> Character:
         """One step on of somebody whom cameras make out of a performer. performers: who has made that step, by name."""
@@ -145,7 +145,7 @@ class World:
         if len(intents) != len(self.characters):
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
-        intents = [replace(intent, around=self.props) for intent in intents]
+        intents = [but(intent, around=self.props) for intent in intents]
         made = [one if not one.there(self.number) else None if one.follows or one.watches else one.step(intent, number)
                 for one, intent in zip(self.characters, intents)]
         performers = {one.name: one for one in made if one is not None}

@@ -3,6 +3,7 @@
 import numpy as np
 
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.person import person
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load
 from scenarios import written
@@ -71,3 +72,33 @@ def test_the_two_at_the_corner_would_meet_and_pass_without_a_script():
     one, other = (character.state.ground for character in act.world.characters)
     assert one[1] > 10 and other[1] < 1, "both get where they were going"
     assert met(False, 6.0)[1] < 0.3, "they would meet"
+
+
+LEAP = """
+title = "A leap"
+duration = 14
+avoid = true
+props = [{ centre = [0, 0.3, 0], size = [2, 0.6, 5] }, { centre = [0, 0.3, 5.9], size = [2, 0.6, 5] }]
+[[actors]]
+name = "A"
+start = [0, -2, 0]
+moves = [{ go_to = [0.2, 7.0] }]
+[[actors]]
+name = "B"
+start = [0, 4.3, 180]
+moves = [{ for = 7, stop = true }, { go_to = [-0.5, 8.0] }, { for = 30, stop = true }]
+"""
+
+
+def test_nobody_leaps_where_another_stands(tmp_path):
+    leapt, scenario = None, load(written(tmp_path, LEAP))
+    for act in film.acts(scenario, person()):
+        one, other = (character.state for character in act.world.characters)
+        if act.world.time < 7.0:
+            assert np.hypot(other.ground[0], other.ground[1] - 4.3) < 0.05, "the box on which one stands pushes nobody off"
+        if leapt is None and one.active == "jump":
+            leapt = act.world.time
+            assert np.hypot(other.ground[0], other.ground[1] - 4.3) > 0.5, "he waits until the place is free"
+        if act.world.time > 16:
+            break
+    assert leapt is not None and leapt > 7.0 and np.hypot(*(one.ground[:2] - [0.2, 7.0])) < 0.1

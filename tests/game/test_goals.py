@@ -189,7 +189,7 @@ def test_the_pointer_lies_on_what_is_nearest_in_its_way():
 def test_leaps_ahead_are_drawn_and_said():
     someone = person()
     world = World((Character("A", someone, someone.start((3.4, 5.0, 0.0), 0.3)),), STAGES["course"])
-    for _ in range(5):
+    for _ in range(30):
         world = world.step([Intent(goal=Goal((3.4, 7.2)))])
     sketches = led(figures(world, world, 1.0), world, Overlays(path=True))[0].sketches
     bent = [one for one in sketches if isinstance(one, Line) and one.dashed and len(one.points) == 17]

@@ -113,7 +113,7 @@ def test_he_leaps_over_a_gap_and_walks_on(someone):
     last = states[-1]
     assert someone.status(last).kind == "done" and np.hypot(*(last.ground[:2] - [0.5, 3.6])) < 0.03 and float(last.floor) == pytest.approx(0.6)
     assert {state.active for state in states} == {"locomotion", "jump"} and min(float(state.floor) for state in states) == pytest.approx(0.6)
-    assert states[0].going.crossings and not last.going.crossings
+    assert any(state.going.crossings for state in states) and not last.going.crossings
     assert len(last.going.barred) <= 5, "at the end of his reach, those that turn out impossible from where he stands are replaced"
 
 
@@ -152,7 +152,7 @@ def test_a_step_that_is_hindered_becomes_a_leap_from_a_stand(someone):
 def test_without_room_to_stop_nobody_leaps_from_a_walk(someone):
     short = (LONG[0], Box((0.0, 0.3, 4.1), (2.0, 0.6, 1.4)))
     states = going(someone, short, (0.0, -2.0, 0.0), 0.6, Goal((0.0, 4.2)))
-    assert someone.status(states[-1]).kind == "done" and states[0].going.crossings and states[0].going.pace == 0.0
+    assert someone.status(states[-1]).kind == "done" and any(state.going.crossings for state in states) and not any(state.going.pace for state in states)
 
 
 def test_who_can_not_leap_there_says_so_and_stays(someone):

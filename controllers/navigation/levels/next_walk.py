@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +11,9 @@ from ...contract import CharacterState, Controller, Goal, Intent, Leap
 from .journeys import Crossing, journey
 from .run_up import farther
 from .surfaces import levels_of
+
+Refusal = Callable[[CharacterState, Intent], str | None]
+"""Says why nobody could leap from a state as an intent says, as `Controller.refusal`."""
 
 
 class Leg(NamedTuple):
@@ -26,8 +29,12 @@ class Leg(NamedTuple):
     reason: str = ""
 
 
-def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequence[Any], barred: Iterable[tuple[float, ...]] = ()) -> Leg:
-    """How the way to a goal goes on, for a walker who stands in `state`. barred: leaps, as `named`, that he could not make."""
+def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequence[Any], barred: Iterable[tuple[float, ...]] = (),
+             refusal: Refusal | None = None, known: Sequence[Crossing] = ()) -> Leg:
+    """How the way to a goal goes on, for a walker who stands in `state`. barred: leaps, as `named`, that he could not make. refusal: how the walker
+    is asked for leaps, by default his own. known: the leaps that are left of a way that he is on: they are not sought again where they lead on from here.
+    """
+    refusal = walker.refusal if refusal is None else refusal
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
     start = levels.under(here, float(state.floor))
     region = int(levels.regions[start])
@@ -37,9 +44,12 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     if levels.regions[end] == region:
         return Leg(goal.floor, goal.heading, stops)
 
+    if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:
+        return Leg(known[0].ground[:2], float(known[0].ground[2]), stops, tuple(known))
+
     def able(leap: Crossing) -> str | None:
-        why = walker.refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
-        return "" if why and farther(walker, leap, around) else why
+        why = refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+        return "" if why and farther(walker, leap, around, refusal) else why
 
     way = journey(levels, here, start, goal.floor, end, able, barred)
     if way.crossings:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -49,13 +49,17 @@ def runs(leap: Crossing, here: np.ndarray, around: Sequence[Any], planes: np.nda
     return PACE if _room(leap, around) else 0.0
 
 
-def farther(walker: Controller, leap: Crossing, around: Sequence[Any]) -> bool:
+def farther(walker: Controller, leap: Crossing, around: Sequence[Any], refusal: Callable[[CharacterState, Intent], str | None]) -> bool:
     """Whether a leap that is too far from a stand could be made from a walk, at most of the steps; what it might touch is not looked at."""
     if not _room(leap, around):
         return False
     asked = [(state, Leap(np.array([state.ground[0], 0.0, state.ground[1] + leap.asks[0]]))) for state in _walking(walker)]
     asked = [(state, one) for state, one in asked if walker.precondition(state, Intent(leap=one)) >= READY]
-    can = sum(walker.refusal(state, Intent(leap=one)) == "" for state, one in asked)
+    can, left = 0, len(asked)
+    for state, one in asked:
+        can, left = can + (refusal(state, Intent(leap=one)) == ""), left - 1
+        if can > MOST * len(asked) or can + left <= MOST * len(asked):
+            break
     return can > MOST * len(asked)
 
 

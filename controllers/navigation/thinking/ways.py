@@ -1,0 +1,133 @@
+"""What is thought of on the way to a goal: the way itself, another plan for it, at which step a leap goes off, and the leap."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...contract import CharacterState, Controller, Intent, Leap, but
+from ..goal import wish
+from ..levels import Leg, named, next_leg, onto, runs, take_off
+from ..obstacles import SHOULDER
+from .going import NEARER, Going, Thinking, carried
+from .thought import Thought, steps_of
+
+if TYPE_CHECKING:  # who never goes to a goal loads no planner
+    from ..planning import Plan
+
+SHARE = 0.9
+"""Plans keep to this share of what is walked: what is left serves to catch up."""
+HELD_UP = 4
+"""After so many plans in a row that were worth nothing he is held up."""
+MISSED = 0.5
+"""Who lands farther from where he should [m] leaps so no more."""
+REST = 1e-9
+"""Who moves no faster than this [m/s, rad/s] is at rest."""
+
+
+def _thinking(act: Callable[[Callable[[], None]], Mapping[str, Any]], dt: float, carries: np.ndarray | None = None) -> Thinking:
+    return Thinking(Thought(act, dt), dt, 0, carries)
+
+
+def began(now: Going, state: CharacterState, intent: Intent, walker: Controller, dt: float, carries: np.ndarray | None) -> Thinking:
+    """The way to a goal is thought of, from where he will be by the time that it is known. carries: as of `Thinking`."""
+    def act(ask: Callable[[], None]) -> Mapping[str, Any]:
+        from ..planning import Plan, plan_in_time
+
+        goal, questions, planes = now.goal, 0, walker.limits(SHARE)
+        assert planes is not None  # he walks
+
+        def refusal(there: CharacterState, asked: Intent) -> str | None:
+            nonlocal questions
+            questions += 1
+            ask()
+            return walker.refusal(there, asked)
+        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, now.crossings[1:] if now.leapt else ())
+        steps = steps_of(questions, dt)
+        then = foreseen(now, state, intent, walker, steps, dt, carries)
+        heading = _arrival(then, leg) if leg.heading is None else leg.heading
+        end = np.array([*leg.place, heading])
+        within = None if leg.crossings or goal.within is None else max(goal.within - now.spent - steps * dt, 0.1)
+        pace = runs(leg.crossings[0], then.ground[:2], intent.around, planes) if leg.crossings and named(leg.crossings[0]) not in now.stands else 0.0
+        made = Plan.none(then.ground, end, leg.reason) if leg.reason else plan_in_time(
+            then.ground, end, then.velocity, planes, leg.around, float(then.floor), within, now.planned != goal, np.array([pace, 0.0, 0.0]))
+        return {"plan": made, "planned": goal, "heading": heading, "around": intent.around, "stops": leg.around, "time": 0.0, "stood": 0.0,
+                "left": _left(then, made), "held": 0, "waits": 0.0, "nearest": math.inf, "plans": now.plans + 1, "crossings": leg.crossings,
+                "asked": 0.0, "leapt": False, "anew": False, "pace": pace, "off": None, "poised": False}
+    return _thinking(act, dt, carries)
+
+
+def landed(now: Going, state: CharacterState) -> Going:
+    """The same after a leap: one that led elsewhere than it should is not made again, and what comes after it is sought anew."""
+    if not now.crossings or math.dist(state.ground[:2], onto(now.crossings[0], now.pace)[[0, 2]]) <= MISSED:
+        return now
+    return now.but(barred=(*now.barred, named(now.crossings[0])), crossings=())
+
+
+def another(now: Going, state: CharacterState, intent: Intent, walker: Controller, dt: float) -> Thinking:
+    """Another plan to the same end is thought of."""
+    left = _left(state, now.plan)
+    held = 0 if now.there or now.waits > 0.0 or left < now.left - NEARER else now.held + 1
+
+    def act(ask: Callable[[], None]) -> Mapping[str, Any]:
+        from ..planning import Plan, plan_in_time
+
+        planes, steps = walker.limits(SHARE), steps_of(0, dt)
+        assert planes is not None  # he walked
+        goal = np.array([*now.plan.goal[:2], now.heading])
+        if held >= HELD_UP:
+            made = Plan.none(state.ground, goal, f"held up {left:.2f} m before the {'leap' if now.crossings else 'goal'}")
+        else:
+            then = foreseen(now, state, intent, walker, steps, dt, None)
+            within = None if now.goal.within is None or now.crossings else max(now.goal.within - now.spent - steps * dt, 0.1)
+            made = plan_in_time(then.ground, goal, then.velocity, planes, now.stops, float(then.floor), within, leaving=np.array([now.pace, 0.0, 0.0]))
+        return {"plan": made, "time": 0.0, "stood": 0.0, "asked": 0.0, "left": left, "held": held, "plans": now.plans + 1, "off": None, "poised": False}
+    return _thinking(act, dt)
+
+
+def run_up(now: Going, state: CharacterState, intent: Intent, walker: Controller, dt: float) -> Thinking:
+    """At which of his steps he leaps is thought of, while he goes on; where he can at none, he stops, and leaps from a stand."""
+    def act(ask: Callable[[], None]) -> Mapping[str, Any]:
+        off, steps = take_off(walker, state, now.plan, now.time, now.crossings[0], intent, dt), steps_of(0, dt)
+        return {"off": off - steps + 1} if off is not None and off >= steps else {"stands": (*now.stands, named(now.crossings[0])), "anew": True}
+    return _thinking(act, dt)
+
+
+def poised(now: Going, state: CharacterState, intent: Intent, walker: Controller, dt: float) -> Thinking:
+    """A leap from a stand is thought of: it is planned for where he will be, so that nothing is left to plan as it goes off."""
+    def act(ask: Callable[[], None]) -> Mapping[str, Any]:
+        then = foreseen(now, state, intent, walker, steps_of(0, dt), dt, None)
+        walker.refusal(then, but(intent, leap=Leap(onto(now.crossings[0], 0.0))))
+        return {"poised": True}
+    return _thinking(act, dt)
+
+
+def foreseen(now: Going, state: CharacterState, intent: Intent, walker: Controller, steps: int, dt: float, carries: np.ndarray | None) -> CharacterState:
+    """The state after so many steps of dt [s], if nobody comes in his way: he is played ahead."""
+    asked, time = but(intent, goal=None, aside=None, leap=None), now.time
+    for step in range(steps):
+        velocity = carried(carries, step, dt)
+        if velocity is None:
+            velocity = wish(now.plan, time, state.ground, state.velocity)
+        elif not velocity.any() and np.abs(state.velocity).max() < REST:
+            return state
+        time += dt * float(walker.readiness(state))
+        state, _ = walker.step(state, but(asked, velocity=velocity), dt)
+    return state
+
+
+def _left(state: CharacterState, made: Plan) -> float:
+    return float(np.hypot(*(made.goal - state.ground)[:2]))
+
+
+def _arrival(state: CharacterState, leg: Leg) -> float:
+    """The heading [rad] with which the shortest way arrives; the walker's own where he is there already."""
+    from ..routes import shapes_of, ways
+
+    shapes, here = shapes_of(leg.around, float(state.floor)), np.asarray(state.ground[:2], float)
+    found = ways(here, leg.place, shapes, SHOULDER) if len(shapes) else []
+    last = leg.place - (found[0][-2] if found else here)
+    return float(state.ground[2]) if math.hypot(*last) < NEARER else math.atan2(*last)

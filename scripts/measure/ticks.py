@@ -1,0 +1,88 @@
+"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import.
+
+    python scripts/measure/ticks.py [--clicks 40]
+
+Ticks come sixty times a second, as in a game. A tick's time is that of the processor in the thread that makes it; what is thought of beside, in
+another thread, is told apart. What a first run compiles or loads is done before.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Iterator
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+import numpy as np
+
+from gambol.controllers.contract import Goal, Intent
+from gambol.controllers.person import person
+from gambol.game.input import Wish
+from gambol.game.scenario import film, load
+from gambol.game.scene import Box
+from gambol.game.session import Timeline, opening
+from gambol.game.world import RATE
+
+AMONG = tuple(Box((float(x), 0.6, float(z)), (0.5, 1.2, 0.5), 0.3 * x) for x in (-2.4, -0.8, 0.8, 2.4) for z in (2.0, 4.0, 6.0))
+
+
+def told(name: str, ticks: Iterator[None]) -> None:
+    """A line of how long ticks took."""
+    next(ticks)  # everything is there
+    own, whole, begun, due = [], time.process_time(), time.thread_time(), time.monotonic()
+    for _ in ticks:
+        own.append(1e3 * (time.thread_time() - begun))
+        due = max(due + 1.0 / RATE, time.monotonic())
+        time.sleep(due - time.monotonic() if due > time.monotonic() else 0.0)
+        begun = time.thread_time()
+    whole = 1e3 * (time.process_time() - whole)
+    print(f"{name}: {len(own)} ticks, median {np.median(own):.2f} ms, the longest three {', '.join(f'{one:.1f}' for one in np.sort(own)[:-4:-1])} ms, "
+          f"{sum(one > 1e3 / RATE for one in own)} longer than a frame; beside them {whole - sum(own):.0f} ms in all", flush=True)
+
+
+def scenario(name: str) -> Iterator[None]:
+    """The ticks of a scenario."""
+    asked = load(name)
+    for number, _ in enumerate(film.acts(asked, person())):
+        yield
+        if number >= RATE * asked.duration:
+            return
+
+
+def clicks(count: int, seed: int) -> Iterator[None]:
+    """The ticks of a game in which somebody is sent to another place every one and a half seconds."""
+    rng, line = np.random.default_rng(seed), Timeline(opening(person()))
+    for _ in range(count):
+        x, z = rng.uniform((-4.0, -1.0), (7.0, 14.0))
+        for tick in range(round(1.5 * RATE)):
+            line.advance([Wish(pressed=(f"goto={x:.2f}/{z:.2f}",) if tick == 0 else ())])
+            yield
+
+
+def imported(count: int, seed: int) -> Iterator[None]:
+    """The steps of somebody who is told goals among boxes."""
+    rng, someone = np.random.default_rng(seed), person()
+    state = someone.start()
+    for _ in range(count):
+        goal = Goal(tuple(rng.uniform((-4.0, -1.0), (4.0, 8.0))), float(rng.uniform(-np.pi, np.pi)))
+        for _ in range(round(1.5 * RATE)):
+            state, _ = someone.step(state, Intent(goal=goal, around=AMONG), 1 / RATE)
+            yield
+
+
+def main() -> None:
+    """Print all figures."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--clicks", type=int, default=20)
+    asked = parser.parse_args()
+    for _ in clicks(3, 9):  # compiled, loaded
+        pass
+    time.sleep(4.0)  # the last of them is still thought of
+    told("go_across", scenario("go_across"))
+    told("clicks on the course", clicks(asked.clicks, 0))
+    told("goals among twelve boxes", imported(asked.clicks, 0))
+
+
+if __name__ == "__main__":
+    main()
