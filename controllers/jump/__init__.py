@@ -4,7 +4,7 @@ flight, landing, and take-offs from a run. A jump is planned whole, then played;
 
 from .body import GRAVITY, Physique
 from .controller import FRESH, RUNNING, Jump, Jumping
-from .feasibility import Refused
+from .reach import Refused
 from .warm_up import rehearse
 
 __all__ = [

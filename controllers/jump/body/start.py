@@ -109,14 +109,22 @@ def carried(physique: Physique, angles: np.ndarray) -> float:
 
 
 @kernel
-def carried_kernel(body, angles, joints):
-    """See `carried`. joints: as in `carriage.joints_of`."""
+def upright_kernel(body, angles, joints):
+    """The local rotations (J, 3, 3) of a body carried by `angles` (11,), its pelvis upright, and room for places (J, 3) and turns (J, 3, 3)."""
     count = len(body.parents)
-    local, positions, turned, centre = np.zeros((count, 3, 3)), np.empty((count, 3)), np.empty((count, 3, 3)), np.empty(3)
+    local = np.zeros((count, 3, 3))
     for j in range(count):
         for i in range(3):
             local[j, i, i] = 1.0
     carriage.carry_kernel(angles, joints, local)
+    return local, np.empty((count, 3)), np.empty((count, 3, 3))
+
+
+@kernel
+def carried_kernel(body, angles, joints):
+    """See `carried`. joints: as in `carriage.joints_of`."""
+    local, positions, turned = upright_kernel(body, angles, joints)
+    centre = np.empty(3)
     exp_kernel(angles[0], 0.0, 0.0, local[0])
     for hip in body.hip:
         exp_kernel(-angles[0], 0.0, 0.0, local[hip])
@@ -150,12 +158,7 @@ def stretched(physique: Physique, angles: np.ndarray, feet: np.ndarray, pitch: f
 @kernel
 def stretched_kernel(body, angles, joints, feet, pitch, share, heading, guess):
     """See `stretched`. joints: as in `carriage.joints_of`."""
-    count = len(body.parents)
-    local, positions, turned = np.zeros((count, 3, 3)), np.empty((count, 3)), np.empty((count, 3, 3))
-    for j in range(count):
-        for i in range(3):
-            local[j, i, i] = 1.0
-    carriage.carry_kernel(angles, joints, local)
+    local, positions, turned = upright_kernel(body, angles, joints)
     turn, lean = np.empty((3, 3)), np.empty((3, 3))
     exp_kernel(0.0, heading, 0.0, turn)
     exp_kernel(angles[0], 0.0, 0.0, lean)
