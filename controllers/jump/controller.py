@@ -12,6 +12,7 @@ from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
 from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from ..navigation import floor_at
 from .body import FLAT, GRAVITY, Physique, Start, along, vectors
+from .crouching import Crouching, begun, crouched
 from .motion import Plan, fall, over_nothing, struck
 from .prior import Prior
 from .reach import Reach, Refused
@@ -25,6 +26,8 @@ FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
+STILL = 0.25
+"""Who is slower than this [m/s, rad/s] stands, and may crouch."""
 PULLS = 0.1, 100.0
 """How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
 RISEN = 0.45
@@ -78,6 +81,9 @@ class Jump(Reach, Controller):
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """READY if the jump that is asked can start now; while one goes on, how firmly it holds on."""
+        if isinstance(state.memory, Crouching):
+            walks = bool(np.abs(intent.velocity).max() > 0.05)
+            return HOLDS if intent.leap is not None or intent.aim is not None or not (walks or state.memory.stands) else OVER
         if isinstance(state.memory, Jumping):
             walks = bool(np.abs(intent.velocity).max() > 0.05) or intent.leap is not None
             landed = state.memory.time > state.memory.plan.touch_down + RISEN
@@ -85,15 +91,17 @@ class Jump(Reach, Controller):
         if intent.around and self._lost_floor(state, intent):
             return HOLDS
         if intent.leap is None:
-            return 0.0
+            return READY if intent.aim is not None and self._stands(state) else 0.0
         return READY if self._moment(state) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state at the beginning of a planned jump, or of a fall if it stepped over an edge. Refused, with the reason, if
-        the jump can't be made."""
+        """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,
+        if the jump can't be made."""
         if intent.around and self._lost_floor(state, intent):
             fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
             return replace(state, memory=Jumping(fallen, 0.0, "there was nothing to step on"))
+        if intent.leap is None and intent.aim is not None:
+            return replace(state, memory=begun(self, self.start_of(state), float(level(state.floor))))
         return replace(state, memory=Jumping(self.plan(state, intent)))
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
@@ -144,7 +152,7 @@ class Jump(Reach, Controller):
             feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
             rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
         return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),
-                     feet_rates, self._single(state, feet))
+                     feet_rates, self._single(state, feet), isinstance(state.memory, Crouching))
 
     def _feet(self, positions: np.ndarray, turned: np.ndarray) -> np.ndarray:
         """The feet (2, 5) of a placed body: balls, yaw, pitch."""
@@ -160,6 +168,11 @@ class Jump(Reach, Controller):
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
         dt = seconds(dt)
         level(state.floor)
+        if isinstance(state.memory, Crouching):
+            state = self._released(state, intent)
+        if isinstance(state.memory, Crouching):
+            after = crouched(self, state, intent.leap or intent.aim, dt)
+            return after, after.pose
         jumping: Jumping = state.memory
         made, time = jumping.plan, min(jumping.time + dt, jumping.plan.duration)
         pose = made.at(time)
@@ -177,6 +190,19 @@ class Jump(Reach, Controller):
             after = self._hit(after, intent.around, dt)
         return after, pose
 
+    def _released(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state of who crouches at the beginning of the jump that is asked; as it is where none is, or it can't be made: then it
+        says why, and looks again only if something else is asked."""
+        memory, leap = state.memory, intent.leap
+        if leap is None:
+            return state if not memory.refused else replace(state, memory=replace(memory, refused="", asked=None))
+        if leap.same(memory.asked):
+            return state
+        try:
+            return replace(state, memory=Jumping(self.plan(state, intent)))
+        except Refused as reason:
+            return replace(state, memory=replace(memory, refused=str(reason), asked=leap))
+
     def _hit(self, state: CharacterState, around: Sequence[Any], dt: float) -> CharacterState:
         """The state as it is if it strikes nothing in the air, else at the beginning of a fall."""
         jumping: Jumping = state.memory
@@ -193,6 +219,8 @@ class Jump(Reach, Controller):
 
     def status(self, state: CharacterState) -> Status:
         """Running until it stands; one that struck something says so at once, and fails once it stands."""
+        if isinstance(state.memory, Crouching):
+            return Status("running", state.memory.refused)
         jumping: Jumping = state.memory
         if jumping.time < min(jumping.plan.through, jumping.plan.duration):
             return Status("running", jumping.fault)
@@ -220,6 +248,10 @@ class Jump(Reach, Controller):
             return False
         towards = start.velocity * FLAT / np.hypot(start.velocity[0], start.velocity[2])
         return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
+
+    def _stands(self, state: CharacterState) -> bool:
+        """Whether it stands on both feet, and may crouch."""
+        return bool(np.all(state.contacts)) and bool(np.abs(state.velocity).max() < STILL)
 
     def _single(self, state: CharacterState, feet: np.ndarray) -> int | None:
         """The foot that pushes a runner off: the one that stands, if the other is in the air."""

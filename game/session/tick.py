@@ -75,8 +75,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         props = moment.after.props
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
-        leap = None if jump is None else aim.asked(state, props, -float(jump.gravity[1]))
-        intents.append(replace(command.intent(state, player.steering), leap=leap, goal=goal))
+        leap, ready = (None, None) if jump is None else (ask(state, props, -float(jump.gravity[1])) for ask in (aim.asked, aim.readied))
+        intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal))
     held = None if moment.comparison is None else moment.comparison.goals
     intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
     return replace(moment, before=moment.after, after=moment.after.step(intents), players=tuple(players), phase=0)

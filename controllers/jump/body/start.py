@@ -36,7 +36,7 @@ class Start:
     root: (3,) [m], rotations: (J, 3, 3) of the pose. rates: (J, 3) [rad/s] how fast the joints turn,
     each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet, feet_rates:
     (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
-    or 1 right; None for both.
+    or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told.
     """
 
     root: np.ndarray
@@ -48,6 +48,7 @@ class Start:
     heading: float
     feet_rates: np.ndarray = field(default_factory=lambda: np.zeros((2, 5)))
     single: int | None = None
+    ready: bool = False
 
     def planted(self, floor: float, body: BodyTables) -> np.ndarray:
         """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""
