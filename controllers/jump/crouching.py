@@ -78,17 +78,16 @@ def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float) -> C
     place = soles(memory.planted, body).mean(0) * FLAT + [0.0, floor, 0.0] if leap.place is None else np.asarray(leap.place, float)
     if place.shape != (3,) or not np.isfinite(place).all():
         return memory
-    for _ in range(2):  # how deep depends a little on where it waits
-        way = reach.path(still, place, floor, leap.airtime)
-        flat, low = (place - way.stance) * FLAT, (way.low - way.stance) * FLAT
-        far = float(np.linalg.norm(flat))
-        share = min(far / (FAR * body.size), 1.0)
-        lead = (1.0 - share) * low + share * INSIDE * 0.5 * float(body.tip[2] - body.heel[2] + body.toe[2]) * flat / max(far, 1e-9)
-        wanted = np.concatenate([way.stance * FLAT + lead + [0.0, way.low[1], 0.0], way.keys[BETWEEN, :LEGS]])
-        if not np.isfinite(wanted).all():
-            return memory
-        still = replace(still, centre=wanted[:3])
-    return replace(memory, leap=leap, goal=wanted)
+    way = reach.path(still, place, floor, leap.airtime)
+    flat, lead = (place - way.stance) * FLAT, (way.low - way.stance) * FLAT
+    far = float(np.linalg.norm(flat))
+    lead += min(far / (FAR * body.size), 1.0) * (INSIDE * 0.5 * float(body.tip[2] - body.heel[2] + body.toe[2]) * flat / max(far, 1e-9) - lead)
+    if not np.isfinite(np.concatenate([way.low, lead])).all():
+        return memory
+    still = replace(still, centre=(way.stance + lead) * FLAT + [0.0, way.low[1], 0.0])
+    way = reach.path(still, place, floor, leap.airtime)  # how deep depends a little on where it waits
+    wanted = np.concatenate([still.centre * FLAT + [0.0, way.low[1], 0.0], way.keys[BETWEEN, :LEGS]])
+    return replace(memory, leap=leap, goal=wanted) if np.isfinite(wanted).all() else memory
 
 
 def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple[Crouching, Pose, np.ndarray]:

@@ -26,6 +26,8 @@ FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
+NARROW = 0.03
+"""How far to its side a foot comes down on which one runs on [m], at standard height."""
 TRAIL = (0.16, 0.30)
 """How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
 
@@ -205,6 +207,13 @@ def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndar
         feet[side, 3] = heading + sign * 0.08
         ball = np.array([sign * HALF_STANCE * body.size, body.sole, 0.0])
         feet[side, :3] = place + yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
+    return feet
+
+
+def striding_feet(place: np.ndarray, heading: float, body: BodyTables, side: int) -> np.ndarray:
+    """Two feet (2, 5) of which that on a side, 0 left or 1 right, comes down at `place` (3,), a little to its side."""
+    feet = landing_feet(place, heading, body)
+    feet[:, :3] -= (1 - 2 * side) * (HALF_STANCE - NARROW) * body.size * yaw(heading)[:, 0]
     return feet
 
 

@@ -25,6 +25,8 @@ LEAST_AIRTIME = 0.30
 HIGHER = 0.14, 0.9
 """Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
 ahead, the sooner he is off."""
+STRIDES = 1.8, 2.7
+"""A runner lands on one foot who comes down faster along the floor than the first, and falls slower than the second [m/s]."""
 FOLDED = 0.64
 """How low a body touches down at most, as a share of how high it stands."""
 TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
@@ -44,7 +46,8 @@ class Path:
 
     stance: (3,) [m] the middle of the soles that push; pressed: (3,) from where they begin to. dip: how long before the lowest point it starts to go down [s]. strong:
     whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
-    foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down.
+    foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down. lands: on which foot it lands to run
+    on, 0 left, 1 right; None on both.
     """
 
     low: np.ndarray
@@ -65,6 +68,7 @@ class Path:
     heading: float = 0.0
     running: bool = False
     low_arms: bool = False
+    lands: int | None = None
     keys: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
@@ -129,7 +133,14 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, _tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked))
+                start.heading, start.single is not None, low_arms, _stride(start, velocity, flight, gravity, size), _tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked))
+
+
+def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
+    """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
+    if start.single is None or np.linalg.norm(velocity * FLAT) < STRIDES[0] * np.sqrt(size):
+        return None
+    return 1 - start.single if -(velocity + gravity * flight)[1] < STRIDES[1] * np.sqrt(size) else None
 
 
 def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:
