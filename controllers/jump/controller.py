@@ -8,24 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
+from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from ..navigation import floor_at
-from .body import FLAT, GRAVITY, Physique, Start, along, vectors
+from .body import GRAVITY, Physique, Start, along
 from .crouching import Crouching, begun, crouched
 from .motion import Plan, fall, over_nothing, struck
 from .prior import Prior
 from .reach import Reach, Refused
+from .starting import ready, start_of
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
 and somebody wants to walk."""
-RUNNING = 1.2
-"""Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
-FRESH = -0.06
-"""A foot has just struck while the body is no further than this past it [m]: still behind it."""
-UP = 0.06
-"""A foot higher than this over the floor is in the air [m]."""
 STILL = 0.25
 """Who is slower than this [m/s, rad/s] stands, and may crouch."""
 PULLS = 0.1, 100.0
@@ -92,7 +87,7 @@ class Jump(Reach, Controller):
             return HOLDS
         if intent.leap is None:
             return READY if intent.aim is not None and self._stands(state) else 0.0
-        return READY if self._moment(state) else 0.0
+        return READY if ready(self.physique, state) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,
@@ -136,33 +131,7 @@ class Jump(Reach, Controller):
 
     def start_of(self, state: CharacterState) -> Start:
         """What a jump needs to know of a state."""
-        skeleton, masses = self.skeleton, self.physique.anatomy
-        pose = Pose(np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))
-        positions, turned = forward_kinematics(skeleton, pose.root, pose.rotations)
-        centre = centre_of_mass(masses, positions, turned)
-        velocity, rates, feet_rates = np.zeros(3), np.zeros((len(skeleton), 3)), np.zeros((2, 5))
-        feet = self._feet(positions, turned)
-        if state.previous is not None and state.elapsed > 0.0:
-            before = forward_kinematics(skeleton, np.asarray(state.previous.root, float),
-                                        np.asarray(state.previous.rotations, float))
-            velocity = (centre - centre_of_mass(masses, *before)) / state.elapsed
-            moved = feet - self._feet(*before)
-            moved[:, 3:] = wrap(moved[:, 3:])
-            standing = np.any(np.asarray(state.contacts).reshape(2, 2), axis=1)
-            feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
-            rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
-        return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]),
-                     feet_rates, self._single(state, feet), isinstance(state.memory, Crouching))
-
-    def _feet(self, positions: np.ndarray, turned: np.ndarray) -> np.ndarray:
-        """The feet (2, 5) of a placed body: balls, yaw, pitch."""
-        feet = np.zeros((2, 5))
-        for side, name in enumerate(("Left", "Right")):
-            foot = turned[self.skeleton.index(name + "Foot")]
-            feet[side, :3] = positions[self.skeleton.index(name + "Toe")]
-            feet[side, 3] = np.arctan2(foot[0, 2], foot[2, 2])
-            feet[side, 4] = np.arcsin(np.clip(-foot[1, 2], -1.0, 1.0))
-        return feet
+        return start_of(self.physique, state, isinstance(state.memory, Crouching))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
@@ -238,24 +207,6 @@ class Jump(Reach, Controller):
             return False
         return over_nothing(self.skeleton, state.pose, state.contacts, intent.around, self.physique.size)
 
-    def _moment(self, state: CharacterState) -> bool:
-        """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
-        start = self.start_of(state)
-        low = start.feet[:, 1] - float(state.floor) < self.physique.tables.sole + UP * self.physique.size
-        if np.hypot(start.velocity[0], start.velocity[2]) < RUNNING:
-            return bool(low.any())
-        if start.single is None:
-            return False
-        towards = start.velocity * FLAT / np.hypot(start.velocity[0], start.velocity[2])
-        return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
-
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""
         return bool(np.all(state.contacts)) and bool(np.abs(state.velocity).max() < STILL)
-
-    def _single(self, state: CharacterState, feet: np.ndarray) -> int | None:
-        """The foot that pushes a runner off: the one that stands, if the other is in the air."""
-        if np.hypot(state.velocity[0], state.velocity[2]) < RUNNING:
-            return None
-        standing = np.asarray(state.contacts).reshape(2, 2).any(1)
-        return int(np.argmax(standing)) if standing.sum() == 1 else None

@@ -8,7 +8,6 @@ limbs and feet settle from how they were, as in a jump.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 

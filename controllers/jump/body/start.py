@@ -26,7 +26,7 @@ FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
-NARROW = 0.03
+NARROW = 0.015
 """How far to its side a foot comes down on which one runs on [m], at standard height."""
 TRAIL = (0.16, 0.30)
 """How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
