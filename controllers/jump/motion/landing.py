@@ -14,7 +14,7 @@ TIME = 1.35
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
-STRIDE, STIFF = 0.25, 0.4
+STRIDE, STIFF = 0.25, 0.45
 """Rate of that spring where one runs on on one foot [1/s], whose leg sinks by this share of how far two sink."""
 GRIP = 0.8
 """The friction of soles that a body which passes over its feet counts on."""

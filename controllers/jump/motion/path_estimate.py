@@ -27,6 +27,8 @@ HIGHER = 0.14, 0.9
 ahead, the sooner he is off."""
 STRIDES = 1.8, 2.7
 """A runner lands on one foot who comes down faster along the floor than the first, and falls slower than the second [m/s]."""
+FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])
+"""By so much more than recorded hip and knee of a free leg are bent [rad] as the other lands, and in the rows before."""
 FOLDED = 0.64
 """How low a body touches down at most, as a share of how high it stands."""
 TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
@@ -130,10 +132,12 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         guess = guess + relaxed * lacks
     low, leave, passing, wind_up, dip, strong, pressed = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
+    lands = _stride(start, velocity, flight, gravity, size)
+    keys = _folded(_tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked), lands)
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, _stride(start, velocity, flight, gravity, size), _tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked))
+                start.heading, start.single is not None, low_arms, lands, keys)
 
 
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
@@ -141,6 +145,16 @@ def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarr
     if start.single is None or np.linalg.norm(velocity * FLAT) < STRIDES[0] * np.sqrt(size):
         return None
     return 1 - start.single if -(velocity + gravity * flight)[1] < STRIDES[1] * np.sqrt(size) else None
+
+
+def _folded(keys: np.ndarray, lands: int | None) -> np.ndarray:
+    """The same keys (ROWS, COLUMNS), the leg on which it does not land, if any, drawn up more, lest its toes touch the floor."""
+    if lands is not None:
+        keys = keys.copy()
+        free = slice(LEGS + EACH * (1 - lands), LEGS + EACH * (1 - lands) + 2)
+        keys[3 * BETWEEN - len(FOLDS) + 1:3 * BETWEEN + 1, free] += FOLDS
+        keys[3 * BETWEEN + 1:, free] += FOLDS[-1]
+    return keys
 
 
 def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:
