@@ -22,10 +22,12 @@ from gambol.controllers.jump import Jumping
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
-from gambol.game.input.aim import AHEAD, PATIENCE
+from gambol.game.input import Aim, Wish
 
 AIMED = 1.2
 """So long one aims before one lets go [s]."""
+PATIENCE = 0.9
+"""So long a jump that was asked waits, in play [s]."""
 SPEEDS = 2.2, 2.6, 3.0, 3.4
 
 
@@ -77,7 +79,7 @@ def report_strides(someone: Supervisor, phases: int) -> None:
         single, kept, waits, refused = 0, [], [], 0
         for k in range(phases):
             state = led(someone, base, Intent(wish), 0.75 * k / phases)
-            leap, made, way = Leap(np.array([state.ground[0], 0.0, state.ground[1] + AHEAD[0] + AHEAD[1] * speed])), None, []
+            leap, made, way = Aim().step(Wish(jump=True), 0.0, state, False, 1 / FPS).target(state, (), 9.81), None, []
             for n in range(150):
                 state, pose = someone.step(state, Intent(wish, leap if made is None and n < PATIENCE * FPS else None), 1 / FPS)
                 way.append(float(pose.root[2]))
