@@ -27,7 +27,7 @@ FARTHEST = 2.6
 """How far from a standing body the ring may be [m]."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
-AHEAD = 0.62, 0.55
+AHEAD = 0.60, 0.53
 """How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""

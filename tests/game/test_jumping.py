@@ -176,10 +176,10 @@ def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
 
 def test_who_holds_the_button_crouches_and_is_off_soon_after_letting_go(somebody):
     """In play; who taps it winds up as ever."""
-    took = []
-    for ticks in (45, 2):
+    took, held = [], Wish(jump=True)
+    for wishes in ([Wish(jump=True, move=(0.0, 1.0)).rounded()] * 25 + [held] * 50, [held] * 2):
         timeline = Timeline(opening(somebody))
-        for wish in [Wish(jump=True)] * ticks + [Wish()] * 4:
+        for wish in wishes + [Wish()] * 4:
             timeline.advance((wish,))
         made = jumping(timeline.now.after.characters[0].state).plan
         took.append(made.take_off)
