@@ -7,10 +7,11 @@ from gambol.controllers.body import contact_points, forward_kinematics, sole_cor
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jumping
 from gambol.controllers.supervisor import Supervisor
-from gambol.game.input.aim import AHEAD
 
 FPS = 60
 PACE = 3.0
+RING = 2.4
+"""So far ahead [m] who runs lets go of it; nearer, the moments at which it would brake most keep less of the speed."""
 WISH = np.array([PACE, 0.0, 0.0])
 
 
@@ -33,7 +34,7 @@ def played(request, person, runner):
     state, made, states = runner, None, []
     for _ in range(request.param):
         state, _ = person.step(state, Intent(WISH), 1 / FPS)
-    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + AHEAD[0] + AHEAD[1] * PACE]))
+    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + RING]))
     for _ in range(110):
         state, _ = person.step(state, Intent(WISH, leap if made is None else None), 1 / FPS)
         if made is None and isinstance(state.memory.memory, Jumping):
