@@ -41,6 +41,11 @@ class Leap:
     place: np.ndarray | None
     airtime: float | None = None
 
+    def same(self, other: Leap | None) -> bool:
+        """Whether another wish is this one."""
+        return (other is not None and self.airtime == other.airtime and (self.place is None) == (other.place is None)
+                and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
+
 
 @dataclass(frozen=True)
 class Goal:
@@ -97,6 +102,7 @@ class Intent:
     the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
     held: no leap of the way goes off now, as somebody is where it leads.
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
+    aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -108,6 +114,7 @@ class Intent:
     aside: np.ndarray | None = None
     held: bool = False
     sighting: Sighting | None = None
+    aim: Leap | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

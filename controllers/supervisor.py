@@ -34,9 +34,7 @@ class Asked:
     def still(self, state: CharacterState, intent: Intent) -> bool:
         """Whether the same is asked from the same place: of the same stance, where somebody moves."""
         was, leap, before = self.intent.leap, intent.leap, self.state
-        if was is None or leap is None or was.airtime != leap.airtime or (was.place is None) != (leap.place is None):
-            return False
-        if was.place is not None and leap.place is not None and not np.array_equal(was.place, leap.place):
+        if was is None or not was.same(leap):
             return False
         if intent.around is not self.intent.around and list(intent.around) != list(self.intent.around):
             return False

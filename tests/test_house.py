@@ -122,6 +122,7 @@ PLAN = {
         "locomotion": "compiled files body contract mocap navigation",
         "scaled": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles jump.prior",
+        "jump.reach": "body contract navigation jump.body jump.motion jump.muscles jump.prior",
         "reconstruction.database": "compiled files body contract mocap supervisor jump locomotion",
         "person": "compiled body contract jump.body navigation.planning supervisor jump.muscles jump locomotion scaled",
         "reconstruction.neighbours": "compiled reconstruction.database",

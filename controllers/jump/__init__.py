@@ -3,10 +3,12 @@ flight, landing, and take-offs from a run. A jump is planned whole, then played;
 """
 
 from .body import GRAVITY, Physique
-from .controller import FRESH, RUNNING, Jump, Jumping
-from .feasibility import Refused
+from .controller import Jump, Jumping
+from .crouching import Crouching
+from .reach import Refused
+from .starting import FRESH, RUNNING
 from .warm_up import rehearse
 
 __all__ = [
-    "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "rehearse",
+    "Crouching", "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "rehearse",
 ]

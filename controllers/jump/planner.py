@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..body import yaw
-from .body import FOOT_FADE, HEEL_UP, Physique, Start, hermite, landing_feet, momentum_kernel, monotone, turns, vectors
-from .motion import (FADE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, descent, faded, flight_kernel,
+from .body import FOOT_FADE, HEEL_UP, Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
+from .motion import (FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, descent, faded, flight_kernel,
                      ground_kernel)
 from .prior import BETWEEN, EACH, LEGS
 
@@ -26,8 +26,6 @@ LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
 STRAIGHTEST = 0.06
 """Knees in the air are bent by this at least [rad]."""
-FREE = -1.0
-"""A foot's freedom (see `posture.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 ROUNDS, CLOSE = 8, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 MOST_TURN, MOST_GAIN = 0.7, 2.5
@@ -44,7 +42,9 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
 
     Checks nothing: see `reach`.
     """
-    landing = landing_feet(np.asarray(place, float), start.heading, physique.tables)
+    place = np.asarray(place, float)
+    landing = (landing_feet(place, start.heading, physique.tables) if way.lands is None
+               else striding_feet(place, start.heading, physique.tables, way.lands))
     planted = start.planted(floor, physique.tables)
     return _Draft(physique, start, way, planted, landing).plan()
 
@@ -73,6 +73,8 @@ class _Draft(Airborne):
         on = self.feet[:, :, 5] >= 0.0
         contacts[:len(self.times), 1::2], contacts[:len(self.times), ::2] = on, on & ~heel_up
         contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, heels
+        if way.lands is not None:
+            contacts[-len(after):, 2 - 2 * way.lands:4 - 2 * way.lands] = False
         flying = self.flying[1:]
         return Plan(
             np.concatenate([self.times, self.leave + flying, self.down + after]),

@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, contact_points, forward_kinematics, log, yaw
+from ..body import Pose, contact_points, exp, forward_kinematics, log, yaw
 from ..contract import CharacterState
+from . import fourier
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel
+from .library import DURATION, HIPS, LABELS
 from .memory import RUN, WALK
 
 WALKS_ON = 0.35
@@ -21,6 +23,8 @@ FADE = 0.22
 """Half-life with which the pose that was taken over gives way to the walker's own [s]."""
 ABOUT_TO_STEP = 0.95
 """The phase in which both feet stand and the left one is about to leave."""
+PHASES, LEAD = 64, 0.1
+"""So many phases are compared; a difference of 1 m/s counts as one of so many metres."""
 
 
 def entered(locomotion: Any, state: CharacterState) -> CharacterState:
@@ -34,7 +38,12 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     memory = rest.memory.copy()
     speed = float(np.hypot(state.velocity[0], state.velocity[2]))
     if speed > WALKS_ON:
-        _set_off(locomotion, memory, np.asarray(state.velocity, float))
+        on = np.asarray(state.contacts, bool).reshape(2, 2).any(1)
+        velocity = np.asarray(state.velocity, float)
+        _set_off(locomotion, memory, velocity, ABOUT_TO_STEP if on.sum() != 1 else _stride(locomotion, state, velocity, int(on.argmax())))
+        if on.sum() == 1:  # its hips go on where they are
+            ground = _under_the_hips(state, memory["row"])
+            memory["ground"] = ground
     shown = _row(locomotion, state.pose, ground, state.floor)
     memory["blend"][:LABELS_AT] = shown - memory["row"][:LABELS_AT]
     memory["row"][:LABELS_AT] = shown
@@ -57,20 +66,57 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 
-def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray) -> None:
-    """Walking or running at a velocity (3,), the left foot about to leave."""
+def _gait(locomotion: Any, velocity: np.ndarray) -> tuple[bool, np.ndarray, np.ndarray, np.ndarray]:
+    """Whether a velocity (3,) is run, the nearest one that there is, the primitives of that gait and what they weigh in it."""
     running = velocity[0] > locomotion.settings.run_above and locomotion.run is not None
     family = "run" if running else "walk"
     space = locomotion.space(family)
-    members = locomotion.library.family(family)
     query = space.clamp(velocity)
+    return running, query, locomotion.library.family(family), space.weights(query)
+
+
+def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: int) -> float:
+    """The phase in which a gait at a velocity (3,) is most like a body that stands on one foot, 0 left or 1 right: feet about the hips, and
+    how they move about them."""
+    _, _, members, weights = _gait(locomotion, velocity)
+    library = locomotion.library
+    rows = fourier.evaluate(np.tensordot(weights, library.coefficients[members], 1), np.arange(PHASES) / PHASES)
+    local = library.reference @ exp(rows[:, :HIPS].reshape(PHASES, -1, 3))
+    places = contact_points(library.skeleton, *forward_kinematics(library.skeleton, rows[:, HIPS:LABELS], local)) - rows[:, None, HIPS:LABELS]
+    moves = (np.roll(places, -1, 0) - np.roll(places, 1, 0)) * (0.5 * PHASES) / rows[:, DURATION, None, None]
+    turn = yaw(-float(state.ground[2]))
+    ours, before = (_about_the_hips(locomotion, pose, turn) for pose in (state.pose, state.previous or state.pose))
+    apart = np.square(places - ours).sum((1, 2))
+    if state.previous is not None and state.elapsed > 0.0:
+        apart += np.square(LEAD * (moves - (ours - before) / state.elapsed)).sum((1, 2))
+    stands = rows[:, LABELS:DURATION].reshape(PHASES, 2, 2).max(-1)
+    return float(np.argmin(np.where((stands[:, side] > 0.5) & (stands[:, 1 - side] < 0.5), apart, np.inf))) / PHASES
+
+
+def _about_the_hips(locomotion: Any, pose: Pose, turn: np.ndarray) -> np.ndarray:
+    """Heels and balls (4, 3) [m] from the hips, in a frame turned (3, 3)."""
+    root = np.asarray(pose.root, float)
+    points = contact_points(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, root, np.asarray(pose.rotations, float)))
+    return (points - root) @ turn.T
+
+
+def _under_the_hips(state: CharacterState, row: np.ndarray) -> np.ndarray:
+    """The ground frame (3,) in which a row of a gait has the hips where this body has them."""
+    heading = float(state.ground[2])
+    place = np.asarray(state.pose.root, float) - yaw(heading) @ np.asarray(row[HIPS_AT:LABELS_AT], float)
+    return np.array([place[0], place[2], heading])
+
+
+def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray, phase: float) -> None:
+    """Walking or running at a velocity (3,), from a phase of the gait."""
+    running, query, members, weights = _gait(locomotion, velocity)
     memory["weights"] = 0.0
-    memory["weights"][members] = space.weights(query)
+    memory["weights"][members] = weights
     memory["family"] = RUN if running else WALK
     memory["command"] = memory["velocity"] = query
-    memory["settled"], memory["phase"] = 0, ABOUT_TO_STEP
+    memory["settled"], memory["phase"] = 0, phase
     row = np.empty(COLUMNS, np.float32)
-    series_kernel(locomotion.tables.series, memory["weights"], np.float32(ABOUT_TO_STEP), row)
+    series_kernel(locomotion.tables.series, memory["weights"], np.float32(phase), row)
     memory["row"], memory["stretch"] = row, 1.0
 
 

@@ -14,7 +14,7 @@ from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
 from gambol.controllers.navigation import floor_at
 
-from ..input import Aim
+from ..input import Aim, jumping
 from ..scene import Dot, Goal, Line, Patch, Prop, Sketch
 from ..world import Character, jump_of
 
@@ -64,10 +64,8 @@ class Preview:
 
 def plan_of(character: Character) -> tuple[Plan, float] | None:
     """The jump that somebody makes and how far it is [s]; None while they don't."""
-    if jump_of(character.controller) is None or character.state.memory.active != "jump":
-        return None
-    jumping = character.state.memory.memory
-    return jumping.plan, jumping.time
+    made = jumping(character.state)
+    return None if made is None else (made.plan, made.time)
 
 
 def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Preview | None = None) -> Preview | None:

@@ -1,6 +1,6 @@
 """Aiming a jump: a button is held, a ring on the floor is moved, and letting go jumps there.
 
-Standing, the stick pushes the ring away from the feet; walking or running, the ring lies ahead at the
+Standing, the stick pushes the ring away from the feet, and the body crouches as it will have to; walking or running, the ring lies ahead at the
 distance that the speed gives, and stays where it is let go. Without a push the jump goes straight up, the higher the
 longer it was held.
 """
@@ -27,7 +27,7 @@ FARTHEST = 2.6
 """How far from a standing body the ring may be [m]."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
-AHEAD = 0.55, 0.50
+AHEAD = 0.60, 0.53
 """How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
@@ -113,10 +113,16 @@ class Aim:
         x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
         return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]))
 
+    def readied(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
+        """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""
+        return None if self.moving or not self.aiming or self._askew(state) else self.target(state, around, gravity)
+
     def asked(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
         """The jump that is wanted now that the button was let go; None while the body still turns to it."""
         if self.aiming or self.waiting <= 0.0:
             return None
-        if self.facing is not None and abs(math.remainder(self.facing - float(state.ground[2]), math.tau)) > ASKEW:
-            return None
-        return self.target(state, around, gravity)
+        return None if self._askew(state) else self.target(state, around, gravity)
+
+    def _askew(self, state: CharacterState) -> bool:
+        """Whether a standing body still has to turn to the ring."""
+        return self.facing is not None and abs(math.remainder(self.facing - float(state.ground[2]), math.tau)) > ASKEW

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status
+from gambol.controllers.jump import Jumping
 from gambol.controllers.navigation import Path, follow, steer
 
 from .pilot import STEERING
@@ -30,13 +31,14 @@ class Jump:
     """A jump to `place`, x, y, z [m]; None: straight up. airtime: [s], None for the least effort.
 
     within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
-    take than on Earth, √(9.81 / g).
+    take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming.
     """
 
     place: tuple[float, float, float] | None = None
     airtime: float | None = None
     within: float | None = None
     slow: float = 1.0
+    aims: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ class Script:
     """Where somebody is in a list of moves.
 
     steps: made of the current move. path, progress: along it. asked: for how many steps its jump was
-    asked for; jumped: whether it began. refused: why jumps were not made and places not reached, so far.
+    asked for; aimed: for how many it was aimed at; jumped: whether it began. refused: why jumps were not made and places not reached, so far.
     """
 
     moves: tuple[Move, ...]
@@ -79,6 +81,7 @@ class Script:
     path: Path | None = None
     progress: float = 0.0
     asked: int = 0
+    aimed: int = 0
     jumped: bool = False
     refused: tuple[str, ...] = ()
 
@@ -99,7 +102,7 @@ class Script:
             script = replace(script, path=_from_here(state.ground, move.points))
         script, intent = script._ask(move, state, dt)
         if move.jump is not None:
-            script, intent = script._ask_jump(move, move.jump, state, intent)
+            script, intent = script._ask_jump(move, move.jump, state, intent, dt)
         return replace(script, steps=script.steps + 1), intent
 
     def wished(self, state: CharacterState) -> np.ndarray | None:
@@ -152,8 +155,8 @@ class Script:
         intent = steer(state.ground, wish, move.facing, state.velocity[1], STEERING)
         return replace(self, progress=float(progress)), intent
 
-    def _ask_jump(self, move: Move, jump: Jump, state: CharacterState, intent: Intent) -> tuple[Script, Intent]:
-        """The same with the jump, once it is time for it: near enough at a run, turned to it at rest."""
+    def _ask_jump(self, move: Move, jump: Jump, state: CharacterState, intent: Intent, dt: float) -> tuple[Script, Intent]:
+        """The same with the jump, once it is time for it: near enough at a run, turned to it, and aimed, at rest."""
         now = jumping(state)
         if self.jumped or now is not None and not now.landed:  # one that has landed gets up for the next
             return replace(self, jumped=True), Intent()
@@ -171,12 +174,16 @@ class Script:
             ready = True
         if not ready:
             return self, intent
-        return replace(self, asked=self.asked + 1), replace(intent, leap=Leap(None if jump.place is None else place, jump.airtime))
+        leap = Leap(None if jump.place is None else place, jump.airtime)
+        if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
+            return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
+        return replace(self, asked=self.asked + 1), replace(intent, leap=leap)
 
 
 def jumping(state: CharacterState) -> Any:
-    """What somebody who jumps remembers of it; None for everybody else."""
-    return state.memory.memory if state.active == "jump" else None
+    """What somebody who jumps remembers of it; None for everybody else, and for who crouches first."""
+    memory = state.memory.memory if state.active == "jump" else None
+    return memory if isinstance(memory, Jumping) else None
 
 
 def _way(move: Move, state: CharacterState) -> Status | None:

@@ -29,7 +29,7 @@ class MoveTable(Table):
 
     jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
     velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
-    [m] it jumps. airtime: [s]; by default of the least effort.
+    [m] it jumps. airtime: [s]; by default of the least effort. aim: so long [s] one crouches before a jump without a run-up.
     """
 
     seconds: Seconds | None = Field(None, alias="for")
@@ -45,6 +45,7 @@ class MoveTable(Table):
     jump: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] | None = None
     airtime: Airtime | None = None
     within: Length | None = None
+    aim: Seconds | None = None
     speed: Pace | None = None
     facing: Degrees | None = None
 
@@ -56,7 +57,8 @@ class MoveTable(Table):
             raise ValueError(f"needs exactly one of {', '.join(KINDS)}, or jump_to with a run-up; "
                              f"has {' and '.join(kinds) or 'none'}")
         walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump")
-        for name, fits, with_ in (("airtime", self.jump_to is not None, "jump_to; a jump has its height"),
+        for name, fits, with_ in (("aim", jumps and not feet, "jump or jump_to without a run-up"),
+                                  ("airtime", self.jump_to is not None, "jump_to; a jump has its height"),
                                   ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
             if getattr(self, name) is not None and not fits:
                 raise ValueError(f"`{name}` goes with {with_}")
@@ -87,11 +89,11 @@ class MoveTable(Table):
         points = self.path or ((self.walk_to,) if self.walk_to is not None else ())
         leap = None
         if self.jump is not None:
-            leap = Jump(airtime=airtime_up(jumper.physique, self.jump, jumper.gravity))
+            leap = Jump(airtime=airtime_up(jumper.physique, self.jump, jumper.gravity), aims=self.aim or 0.0)
         elif self.jump_to is not None:
             x, z = self.jump_to[0], self.jump_to[-1]
             y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
-            leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]))
+            leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]), self.aim or 0.0)
             points = (*points, (x, z)) if points else ()
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),

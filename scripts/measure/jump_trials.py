@@ -148,11 +148,12 @@ def result_of(t: Trial, made: Plan) -> dict[str, float]:
     flat = Motion.of(jump, made, [end])
     heading = float(t.state.ground[2])
     # as soon as the soles are flat, or as it stands
-    flat_at = Motion.of(jump, made, [down + 0.1, end])
-    middles = sole_corners(jump.skeleton, flat_at.positions, flat_at.orientations).reshape(2, 2, 6, 3)[:, :, [0, 1, 4, 5]].mean((1, 2))
+    flat_at = Motion.of(jump, made, [min(down + 0.1, end), end])
+    sides = [0, 1] if made.path.lands is None else [made.path.lands]
+    middles = sole_corners(jump.skeleton, flat_at.positions, flat_at.orientations).reshape(2, 2, 6, 3)[:, sides][:, :, [0, 1, 4, 5]].mean((1, 2))
     out["miss cm"] = 100.0 * np.linalg.norm(middles[:1 if np.isfinite(made.through) else 2] - t.leap.place, axis=1).max()
     turns, tilts = [], []
-    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+    for side, sign in [(("Left", 1.0), ("Right", -1.0))[k] for k in sides]:
         foot = flat.orientations[0, jump.skeleton.index(side + "Foot")]
         yaw = wrap(np.arctan2(foot[0, 2], foot[2, 2]) - heading - sign * 0.08)
         turns.append(abs(yaw))

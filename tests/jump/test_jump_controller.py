@@ -12,7 +12,7 @@ from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.body.start import soles
 from gambol.controllers.jump.controller import Jump, Jumping
-from gambol.controllers.jump.feasibility import Refused
+from gambol.controllers.jump.reach.feasibility import Refused
 from gambol.controllers.navigation import gap
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene.scene import Box, Goal, Pillar

@@ -60,6 +60,8 @@ def test_feet_that_are_planted_stay(plans, name):
         if single is None or side == single:
             here = (made.times > 0.35 * made.take_off) & (made.times <= made.take_off)
             assert np.ptp(ball[here], axis=0).max() < (1e-3 if single is None else 0.02)
+        if made.path.lands not in (None, side):
+            continue  # it swings
         on = (made.times >= made.touch_down + 0.02) & (made.times < min(made.through, made.touch_down + 0.5))
         np.testing.assert_allclose(ball[on], np.broadcast_to(made.feet[side, :3], ball[on].shape), atol=1e-4)
 
@@ -105,11 +107,12 @@ def test_knees_elbows_and_trunk_stay_within_their_limits(plans, name):
 
 
 @every
-def test_it_lands_on_both_soles_about_the_place_that_was_asked(plans, places, name):
-    """As soon as the soles are flat, whether it stops there or walks on."""
+def test_it_lands_on_its_soles_about_the_place_that_was_asked(plans, places, name):
+    """As soon as they are flat, whether it stops there or walks on; a runner on one."""
     who, _, made = plans[name]
-    positions, turned, *_ = poses(who, made, [made.touch_down + 0.1])
-    corners = sole_corners(who.skeleton, positions, turned)[0].reshape(2, 6, 3)[:, [0, 1, 4, 5]]
+    positions, turned, *_ = poses(who, made, [made.touch_down + (0.1 if made.path.lands is None else 0.03)])
+    on = [0, 1] if made.path.lands is None else [made.path.lands]
+    corners = sole_corners(who.skeleton, positions, turned)[0].reshape(2, 6, 3)[on][:, [0, 1, 4, 5]]
     rises = 0.05 if np.isfinite(made.through) else 0.02  # who walks on is past his feet by then, and his heels rise
     assert np.linalg.norm((corners.mean((0, 1)) - places[name])[[0, 2]]) < 0.02
     assert np.ptp(corners[..., 1]) < rises and abs(corners[..., 1].min() - places[name][1]) < 0.01
@@ -139,7 +142,7 @@ def test_the_ground_gives_what_moves_the_body(plans, name):
         bent = 2.0 * (after * centre[n - 1] - (before + after) * centre[n] + before * centre[n + 1]) / (before * after * (before + after))
         even = (np.abs(before - after) < 1e-9)[:, 0]  # where steps change, the quotient is only roughly the derivative
         force = made.forces[n]
-        np.testing.assert_allclose(force[even], mass * (bent - g)[even], atol=0.06 * mass * 9.81)
+        np.testing.assert_allclose(force[even], mass * (bent - g)[even], atol=(0.06 if made.path.lands is None else 0.1) * mass * 9.81)
         assert force[:, 1].min() > 0.0
         held = force[:, 1] > -0.3 * mass * g[1]
         assert np.linalg.norm(force[held][:, [0, 2]], axis=1).max() < np.max(force[held, 1])

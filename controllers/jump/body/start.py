@@ -26,6 +26,8 @@ FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
+NARROW = 0.015
+"""How far to its side a foot comes down on which one runs on [m], at standard height."""
 TRAIL = (0.16, 0.30)
 """How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
 
@@ -36,7 +38,7 @@ class Start:
     root: (3,) [m], rotations: (J, 3, 3) of the pose. rates: (J, 3) [rad/s] how fast the joints turn,
     each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet, feet_rates:
     (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
-    or 1 right; None for both.
+    or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told.
     """
 
     root: np.ndarray
@@ -48,6 +50,7 @@ class Start:
     heading: float
     feet_rates: np.ndarray = field(default_factory=lambda: np.zeros((2, 5)))
     single: int | None = None
+    ready: bool = False
 
     def planted(self, floor: float, body: BodyTables) -> np.ndarray:
         """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""
@@ -109,14 +112,22 @@ def carried(physique: Physique, angles: np.ndarray) -> float:
 
 
 @kernel
-def carried_kernel(body, angles, joints):
-    """See `carried`. joints: as in `carriage.joints_of`."""
+def upright_kernel(body, angles, joints):
+    """The local rotations (J, 3, 3) of a body carried by `angles` (11,), its pelvis upright, and room for places (J, 3) and turns (J, 3, 3)."""
     count = len(body.parents)
-    local, positions, turned, centre = np.zeros((count, 3, 3)), np.empty((count, 3)), np.empty((count, 3, 3)), np.empty(3)
+    local = np.zeros((count, 3, 3))
     for j in range(count):
         for i in range(3):
             local[j, i, i] = 1.0
     carriage.carry_kernel(angles, joints, local)
+    return local, np.empty((count, 3)), np.empty((count, 3, 3))
+
+
+@kernel
+def carried_kernel(body, angles, joints):
+    """See `carried`. joints: as in `carriage.joints_of`."""
+    local, positions, turned = upright_kernel(body, angles, joints)
+    centre = np.empty(3)
     exp_kernel(angles[0], 0.0, 0.0, local[0])
     for hip in body.hip:
         exp_kernel(-angles[0], 0.0, 0.0, local[hip])
@@ -150,12 +161,7 @@ def stretched(physique: Physique, angles: np.ndarray, feet: np.ndarray, pitch: f
 @kernel
 def stretched_kernel(body, angles, joints, feet, pitch, share, heading, guess):
     """See `stretched`. joints: as in `carriage.joints_of`."""
-    count = len(body.parents)
-    local, positions, turned = np.zeros((count, 3, 3)), np.empty((count, 3)), np.empty((count, 3, 3))
-    for j in range(count):
-        for i in range(3):
-            local[j, i, i] = 1.0
-    carriage.carry_kernel(angles, joints, local)
+    local, positions, turned = upright_kernel(body, angles, joints)
     turn, lean = np.empty((3, 3)), np.empty((3, 3))
     exp_kernel(0.0, heading, 0.0, turn)
     exp_kernel(angles[0], 0.0, 0.0, lean)
@@ -201,6 +207,13 @@ def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndar
         feet[side, 3] = heading + sign * 0.08
         ball = np.array([sign * HALF_STANCE * body.size, body.sole, 0.0])
         feet[side, :3] = place + yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
+    return feet
+
+
+def striding_feet(place: np.ndarray, heading: float, body: BodyTables, side: int) -> np.ndarray:
+    """Two feet (2, 5) of which that on a side, 0 left or 1 right, comes down at `place` (3,), a little to its side."""
+    feet = landing_feet(place, heading, body)
+    feet[:, :3] -= (1 - 2 * side) * (HALF_STANCE - NARROW) * body.size * yaw(heading)[:, 0]
     return feet
 
 

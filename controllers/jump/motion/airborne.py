@@ -8,9 +8,9 @@ import numpy as np
 
 from ...body import exp_kernel, product_kernel, settle, yaw
 from ...compiled import kernel
-from ..body import (FLEX, TOES_DOWN, Physique, Start, measures, parts_kernel, place_kernel, soles, stand_kernel,
+from ..body import (FLEX, TOES_DOWN, Physique, Start, hermite, measures, monotone, parts_kernel, place_kernel, soles, stand_kernel,
                     carriage, turns, vectors)
-from ..prior import BETWEEN, LEGS
+from ..prior import BETWEEN, EACH, LEGS
 from .landing import TIME, absorb
 from .path_estimate import Path
 
@@ -18,6 +18,10 @@ GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
 SHORT = 0.5
 """Flights that last longer [s] are slower, and need fewer poses a second."""
+FREE = -1.0
+"""A foot's freedom (see `planted_pose.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
+RUNS_ON = 0.06, 0.14
+"""Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
 PLANT = 0.09
 """From the toes' landing to the heels' [s]."""
 HEEL = 0.03
@@ -55,13 +59,18 @@ class Airborne:
         self.flex = FLEX * physique.flexibility
         self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
         self.down = leave + way.airtime
-        self.support = soles(landing, self.body)
+        self.support = soles(landing if way.lands is None else landing[way.lands:way.lands + 1], self.body)
         goal = self.support.mean(0) + [0.0, measures(physique).stand, 0.0]
-        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1])
+        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None)
         self.after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
         self.sunk = self.absorbs.motion(self.after)
         landed = self._landing_times(goal[1])
         self.lowest = float(landed[BETWEEN - 1])
+        self.swings = slice(0, 0)  # joints of the leg that goes on swinging
+        if way.lands is not None:
+            free = self.legs[4 - 4 * way.lands:8 - 4 * way.lands]
+            self.swings = slice(int(free[0]), int(free[-1]) + 1)
+            self.swung = keyed_leg(np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
         rows = way.keys[3 * BETWEEN + 1:, :LEGS].copy()  # whoever comes down otherwise carried comes to them by and by
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
         sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
@@ -139,7 +148,9 @@ class Airborne:
         feet[:, :4] = self.landing[:, :4]
         centre = self.way.land.copy()
         root = centre - [0.0, 0.05, 0.0]
-        for k, pitch in enumerate(_toes_down([0.0, step])):
+        self._free(feet)
+        posed[:, self.swings] = self.swung(np.array([0.0, step])) if self.way.lands is not None else posed[:, self.swings]
+        for k, pitch in enumerate(self._toes_down([0.0, step])):
             feet[:, 4] = pitch
             stand_kernel(self.body, centre, feet, self.flex, root, posed[k], positions, turned)
             centre += step * self.way.falling
@@ -154,19 +165,36 @@ class Airborne:
         angles = self.carriage(self.down + after)
         feet = np.ones((len(after), 2, 6))
         feet[..., :5] = self.landing
-        feet[..., 4] = _toes_down(after)[:, None]
+        feet[..., 4] = self._toes_down(after)[:, None]
+        self._free(feet)
         upright = self._upright(angles[:, 0])
         rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
         turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
+        if self.way.lands is not None:
+            local[:, self.swings] = self.swung(after)
         ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
                       self.air_roots[-1].copy(), roots, local)
-        return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, max(landing.until(after), PLANT + 0.02)
+        return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, (
+            max(landing.until(after), PLANT + 0.02) if self.way.lands is None else float(np.clip(self.lowest, *RUNS_ON)))
+
+    def _free(self, feet: np.ndarray) -> None:
+        """Let go of the foot (..., 2, 6) on which it does not land, if any."""
+        if self.way.lands is not None:
+            feet[..., 1 - self.way.lands, 5] = FREE
+
+    def _toes_down(self, time) -> np.ndarray:
+        """How far feet point down (...) [rad] so long after they touched [s]: toes first, but for strides, which are flat."""
+        return (self.way.lands is None) * TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
 
 
-def _toes_down(time):
-    """How far feet point down (...) [rad] so long after the toes touched [s]."""
-    return TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
+def keyed_leg(times: np.ndarray, rows: np.ndarray):
+    """A leg's local rotations (N, 4, 3, 3) at any times (N,) [s], that bends by rows (K, EACH) [rad] at times (K,) [s]; after the last
+    row, as in it."""
+    bent = np.zeros((len(times), 4, 3))
+    bent[:, :EACH, 0] = np.concatenate([rows, rows[-1:]])
+    slopes = monotone(times, bent)
+    return lambda at: turns(hermite(times, bent, slopes, at))
 
 
 def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:

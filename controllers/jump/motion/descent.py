@@ -34,7 +34,7 @@ def descent(way: Path, start: Start, floor: float, times: np.ndarray) -> tuple[n
     sinking = start.velocity if way.dip >= way.wind_up else 0.0 * start.velocity
     c, v, a = joined(start.centre, sinking, np.zeros(3), way.low, way.passing, pushed, late)
     fallen = fallen_kernel(half, (a[:, 1] + 1e-9 - way.gravity[1]) / (c[:, 1] - floor), start.centre[[0, 2]],
-                           start.velocity[[0, 2]], way.low[[0, 2]], way.passing[[0, 2]], way.stance[[0, 2]])
+                           start.velocity[[0, 2]], way.low[[0, 2]], way.passing[[0, 2]], way.pressed[[0, 2]])
     c, v, a = c[::2], v[::2], a[::2]
     c[:, [0, 2]], v[:, [0, 2]], a[:, [0, 2]] = fallen
     return c, v, a

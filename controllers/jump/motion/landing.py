@@ -14,6 +14,8 @@ TIME = 1.35
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
+STRIDE, STIFF = 0.25, 0.45
+"""Rate of that spring where one runs on on one foot [1/s], whose leg sinks by this share of how far two sink."""
 GRIP = 0.8
 """The friction of soles that a body which passes over its feet counts on."""
 SINKS = 0.045, 0.0765, 0.42
@@ -65,12 +67,12 @@ class Landing:
         return self.goal + fade * way, fade * (rate - r * way), fade * (bend - 2.0 * r * rate + r**2 * way)
 
 
-def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float) -> Landing:
+def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float, striding: bool = False) -> Landing:
     """The landing of a body at `land` (3,) with `velocity` (3,) over feet whose middle is under `goal` (3,).
 
     support: (C, 3) corners of the soles. It comes to rest if its capture point, x + v √(h/g), lies over
     them; else it passes over them and must step on (Ha 2012 rolls on; feet do it here). It sinks the
-    deeper the faster it fell; the springs have three equal rates, so that the ground's force begins with none.
+    deeper the faster it fell; the springs have three equal rates, so that the ground's force begins with none. striding: on one foot, to run on.
     """
     fall = max(-velocity[1], 0.0)
     flat = velocity * [1.0, 0.0, 1.0]
@@ -81,9 +83,9 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         capture = (land - goal) @ ahead + pace * np.sqrt((goal[1] - support[0, 1]) / gravity) * CATCH
         passes = bool(capture > ((support - goal) @ ahead).max())
     # soles don't slip: a spring of rate r brakes with 2 r v at first
-    rate = min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
+    rate = STRIDE if striding else min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
     size, g = goal[1] - support[0, 1], np.array([gravity])
-    start, speed, deep = land[1] - goal[1], float(velocity[1]), min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * size / ADULT
+    start, speed, deep = land[1] - goal[1], float(velocity[1]), min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else 1.0) * size / ADULT
 
     def course(stiff: float) -> tuple[float, float]:
         """The lowest place [m] and the least acceleration [m/s²]."""

@@ -22,6 +22,13 @@ SOFT = (0.02, 2.5, 0.05)
 bent legs give way without the knees flying. At standard height and what an adult falls."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
+HIGHER = 0.14, 0.9
+"""Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
+ahead, the sooner he is off."""
+STRIDES = 1.8, 2.7
+"""A runner lands on one foot who comes down faster along the floor than the first, and falls slower than the second [m/s]."""
+FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])
+"""By so much more than recorded hip and knee of a free leg are bent [rad] as the other lands, and in the rows before."""
 FOLDED = 0.64
 """How low a body touches down at most, as a share of how high it stands."""
 TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
@@ -39,9 +46,10 @@ class Path:
     """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at the lowest point
     and at take-off, the flight's and the wind-up's time [s], the push between, None for a fall and where nothing pushes so.
 
-    stance: (3,) [m] the middle of the soles that push. dip: how long before the lowest point it starts to go down [s]. strong:
+    stance: (3,) [m] the middle of the soles that push; pressed: (3,) from where they begin to. dip: how long before the lowest point it starts to go down [s]. strong:
     whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
-    foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down.
+    foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down. lands: on which foot it lands to run
+    on, 0 left, 1 right; None on both.
     """
 
     low: np.ndarray
@@ -54,6 +62,7 @@ class Path:
     gravity: np.ndarray
     push: Push | None
     stance: np.ndarray
+    pressed: np.ndarray
     dip: float = np.inf
     strong: bool = True
     far: float = 0.0
@@ -61,6 +70,7 @@ class Path:
     heading: float = 0.0
     running: bool = False
     low_arms: bool = False
+    lands: int | None = None
     keys: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
@@ -99,14 +109,14 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(leave, land, start.velocity * FLAT if start.single is not None else np.zeros(3), gravity),
-            LEAST_AIRTIME * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
+            (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.single is not None)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
         angles = [_low(prior.row(number * BETWEEN, some, start.single), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
         if start.single is None:
-            crouch = size * prior.crouch(features[0])
+            crouch = 0.0 if start.ready else size * prior.crouch(features[0])  # who waits needs no more than the muscles do
             pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet, angles[0], crouch)
         else:
             pushing = Running(physique, start, heights, balls, floor, gravity)
@@ -120,12 +130,31 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             change = lacks - before
             relaxed = min(max(-relaxed * (before @ change) / max(change @ change, 1e-12), LEAST_STEP), 1.0)
         guess = guess + relaxed * lacks
-    low, leave, passing, wind_up, dip, strong = found
+    low, leave, passing, wind_up, dip, strong, pressed = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
+    lands = _stride(start, velocity, flight, gravity, size)
+    keys = _folded(_tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked), lands)
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
-                push(leave - low, passing, velocity, gravity) if rises else None, middle, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, _tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked))
+                push(leave - low, passing, velocity, gravity) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
+                start.heading, start.single is not None, low_arms, lands, keys)
+
+
+def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
+    """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
+    if start.single is None or np.linalg.norm(velocity * FLAT) < STRIDES[0] * np.sqrt(size):
+        return None
+    return 1 - start.single if -(velocity + gravity * flight)[1] < STRIDES[1] * np.sqrt(size) else None
+
+
+def _folded(keys: np.ndarray, lands: int | None) -> np.ndarray:
+    """The same keys (ROWS, COLUMNS), the leg on which it does not land, if any, drawn up more, lest its toes touch the floor."""
+    if lands is not None:
+        keys = keys.copy()
+        free = slice(LEGS + EACH * (1 - lands), LEGS + EACH * (1 - lands) + 2)
+        keys[3 * BETWEEN - len(FOLDS) + 1:3 * BETWEEN + 1, free] += FOLDS
+        keys[3 * BETWEEN + 1:, free] += FOLDS[-1]
+    return keys
 
 
 def _low(keys: np.ndarray, low_arms: bool) -> np.ndarray:

@@ -30,6 +30,10 @@ SHORTEST_PUSH = 0.08
 HURRY, SLOW = 0.8, 0.25
 """Who walks falls ahead already and winds up in so much less time, for each m/s; who is slower than the second [m/s] may take
 longer."""
+FROM_REST, READY = 0.34, 0.05
+"""A wind-up from a stand takes so long [s] beside what it sinks; from the crouch, in which one has waited, the force rises in the second."""
+HEELS = 0.9
+"""Who waits in the crouch begins to push from behind the middle of the soles by this share of how far they can press, to leap ahead."""
 STILL = 0.05
 """A body that rises or sinks slower stands [m/s]."""
 DROPS, RISES = 7.2, 18.0
@@ -56,7 +60,7 @@ SOONER, TIMES = 0.85, 5
 
 class TakeOff(NamedTuple):
     """Lowest point and take-off of the centre of mass (3,) [m], its velocity (3,) [m/s] at the lowest point, the time until
-    there [s] and how much of that it goes down, and whether the muscles are strong enough."""
+    there [s] and how much of that it goes down, whether the muscles are strong enough, and where (3,) the push begins to press."""
 
     low: np.ndarray
     leave: np.ndarray
@@ -64,6 +68,7 @@ class TakeOff(NamedTuple):
     wind_up: float
     dip: float
     strong: bool
+    pressed: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,13 +116,20 @@ class Standing:
         sinks = max(float(start.centre[1]) - self.floor - low_height, 0.0)
         least = math.sqrt(DROPS * sinks / g)  # nobody is pulled down
         pace = float(np.linalg.norm(start.velocity * FLAT))
-        quick = max((0.34 + 0.9 * math.sqrt(sinks / max(g, 3.0))) / (1.0 + HURRY * pace), least)
+        sinking = 0.9 * math.sqrt(sinks / max(g, 3.0))
+        usual = quick = max((FROM_REST + sinking) / (1.0 + HURRY * pace), least)
+        if start.ready:  # as far down as it is
+            quick = max(READY + (FROM_REST - READY) * min(sinks / deep, 1.0) + sinking, least)
 
         rate = math.sqrt(g / self.heights.stand)
-        fixed = (duration, early, late, rate, start.centre, start.velocity, self.middle, toes, land, flight)
+        pressed = self.middle
+        if start.ready:  # who waits leaning ahead pushes from the heels at first
+            flat = (land - leave) * FLAT
+            pressed = pressed - HEELS * self.reach * flat / max(float(np.linalg.norm(flat)), 0.3 * size)
+        fixed = (duration, early, late, rate, start.centre, start.velocity, pressed, toes, land, flight)
         found = np.empty((4, 3))
-        longest = quick if pace >= SLOW else MOST * max(math.sqrt(9.81 / g), 1.0) * quick
-        wind_up = waiting_kernel(quick, longest, self.reach, fixed, found)
+        longest = quick if pace >= SLOW and not start.ready else MOST * max(math.sqrt(9.81 / g), 1.0) * usual
+        wind_up = waiting_kernel(quick, longest, self.reach, self.middle, fixed, found)
         low, ahead, passing, _ = found
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
@@ -128,7 +140,7 @@ class Standing:
         dip = math.inf
         if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
             dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
-        return TakeOff(low, leave, passing, wind_up, dip, strong)
+        return TakeOff(low, leave, passing, wind_up, dip, strong, pressed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +197,7 @@ class Running:
         leave = low + mean * (contact - yielding)
         leave[1] = self._top(contact * speed + behind) + min(above(yielding, contact), SLACK * self.physique.size)
         low[1] = leave[1] - rise
-        return TakeOff(low, leave, passing, yielding, math.inf, True)
+        return TakeOff(low, leave, passing, yielding, math.inf, True, self.ball)
 
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""
@@ -193,10 +205,9 @@ class Running:
 
 
 @kernel
-def waiting_kernel(quick, longest, reach, fixed, found):
+def waiting_kernel(quick, longest, reach, middle, fixed, found):
     """How long [s] a body falls ahead before it pushes: `quick`, or longer, if it would have to press farther than `reach` [m]
-    from the middle of its soles. fixed, found: as `fall_kernel` takes and writes them."""
-    middle = fixed[6]
+    from the middle (3,) of its soles. fixed, found: as `fall_kernel` takes and writes them."""
     if _short(quick, middle, fixed, found) <= reach or longest <= quick:
         return quick
     if _short(longest, middle, fixed, found) > reach:
@@ -224,11 +235,11 @@ def fall_kernel(wind_up, fixed, found):
     """The fall of `wind_up` seconds that ends in a push, to be at `land` (3,) after `flight` [s].
 
     fixed: the push's duration [s]; early, late: [1/s] the speed that it gives for each metre that the body is ahead of what it
-    presses, as it begins and as it ends; rate: [1/s] of a pendulum of that height; centre, velocity: (3,) of the start; middle:
-    (3,) of the soles; toes, land: (3,); flight. found: (4, 3) written: where the body is lowest and where it leaves,
+    presses, as it begins and as it ends; rate: [1/s] of a pendulum of that height; centre, velocity: (3,) of the start; pressed:
+    (3,) where the push begins; toes, land: (3,); flight. found: (4, 3) written: where the body is lowest and where it leaves,
     the velocity with which it is lowest, and where it presses until then. Heights are not told.
     """
-    duration, early, late, rate, centre, velocity, middle, toes, land, flight = fixed
+    duration, early, late, rate, centre, velocity, pressed, toes, land, flight = fixed
     m0, m1, m2 = MOMENTS
     falls = rate / math.tanh(0.5 * rate * wind_up)  # a pendulum's speed for each metre that it has fallen
     swing = rate * wind_up
@@ -238,8 +249,8 @@ def fall_kernel(wind_up, fixed, found):
     d = duration * late * (m1 - m2) - 1.0
     for i in range(3):
         begun = falls * centre[i] + velocity[i]
-        gains = land[i] / flight + begun + early * (m0 - m1) * middle[i] + late * m1 * toes[i]
-        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * middle[i] + late * (m1 - m2) * toes[i])
+        gains = land[i] / flight + begun + early * (m0 - m1) * pressed[i] + late * m1 * toes[i]
+        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * pressed[i] + late * (m1 - m2) * toes[i])
         low = (d * gains - b * goes) / (a * d - b * c)
         fallen = (low - centre[i] - velocity[i] * math.sinh(swing) / rate) / (math.cosh(swing) - 1.0)
         found[0, i], found[1, i] = low, (a * goes - c * gains) / (a * d - b * c)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from ..body import Skeleton, centre_of_mass, end_positions, forward_kinematics, sole_corners
-from ..navigation import gap
-from .body import Physique
-from .motion import Plan
+from ...body import Skeleton, centre_of_mass, end_positions, forward_kinematics, sole_corners
+from ...navigation import gap
+from ..body import Physique
+from ..motion import Plan
 
 RATE = 72.0
 """So many poses a second are looked at, and half-way between them."""
@@ -37,23 +37,12 @@ def _bones(skeleton: Skeleton) -> tuple[tuple[str, int, int, bool, float], ...]:
     return tuple(out)
 
 
-class Touch(NamedTuple):
-    """Which part of a body would hit something, when in its plan [s] and how far from where that part begins [m]."""
-
-    part: str
-    time: float
-    ahead: float
-
-    def __str__(self) -> str:
-        return f"its {self.part} would hit something {self.ahead:.1f} m ahead"
-
-
-def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | None:
-    """What a body would hit in a plan, where it would lie deepest in it; None if nothing. What it touches as it begins, it may touch as
-    much all along."""
+def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
+    """What a body would hit in a plan, in words, where it would lie deepest in it; "" if nothing. What it touches as it begins, it may touch
+    as much all along."""
     things = [thing for thing in around if not hasattr(thing, "place")]
     if not things:
-        return None
+        return ""
     last = min(made.duration, made.through)
     chosen = np.unique(np.searchsorted(made.times, np.arange(0.0, last, 1.0 / RATE)))
     chosen = chosen[chosen < len(made.times)]
@@ -62,7 +51,7 @@ def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | No
     centre = centre_of_mass(physique.anatomy, positions, turned)
     things = [thing for thing in things if gap(centre, thing).min() < NEAR * size]
     if not things:
-        return None
+        return ""
     ends = end_positions(skeleton, positions, turned)
     parts = [("feet", sole_corners(skeleton, positions, turned), 0.0)]
     for part, first, second, end, radius in _bones(skeleton):
@@ -81,5 +70,5 @@ def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | No
             moment, place = np.unravel_index(int(deep.argmax()), deep.shape)
             part = parts[int(np.searchsorted(np.cumsum(widths), place, "right"))][0]
             ahead = float(np.linalg.norm((every[moment, place] - every[0, place])[[0, 2]]))
-            return Touch(part, float(made.times[chosen[(moment + 1) // 2]]), ahead)
-    return None
+            return f"its {part} would hit something {ahead:.1f} m ahead"
+    return ""

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
-from ..contract import Unable
-from ..navigation import gap
-from .body import FLAT, Physique, along, measures, carriage, turns
-from .motion import Path, Plan, Push
-from .muscles import strongest
-from .prior import BETWEEN, LEGS
+from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
+from ...contract import Unable
+from ...navigation import gap
+from ..body import FLAT, Physique, along, measures, carriage, turns
+from ..motion import Path, Plan, Push
+from ..muscles import strongest
+from ..prior import BETWEEN, LEGS
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""

@@ -1,0 +1,163 @@
+"""What a jumper can reach: a plan that touches nothing, or why there is none, and the nearest place to which there is one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...navigation import floor_at, gap
+from ..body import FLAT, Physique, Start, landing_feet, soles
+from ..motion import Path, Plan, path
+from ..planner import plan
+from ..prior import Prior
+from .feasibility import fault, wrong
+from .sweep import touches
+
+HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
+"""What the airtime is multiplied by until the arc clears what stands in its way."""
+WAYS = (False, False), (False, True), (True, True)
+"""With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
+BACK = 1.0, 0.85, 0.6
+"""A place that is offered instead of another is planned, too: if something would be touched there, less far on the way."""
+KEPT = 32
+"""So many plans are known for a while: who asks whether a leap can be made makes it soon."""
+TRIES = 3
+"""With so many plans at most: who was refused shall not wait for the reason."""
+CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
+"""For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
+FLUSH = 0.03
+"""A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
+
+
+class Reach:
+    """Looks for jumps of one body under one gravity.
+
+    physique: whose body. gravity: (3,) [m/s²], straight down. prior: how people carry themselves.
+    """
+
+    def __init__(self, physique: Physique, gravity: np.ndarray, prior: Prior):
+        self.physique, self.gravity, self.prior = physique, gravity, prior
+        self._lately: tuple[tuple[Any, Sequence[Any], tuple[Plan | None, str]], ...] = ()
+
+    def attempt(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
+                around: Sequence[Any], tries: int | None = None) -> tuple[Plan | None, str]:
+        """A plan that touches nothing, or None and why there is none. Where something is in the way of its limbs, they are drawn up, or
+        it jumps higher. tries: so many plans at most. What was asked just now is not planned again."""
+        asked = (*(part if part is None or isinstance(part, float | int) else part.tobytes() for part in vars(start).values()),
+                 place.tobytes(), floor, airtime, tries)
+        for known, things, made in self._lately:
+            if known == asked and (things is around or list(things) == list(around)):
+                return made
+        made = self._planned(start, place, floor, airtime, around, tries)
+        self._lately = (*self._lately[1 - KEPT:], (asked, around, made))
+        return made
+
+    def _planned(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
+                 around: Sequence[Any], tries: int | None) -> tuple[Plan | None, str]:
+        """What `attempt` gives, planned."""
+        why = self.footing(start, place, floor, around)
+        if why:
+            return None, why
+        told, count = "", 0
+        for way, why in self.arcs(start, place, floor, airtime, around):
+            if not why:
+                made, count = plan(self.physique, start, way, place, floor), count + 1
+                why = wrong(self.physique, made) or touches(self.physique, made, around)
+                if not why:
+                    return made, ""
+            told = told or why
+            if count == tries:
+                break
+        return None, told
+
+    def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
+               around: Sequence[Any] = ()) -> tuple[Path, str]:
+        """The path to a place (3,) off a floor [m], and why it can't be gone, if so: a look at the place, then `arcs`; nothing is planned."""
+        why = self.footing(start, place, floor, around)
+        if why:
+            return self.path(start, place, floor, airtime), why
+        first = None
+        for way, why in self.arcs(start, place, floor, airtime, around):
+            first = first or (way, why)
+            if not why:
+                return way, ""
+        assert first is not None  # there is always one
+        return first
+
+    def footing(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> str:
+        """Why nobody can stand at a place (3,), if so."""
+        around = [thing for thing in around if not hasattr(thing, "place")]
+        if any(gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0 for thing in around):
+            return "that place is inside something solid"
+        below = floor_at(place[0], place[2], around, place[1] + FLUSH)
+        if around and below < place[1] - FLUSH:
+            return f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m"
+        body = self.physique.tables
+        corners = soles(landing_feet(place, start.heading, body), body)
+        if around and min(floor_at(x, z, around, place[1] + FLUSH) for x, _, z in corners) < place[1] - FLUSH:
+            return "too near an edge: only part of its feet would find floor"
+        return ""
+
+    def arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
+             around: Sequence[Any] = ()) -> Iterator[tuple[Path, str]]:
+        """The paths to a place, and why each can't be gone, if so: the usual one first; where something stands about then with the legs
+        drawn up and the arms down and, without an airtime, higher."""
+        first = None
+        for higher in HEIGHTS:
+            flight = airtime if first is None else first.airtime * higher
+            for low, tucked in WAYS if len(around) else WAYS[:1]:
+                if first is not None and higher > 1.0 and not tucked:
+                    continue
+                way = self.path(start, place, floor, flight, low, tucked)
+                first = first or way
+                yield way, fault(self.physique, way, around, floor)
+                if not way.strong:
+                    return
+            if airtime is not None or not len(around):
+                return
+
+    def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
+                around: Sequence[Any] = ()) -> np.ndarray | None:
+        """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from one that takes
+        no effort: where it stands, or where a run would carry the body. None if that can't be reached either."""
+        here = self.middle(start, floor)
+
+        def reached(there: np.ndarray) -> bool:
+            if len(around):
+                there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
+            return not self.survey(start, there, floor, airtime, around)[1]
+        run = start.velocity * FLAT * np.sqrt(9.81 * self.physique.size / -self.gravity[1])
+        easy = here + np.array([[0.0]] if start.single is None else CARRIED) * run
+        found = next((there for there in easy if reached(there)), None)
+        if found is None:
+            return None
+        low, high, begun = 0.0, 1.0, found.copy()
+        for _ in range(7):
+            middle = 0.5 * (low + high)
+            there = begun + middle * (place - begun)
+            if reached(there):
+                low, found = middle, there
+            else:
+                high = middle
+        for share in BACK:
+            there = begun + share * (found - begun)
+            there[1] = found[1] if not len(around) else floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
+            if self.attempt(start, there, floor, airtime, around, TRIES)[0] is not None:
+                return there
+        return None
+
+    def middle(self, start: Start, floor: float) -> np.ndarray:
+        """The middle (3,) of both soles as they come to stand on a floor [m]: where a jump straight up lands."""
+        body = self.physique.tables
+        return soles(start.planted(floor, body), body).mean(0) * FLAT + [0.0, floor, 0.0]
+
+    def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, low_arms: bool = False,
+             tucked: bool = False) -> Path:
+        """The path estimate alone: the arc to draw while aiming."""
+        body = self.physique.tables
+        feet = start.planted(floor, body)
+        pushing = feet if start.single is None else feet[start.single:start.single + 1]
+        return path(self.physique, start, pushing, landing_feet(place, start.heading, body), floor,
+                    self.gravity, airtime, low_arms, self.prior, tucked)

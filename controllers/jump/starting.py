@@ -1,0 +1,66 @@
+"""From where a jump starts: what it needs to know of a state, and whether it can start at this moment."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
+from ..contract import CharacterState
+from .body import FLAT, Physique, Start, vectors
+
+RUNNING = 1.2
+"""Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
+FRESH = -0.06
+"""A foot has just struck while the body is no further than this past it [m]: still behind it."""
+UP = 0.06
+"""A foot higher than this over the floor is in the air [m]."""
+
+
+def start_of(physique: Physique, state: CharacterState, crouched: bool = False) -> Start:
+    """What a jump of a body needs to know of a state. crouched: whether it crouches already."""
+    skeleton, masses = physique.skeleton, physique.anatomy
+    pose = Pose(np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))
+    positions, turned = forward_kinematics(skeleton, pose.root, pose.rotations)
+    centre = centre_of_mass(masses, positions, turned)
+    velocity, rates, feet_rates = np.zeros(3), np.zeros((len(skeleton), 3)), np.zeros((2, 5))
+    feet = _feet(skeleton, positions, turned)
+    if state.previous is not None and state.elapsed > 0.0:
+        before = forward_kinematics(skeleton, np.asarray(state.previous.root, float), np.asarray(state.previous.rotations, float))
+        velocity = (centre - centre_of_mass(masses, *before)) / state.elapsed
+        moved = feet - _feet(skeleton, *before)
+        moved[:, 3:] = wrap(moved[:, 3:])
+        standing = np.any(np.asarray(state.contacts).reshape(2, 2), axis=1)
+        feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
+        rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
+    return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]), feet_rates, _single(state), crouched)
+
+
+def ready(physique: Physique, state: CharacterState) -> bool:
+    """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
+    start = start_of(physique, state)
+    low = start.feet[:, 1] - float(state.floor) < physique.tables.sole + UP * physique.size
+    if np.hypot(start.velocity[0], start.velocity[2]) < RUNNING:
+        return bool(low.any())
+    if start.single is None:
+        return False
+    towards = start.velocity * FLAT / np.hypot(start.velocity[0], start.velocity[2])
+    return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
+
+
+def _feet(skeleton: Skeleton, positions: np.ndarray, turned: np.ndarray) -> np.ndarray:
+    """The feet (2, 5) of a placed body: balls, yaw, pitch."""
+    feet = np.zeros((2, 5))
+    for side, name in enumerate(("Left", "Right")):
+        foot = turned[skeleton.index(name + "Foot")]
+        feet[side, :3] = positions[skeleton.index(name + "Toe")]
+        feet[side, 3] = np.arctan2(foot[0, 2], foot[2, 2])
+        feet[side, 4] = np.arcsin(np.clip(-foot[1, 2], -1.0, 1.0))
+    return feet
+
+
+def _single(state: CharacterState) -> int | None:
+    """The foot that pushes a runner off: the one that stands, if the other is in the air."""
+    if np.hypot(state.velocity[0], state.velocity[2]) < RUNNING:
+        return None
+    standing = np.asarray(state.contacts).reshape(2, 2).any(1)
+    return int(np.argmax(standing)) if standing.sum() == 1 else None

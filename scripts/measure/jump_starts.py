@@ -1,0 +1,115 @@
+"""Measure how a jump begins and goes on in play: from letting go to the air, and over the ring in a run.
+
+    python scripts/measure/jump_starts.py [--targets 100] [--phases 8] [--seed 0]
+
+Somebody stands, aims at random targets for a while and lets go. Runners of many speeds aim as one plays, let go at many moments of
+their strides, leap over the ring and run on. Everything is told from the poses that are played.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from dataclasses import replace
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
+import numpy as np
+
+from jump_trials import FPS
+
+from gambol.controllers.contract import CharacterState, Intent, Leap
+from gambol.controllers.jump import Jumping
+from gambol.controllers.locomotion import Locomotion, Settings
+from gambol.controllers.person import person
+from gambol.controllers.supervisor import Supervisor
+from gambol.game.input import Aim, Wish
+
+AIMED = 1.2
+"""So long one aims before one lets go [s]."""
+PATIENCE = 0.9
+"""So long a jump that was asked waits, in play [s]."""
+SPEEDS = 2.2, 2.6, 3.0, 3.4
+
+
+def led(someone: Supervisor, state: CharacterState, intent: Intent, seconds: float) -> CharacterState:
+    """Somebody who is told the same for so long [s]."""
+    for _ in range(round(seconds * FPS)):
+        state, _ = someone.step(state, intent, 1 / FPS)
+    return state
+
+
+def report_release(someone: Supervisor, targets: int, rng: np.random.Generator) -> None:
+    """From letting go to the air, for who aimed before and who did not."""
+    rest, jump = led(someone, someone.start(), Intent(), 0.5), someone.parts["jump"]
+    took: dict[str, list[float]] = {"after aiming": [], "without": []}
+    missed, refused, fars = [], 0, []
+    for _ in range(targets):
+        far, way, up = rng.uniform(0.0, 1.3), rng.uniform(-0.35, 0.35), rng.random() < 0.2
+        place = np.array([rest.ground[0] + far * np.sin(way), 0.0, rest.ground[1] + far * np.cos(way)])
+        leap = Leap(None, float(rng.uniform(0.42, 0.6))) if up else Leap(place)
+        for how, state in (("after aiming", led(someone, rest, Intent(aim=leap), AIMED)), ("without", rest)):
+            after, _ = someone.step(state, Intent(leap=leap), 1 / FPS)
+            if not isinstance(after.memory.memory, Jumping):
+                refused += 1
+                continue
+            made = after.memory.memory.plan
+            took[how].append(made.take_off)
+            if how == "after aiming":
+                fars.append(0.0 if up else far)
+                if not up:
+                    middle = jump.middle(replace(jump.start_of(someone.active(led(someone, after, Intent(), made.duration))[1]), ready=False), 0.0)
+                    missed.append(float(np.linalg.norm((middle - place)[[0, 2]])))
+    for how, values in took.items():
+        print(f"Standing, {how}: from letting go to the air {np.median(values):.2f} s (median), {np.percentile(values, 95):.2f} (95 %), "
+              f"{max(values):.2f} (worst), of {len(values)}; within 0.25 s {100.0 * np.mean(np.array(values) <= 0.25):.0f} %")
+    for low, high in ((0.0, 0.6), (0.6, 1.0), (1.0, 1.3)):
+        some = [t for t, far in zip(took["after aiming"], fars) if low <= far < high]
+        print(f"  {low:g} … {high:g} m: {np.median(some):.2f} s (median), {max(some):.2f} (worst)")
+    print(f"  feet beside the target: {100.0 * np.median(missed):.1f} cm (median), {100.0 * max(missed):.1f} (worst); refused {refused}")
+
+
+def report_strides(someone: Supervisor, phases: int) -> None:
+    """Runs over the ring and on, let go at many moments of the stride."""
+    print("Running over the ring: of how many, refused; lands on one foot; speed before; least of hips over 0.1 s from before touch-down to 0.6 s "
+          "later, over that: median, worst; waited s (median, longest)")
+    kept_all, refused_all, all_ = [], 0, 0
+    for speed in SPEEDS:
+        wish = np.array([speed, 0.0, 0.0])
+        base = led(someone, someone.start(), Intent(wish), 3.5)
+        single, kept, waits, refused = 0, [], [], 0
+        for k in range(phases):
+            state = led(someone, base, Intent(wish), 0.75 * k / phases)
+            leap, made, way = Aim().step(Wish(jump=True), 0.0, state, False, 1 / FPS).target(state, (), 9.81), None, []
+            for n in range(150):
+                state, pose = someone.step(state, Intent(wish, leap if made is None and n < PATIENCE * FPS else None), 1 / FPS)
+                way.append(float(pose.root[2]))
+                if made is None and isinstance(state.memory.memory, Jumping):
+                    made, begun = state.memory.memory.plan, n
+            if made is None:
+                refused += 1
+                continue
+            pace = (np.array(way)[6:] - np.array(way)[:-6]) * FPS / 6
+            down = begun + int(made.touch_down * FPS)
+            single += made.path.lands is not None
+            waits.append(begun / FPS)
+            kept.append(float(pace[down - 6:down + 36].min()) / speed)
+        kept_all, refused_all, all_ = kept_all + kept, refused_all + refused, all_ + phases
+        print(f"  {speed:g} m/s: {phases}, {refused}; {single}; {100.0 * np.median(kept):.0f} %, {100.0 * min(kept):.0f} %; {np.median(waits):.2f}, {max(waits):.2f}")
+    print(f"  all: refused {refused_all} of {all_}; at least 80 % of the speed kept in {100.0 * np.mean(np.array(kept_all) >= 0.8):.0f} %")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--targets", type=int, default=100)
+    parser.add_argument("--phases", type=int, default=14)
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    if given.targets < 10 or given.phases < 1:
+        parser.error("--targets must be 10 or more, --phases 1 or more")
+    someone = person(Locomotion.load(settings=Settings(idle=0.0)))
+    report_release(someone, given.targets, np.random.default_rng(given.seed))
+    report_strides(someone, given.phases)
+
+
+if __name__ == "__main__":
+    main()

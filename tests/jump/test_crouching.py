@@ -1,0 +1,119 @@
+"""Who aims crouches: down by its springs, still as long as it waits, off at once when it is told, up again when it is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import contact_points, forward_kinematics
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Crouching, Jump, Jumping, Physique
+from gambol.controllers.supervisor import Supervisor
+
+from conftest import ahead
+
+FPS = 60
+
+
+@pytest.fixture(scope="module")
+def person(locomotion, jump):
+    return Supervisor({"locomotion": locomotion, "jump": jump})
+
+
+def led(person, intents, state=None):
+    """The states of somebody who is told so, one for each intent."""
+    state, states = person.start() if state is None else state, []
+    for intent in intents:
+        state, _ = person.step(state, intent, 1 / FPS)
+        states.append(state)
+    return states
+
+
+@pytest.fixture(scope="module")
+def waiting(person):
+    """Standing, then aiming a metre ahead for a second."""
+    leap = Leap(ahead(person.start(), 1.0))
+    return leap, led(person, [Intent()] * 10 + [Intent(aim=leap)] * 70)
+
+
+def centres(jump, states):
+    return np.array([jump.start_of(person_state(s)).centre for s in states])
+
+
+def person_state(state):
+    return replace(state, memory=state.memory.memory)
+
+
+def test_who_aims_goes_down_and_waits_there(jump, waiting):
+    """With no step in its force, nor ever pulled; both feet stay."""
+    _, states = waiting
+    assert all(isinstance(s.memory.memory, Crouching) for s in states[12:])
+    height = centres(jump, states)[:, 1]
+    assert 0.08 < height[0] - height[-1] < 0.35 and np.abs(np.diff(height[-8:])).max() < 5e-4
+    bends = np.diff(height[9:], 2) * FPS**2
+    assert bends.min() > -0.9 * 9.81 and np.abs(np.diff(bends)).max() < 4.0
+    feet = np.array([contact_points(jump.skeleton, *forward_kinematics(jump.skeleton, s.pose.root.astype(float), s.pose.rotations.astype(float)))
+                     for s in states[20:]])
+    assert np.abs(feet - feet[-1])[..., [0, 2]].max() < 0.003 and states[-1].contacts.all()
+
+
+def test_told_it_is_off_at_once_and_lands_where_it_should(person, waiting):
+    leap, states = waiting
+    after = led(person, [Intent(leap=leap)] + [Intent()] * 110, states[-1])
+    made = after[0].memory.memory.plan
+    usual = person.parts["jump"].plan(person_state(states[5]), Intent(leap=leap))
+    assert made.take_off < 0.33 < 0.6 < usual.take_off
+    assert np.linalg.norm(made.feet[:, [0, 2]].mean(0) - usual.feet[:, [0, 2]].mean(0)) < 1e-6
+    shown = made.at(0.0)
+    assert np.abs(shown.root - states[-1].pose.root).max() < 2e-3 and np.abs(shown.rotations - states[-1].pose.rotations).max() < 0.02
+
+
+def test_it_stands_up_if_nothing_comes_of_it_and_walks_at_once_if_it_shall(person, waiting):
+    _, states = waiting
+    up = led(person, [Intent()] * 120, states[-1])
+    assert up[-1].active == "locomotion" and up[5].active == "jump"
+    heights = np.array([s.pose.root[1] for s in up])
+    assert heights[-1] == pytest.approx(float(states[0].pose.root[1]), abs=0.01) and np.abs(np.diff(heights)).max() < 0.02
+    assert led(person, [Intent(np.array([1.0, 0.0, 0.0]))] * 2, states[-1])[-1].active == "locomotion"
+
+
+def test_the_crouch_follows_the_aim(jump, person, waiting):
+    """Deeper for what takes more, leaning to where it goes, without a jump of speed."""
+    _, states = waiting
+    here = jump.middle(jump.start_of(person_state(states[-1])), 0.0)
+    farther = led(person, [Intent(aim=Leap(here + [0.0, 0.0, 1.5]))] * 60, states[-1])
+    high = led(person, [Intent(aim=Leap(None, 0.5))] * 60, states[-1])
+    now, far, up = centres(jump, [states[-1], farther[-1], high[-1]])
+    assert far[1] < now[1] - 0.03 and up[1] < now[1] - 0.03 and up[2] < now[2] - 0.03
+    assert np.abs(np.diff(centres(jump, states[-1:] + farther), 2, axis=0)).max() < 0.003
+
+
+def test_what_can_t_be_is_told_once_and_waits_on(person, waiting, monkeypatch):
+    _, states = waiting
+    planned, plan = [], Jump.plan
+    monkeypatch.setattr(Jump, "plan", lambda *given: planned.append(1) or plan(*given))
+    far = Leap(np.array([0.0, 0.0, 9.0]))
+    after = led(person, [Intent(leap=far)] * 20, states[-1])
+    assert "too far" in after[-1].refused and isinstance(after[-1].memory.memory, Crouching) and len(planned) == 1
+    assert led(person, [Intent(aim=far)] * 3, after[-1])[-1].refused == ""
+
+
+def test_weaker_bodies_crouch_deeper_for_the_same(locomotion):
+    """So deep that the spring muscles can."""
+    depth = []
+    for strength in (0.85, 1.3):
+        someone = Supervisor({"locomotion": locomotion, "jump": Jump(Physique(strength=strength))})
+        states = led(someone, [Intent()] * 10 + [Intent(aim=Leap(None, 0.45))] * 70)
+        depth.append(float(states[0].pose.root[1] - states[-1].pose.root[1]))
+    assert depth[0] > depth[1] + 0.05
+
+
+def test_it_is_the_same_to_the_bit_and_any_aim_is_borne(person, waiting):
+    leap, states = waiting
+    again = led(person, [Intent(aim=leap)] * 5, states[40])
+    assert all(np.array_equal(a.pose.rotations, b.pose.rotations) and np.array_equal(a.pose.root, b.pose.root)
+               for a, b in zip(again, states[41:46]))
+    for place in (np.full(3, np.nan), np.zeros(2), np.array([0.0, 90.0, 1e4])):
+        after = led(person, [Intent(aim=Leap(place))] * 30, states[-1])
+        assert np.isfinite(after[-1].pose.root).all() and np.isfinite(after[-1].pose.rotations).all()
+    assert isinstance(led(person, [Intent(leap=leap)], states[-1])[0].memory.memory, Jumping)

@@ -1,0 +1,83 @@
+"""A runner's leap lands on the other foot and runs on from there, whenever it is asked for."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import contact_points, forward_kinematics, sole_corners
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Jumping
+from gambol.controllers.supervisor import Supervisor
+
+FPS = 60
+PACE = 3.0
+RING = 2.4
+"""So far ahead [m] who runs lets go of it; nearer, the moments at which it would brake most keep less of the speed."""
+WISH = np.array([PACE, 0.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def person(locomotion, jump):
+    return Supervisor({"locomotion": locomotion, "jump": jump})
+
+
+@pytest.fixture(scope="module")
+def runner(person):
+    state = person.start()
+    for _ in range(200):
+        state, _ = person.step(state, Intent(WISH), 1 / FPS)
+    return state
+
+
+@pytest.fixture(scope="module", params=[0, 8, 15, 22, 30, 37])
+def played(request, person, runner):
+    """The states of a run over the ring, asked for so many steps later, and the plan."""
+    state, made, states = runner, None, []
+    for _ in range(request.param):
+        state, _ = person.step(state, Intent(WISH), 1 / FPS)
+    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + RING]))
+    for _ in range(110):
+        state, _ = person.step(state, Intent(WISH, leap if made is None else None), 1 / FPS)
+        if made is None and isinstance(state.memory.memory, Jumping):
+            made = state.memory.memory.plan
+        states.append(state)
+    assert made is not None, state.refused
+    return made, states
+
+
+def landed(made, states):
+    """When it comes down, by steps."""
+    first = next(k for k, s in enumerate(states) if s.active == "jump")
+    return first + int(np.ceil(made.touch_down * FPS))
+
+
+def test_it_lands_on_the_other_foot_and_goes_on_with_the_next(played):
+    made, states = played
+    down = landed(made, states)
+    on = np.array([s.contacts.reshape(2, 2).any(1) for s in states])
+    side = made.path.lands
+    assert side is not None and on[down, side] and not on[down, 1 - side]
+    off = down + int(np.argmin(on[down:, side]))
+    assert 0.06 < (off - down) / FPS < 0.3 and not on[down:off, 1 - side].any(), "one stance"
+    after = on[off:off + 24]
+    assert after[:, 1 - side].any() and not after[:int(after[:, 1 - side].argmax()), side].any(), "then the other foot"
+
+
+def test_it_keeps_its_speed(played):
+    made, states = played
+    down = landed(made, states)
+    way = np.array([s.pose.root[2] for s in states])
+    pace = (way[6:] - way[:-6]) * FPS / 6
+    assert pace[down - 6:down + 36].min() > 0.78 * PACE
+
+
+def test_the_foot_stays_where_it_comes_down_and_no_hip_sinks_through_the_stride(jump, played):
+    made, states = played
+    down, side = landed(made, states), made.path.lands
+    end = down + int(np.argmin([s.contacts.reshape(2, 2)[side].any() for s in states[down:]]))
+    placed = [forward_kinematics(jump.skeleton, s.pose.root.astype(float), s.pose.rotations.astype(float)) for s in states[down:end + 30]]
+    balls = np.array([contact_points(jump.skeleton, *one).reshape(2, 2, 3)[side, 1] for one in placed[:end - down]])
+    assert np.linalg.norm(balls[:, [0, 2]] - balls[0, [0, 2]], axis=1).max() < 0.025
+    assert np.linalg.norm(balls[0, [0, 2]] - made.feet[side, [0, 2]]) < 0.02
+    assert min(sole_corners(jump.skeleton, *one)[..., 1].min() for one in placed) > -0.015
+    heights = np.array([one[0][0, 1] for one in placed])
+    assert heights.min() > 0.78 and np.abs(np.diff(heights, 2)).max() < 0.02
