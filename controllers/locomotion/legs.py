@@ -13,7 +13,9 @@ REACH = 0.999
 SOFTNESS = 0.0045
 """Legs slow down over about this length before they are straight [m]."""
 HEEL_RISE = 0.9
-"""The most that a heel may rise about the ball to give a leg length [rad]."""
+"""The most that a heel may rise about the ball to give a leg length [rad] …"""
+NEAREST = 0.95
+"""… and how far, as a cosine from 1 on, to where the ankle is nearest to its hip."""
 
 
 @kernel
@@ -126,38 +128,20 @@ def soft_reach(distance, reach):
 def heel_rise_kernel(hip, ball, ankle, axis, reach):
     """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
 
-    Zero if it is; at most HEEL_RISE. Bisection: the distance falls as the heel rises.
+    Zero if it is, or if a rising heel would only lead it away; at most HEEL_RISE, and not quite where it is nearest, which
+    it would come to infinitely fast. The square of the distance goes as c + p cos θ + q sin θ.
     """
-    low, high = 0.0, HEEL_RISE
-    if _ankle_distance(hip, ball, ankle, axis, 0.0) <= reach:
-        return 0.0
-    if _ankle_distance(hip, ball, ankle, axis, high) > reach:
-        best, least = 0.0, 1e9
-        for n in range(10):
-            d = _ankle_distance(hip, ball, ankle, axis, n * HEEL_RISE / 9.0)
-            if d < least:
-                best, least = n * HEEL_RISE / 9.0, d
-        if least > reach:
-            return best
-        high = best
-    for _ in range(14):
-        middle = 0.5 * (low + high)
-        if _ankle_distance(hip, ball, ankle, axis, middle) > reach:
-            low = middle
-        else:
-            high = middle
-    return high
-
-
-@kernel
-def _ankle_distance(hip, ball, ankle, axis, angle):
-    c, s = math.cos(angle), math.sin(angle)
     x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
-    dot = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - c)
-    px = ball[0] + c * x + s * (axis[1] * z - axis[2] * y) + dot * axis[0] - hip[0]
-    py = ball[1] + c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1] - hip[1]
-    pz = ball[2] + c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2] - hip[2]
-    return math.sqrt(px * px + py * py + pz * pz)
+    u, v, w = ball[0] - hip[0], ball[1] - hip[1], ball[2] - hip[2]
+    along = axis[0] * x + axis[1] * y + axis[2] * z
+    still = (axis[0] * u + axis[1] * v + axis[2] * w) * along
+    p = 2.0 * (u * x + v * y + w * z - still)
+    q = 2.0 * (u * (axis[1] * z - axis[2] * y) + v * (axis[2] * x - axis[0] * z) + w * (axis[0] * y - axis[1] * x))
+    c = u * u + v * v + w * w + x * x + y * y + z * z + 2.0 * still
+    if c + p <= reach * reach or q >= 0.0:
+        return 0.0
+    cosine = max((reach * reach - c) / math.hypot(p, q), -NEAREST)
+    return min(max(math.atan2(q, p) + math.acos(min(cosine, 1.0)), 0.0), HEEL_RISE)
 
 
 @kernel
