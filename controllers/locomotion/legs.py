@@ -1,4 +1,4 @@
-"""Legs: small rigid-body kernels that bend a leg, lift a heel, turn a foot and bend a toe."""
+"""Legs: small rigid-body kernels that bend a leg, turn a foot and bend a toe."""
 
 from __future__ import annotations
 
@@ -12,10 +12,6 @@ REACH = 0.999
 """Legs straighten to this share of their length, and those that must give way a little earlier."""
 SOFTNESS = 0.0045
 """Legs slow down over about this length before they are straight [m]."""
-HEEL_RISE = 0.9
-"""The most that a heel may rise about the ball to give a leg length [rad] …"""
-NEAREST = 0.95
-"""… and how far, as a cosine from 1 on, to where the ankle is nearest to its hip."""
 
 
 @kernel
@@ -122,26 +118,6 @@ def soft_reach(distance, reach):
     A knee's angle changes infinitely fast where its leg runs into a hard limit.
     """
     return distance - SOFTNESS * math.log1p(math.exp((distance - reach) / SOFTNESS))
-
-
-@kernel
-def heel_rise_kernel(hip, ball, ankle, axis, reach):
-    """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
-
-    Zero if it is, or if a rising heel would only lead it away; at most HEEL_RISE, and not quite where it is nearest, which
-    it would come to infinitely fast. The square of the distance goes as c + p cos θ + q sin θ.
-    """
-    x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
-    u, v, w = ball[0] - hip[0], ball[1] - hip[1], ball[2] - hip[2]
-    along = axis[0] * x + axis[1] * y + axis[2] * z
-    still = (axis[0] * u + axis[1] * v + axis[2] * w) * along
-    p = 2.0 * (u * x + v * y + w * z - still)
-    q = 2.0 * (u * (axis[1] * z - axis[2] * y) + v * (axis[2] * x - axis[0] * z) + w * (axis[0] * y - axis[1] * x))
-    c = u * u + v * v + w * w + x * x + y * y + z * z + 2.0 * still
-    if c + p <= reach * reach or q >= 0.0:
-        return 0.0
-    cosine = max((reach * reach - c) / math.hypot(p, q), -NEAREST)
-    return min(max(math.atan2(q, p) + math.acos(min(cosine, 1.0)), 0.0), HEEL_RISE)
 
 
 @kernel
