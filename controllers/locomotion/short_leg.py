@@ -10,6 +10,7 @@ import math
 
 from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
+from .foothold import swing_progress
 from .legs import soft_reach, tilt_kernel
 
 HEEL_RISE = 0.9
@@ -26,8 +27,9 @@ LEND_HALFLIFE = 0.035
 """… and a heel that lets go comes with this one to be free to take what its leg lacks, so that its knee bends as the blend's …"""
 BENT = 0.006
 """… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
-TORN = 0.02
-"""A foot lets go that its leg is this much too short for [m]."""
+TORN, LATE = 0.02, 1.7
+"""A foot lets go that its leg is this much too short for [m], once it stood for long enough for its body to have come down
+to it: this many times as long as a swing after it left."""
 
 
 @kernel
@@ -61,7 +63,8 @@ def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work
             orientations[a, i, k] = turned[i, k]
             ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
     distance = distance_kernel(positions[hip], ankle)
-    if distance > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes: let go before it tears
+    late = swing_progress(m, foot) > LATE
+    if late and distance > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes: let go before it tears
         m.torn[foot] = 1
     if distance > length:
         share = (length + firm * (distance - length)) / distance
