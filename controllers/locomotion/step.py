@@ -87,7 +87,8 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
 @kernel
 def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     """Choose the family, locate the command in its space, low-pass the weights."""
-    switch = m.wanted != m.family and not m.settled and _change(m, table, changes, settings.agility, dt)
+    since = _change(m, table, changes, settings.agility, dt) if m.wanted != m.family and not m.settled else -1.0
+    switch = since >= 0.0
     keep = 2.0 ** (-dt / settings.weight_halflife)
     space = walk if m.family == WALK else run
     for i in range(3):
@@ -113,6 +114,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
         m.weights[i] /= total
     if switch:  # inertialise: what was shown minus what the other family shows now
         m.fade = settings.switch_halflife
+        m.phase = (m.phase - since * _share_of_cycle(m, table, settings.agility, dt)) % 1.0
         series_kernel(table, m.weights, m.phase, fresh)
         for d in range(LABELS_AT):
             m.blend[d] = m.row[d] - fresh[d]
@@ -124,8 +126,8 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
 
 @kernel
 def _change(m, table, changes, agility, dt):
-    """Change to the other family if that may be within dt: at the moment from which on it may be, so that the size of a step
-    does not matter. The phase is the one that leads to the other gait's at that moment."""
+    """Change to the other family, and to its phase, if that may be within dt, at the moment from which on it may be, so that
+    the size of a step does not matter; after which share of the step that is, negative if it may not."""
     whole = _share_of_cycle(m, table, agility, dt)
     for k in range(MOMENTS):
         share = k / MOMENTS
@@ -135,9 +137,9 @@ def _change(m, table, changes, agility, dt):
         common, phase = change_kernel(changes, m.family, (m.phase + share * whole) % 1.0)
         if fits and common:
             m.family = m.wanted
-            m.phase = (phase - share * whole) % 1.0
-            return True
-    return False
+            m.phase = phase
+            return share
+    return -1.0
 
 
 @kernel
