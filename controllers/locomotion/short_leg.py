@@ -48,7 +48,7 @@ def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work
                                                       else LEAVE_HALFLIFE, dt)
     m.lent[foot], m.lent_rate[foot] = spring_kernel(m.lent[foot], m.lent_rate[foot], 1.0 - m.grip[2 * foot], LEND_HALFLIFE, dt)
     bears = min(max(m.bears[foot], 0.0), 1.0)
-    free = bears * m.lent[foot]
+    free = bears * m.lent[foot] * (1.0 - min(m.onset, 1.0))
     asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
     length = soft_reach(asked - free * max(asked - blended, 0.0), reach - free * BENT)
     rise = heel_rise_kernel(positions[hip], ball, ankle, axis, length)
