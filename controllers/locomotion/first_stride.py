@@ -19,8 +19,8 @@ BEFORE, END = 0.12, 1.5
 """A start begins this long before its first toe-off and ends this long after it, in phase."""
 WAITING, PER_CYCLE = 3.0, 6.0
 """Spline coefficients before the first toe-off, and for each cycle after it."""
-SHIFT = 0.21
-"""The weight is shifted in this time [s], less than people take who are in no hurry."""
+SHIFT = 0.16
+"""The weight is shifted in this time [s], half of what people take who are in no hurry."""
 FIRST_PUSH, LEANING = 0.45, 0.05
 """What it pushes at first, of what legs can, and for how much phase after the first toe-off it does not push its most."""
 FASTEST_TURN = 2.2
