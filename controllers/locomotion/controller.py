@@ -105,9 +105,10 @@ class Locomotion(Controller):
                                np.zeros(ground.shape[:-1] + (4,), bool), memory, floor)
         state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)  # finds the pose
         memory = state.memory.copy()
-        memory["grip"], memory["offset"], memory["offset_rate"] = 1.0, 0.0, 0.0
+        memory["grip"], memory["bears"], memory["offset"], memory["offset_rate"] = 1.0, 1.0, 0.0, 0.0
         memory["raised"] = self.tables.legs.height - memory["points"][..., 1]
-        memory["raised_rate"] = 0.0
+        for name in ("raised_rate", "bears_rate", "lent", "lent_rate", "rise", "rise_rate"):
+            memory[name] = 0.0
         state, _ = self.step(replace(state, memory=memory), Intent(np.zeros(3)), 1 / 60)  # and how feet stand in it
         memory = state.memory.copy()
         for name, value in (("breath", 0.0), ("row_rate", 0.0)):

@@ -61,6 +61,7 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     memory["points"] = np.stack([c * aside - s * ahead, points[:, 1], s * aside + c * ahead], -1)
     stands = np.asarray(state.contacts, bool)
     memory["standing"] = memory["grip"] = stands
+    memory["bears"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
     memory["offset"] = memory["offset_rate"] = memory["raised"] = memory["raised_rate"] = 0.0
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)

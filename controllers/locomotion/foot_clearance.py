@@ -18,8 +18,9 @@ WIDTH = 0.09
 """The room that is asked for between the centre lines of two feet side by side [m]; recorded walks have 0.07."""
 SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m] …"""
-HALFLIFE = 0.012
-"""… and follows what is asked with this half-life [s]: a standing foot lets go of where it was without a jump …"""
+HALFLIFE, BACK = 0.012, 0.045
+"""… and follows what is asked with the first half-life [s]: a standing foot lets go of where it was without a jump; it comes
+back with the second …"""
 LEAD = 0.025
 """… so that it looks this far ahead, too [s]."""
 FADE, WIDELY = 0.1, 0.17

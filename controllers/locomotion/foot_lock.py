@@ -15,16 +15,16 @@ import math
 
 import numpy as np
 
-from ..body import distance_kernel, spring_kernel
+from ..body import spring_kernel
 from ..compiled import kernel
-from .foot_clearance import HALFLIFE, aside_kernel
+from .foot_clearance import BACK, HALFLIFE, aside_kernel
 from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
 from .foothold import SWING, swing_progress
 from .kernel import LABELS_AT
-from .legs import (HEEL_RISE, REACH, heel_rise_kernel, leg_kernel, leg_length, localise_kernel, soft_reach, tilt_kernel,
-                   toe_kernel)
+from .legs import REACH, leg_kernel, leg_length, localise_kernel, tilt_kernel, toe_kernel
 from .root_motion import cadence_kernel
+from .short_leg import give_way
 from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
 
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
@@ -51,16 +51,7 @@ PELVIS_HALFLIFE = 0.08
 """The pelvis follows what the legs need with this half-life [s]."""
 PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
-RISE_RATE = 8.0
-"""A heel rises for its leg's sake no faster than this [rad/s] …"""
-RISE_HALFLIFE = 0.12
-"""… and sinks back with this half-life once its ball is free [s]."""
-LENDING = 0.7
-"""A heel that is free to rise takes this share of what its leg lacks, so that the knee bends nearly as the blend's; in a
-body's first stride, whose push is weak yet, it does not."""
-BENT = 0.015
-"""… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
-STRAINED = (0.15, 0.5)
+STRAINED = (0.35, 0.8)
 """A ball lets go, the more the farther its heel had to rise [rad] between these."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
@@ -95,7 +86,7 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
         hip = legs.hip[foot]
         _turn_foot(m, body, foot, hip + 2, legs.height, lift[foot], orientations, ankle[foot], dt, work)
         reach = (REACH - 0.001) * leg_length(body, hip)
-        _give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], dt, work)
+        give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], dt, work)
         flat = (positions[hip, 0] - ankle[foot, 0]) ** 2 + (positions[hip, 2] - ankle[foot, 2]) ** 2
         if flat < reach * reach:
             need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
@@ -191,9 +182,10 @@ def _step_aside(m, body, foot, before, now, height, dt):
                  (now[ball, 0] - before[ball, 0]) / dt + m.offset_rate[foot, 0],
                  (now[ball, 1] - before[ball, 1]) / dt + m.offset_rate[foot, 1], height, wanted)
     share = min(progress / YIELDING, 1.0)
+    nearer = wanted[0] * m.aside[foot, 0] + wanted[2] * m.aside[foot, 2] < m.aside[foot, 0] ** 2 + m.aside[foot, 2] ** 2
     for i in range(3):
         m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
-                                                                share * wanted[i], HALFLIFE, dt)
+                                                                share * wanted[i], BACK if nearer else HALFLIFE, dt)
 
 
 @kernel
@@ -267,48 +259,12 @@ def _roll(m, foot, x, y, z, orientation, axis, turned):
 
 
 @kernel
-def _give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work):
-    """A leg too short lifts its heel about a standing ball; any other foot only comes nearer.
-
-    A heel that was lifted when its ball left sinks back gently.
-    """
-    a = hip + 2
-    ball, axis, turned = work[0, 0], work[0, 1], work[1]
-    for i in range(3):
-        axis[i] = orientations[a, i, 0]
-        ball[i] = ankle[i]
-        for k in range(3):
-            ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
-    stands = m.standing[2 * foot + 1] == 1
-    if stands:
-        asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
-        free = max(2.0 * m.anchor[foot] - 1.0, 0.0) * (1.0 - min(m.onset, 1.0))
-        wanted = soft_reach(asked - free * LENDING * max(asked - blended, 0.0), reach - free * BENT)
-        rise = heel_rise_kernel(positions[hip], ball, ankle, axis, wanted)
-        if rise >= HEEL_RISE:  # not even on its toes: let go before it tears
-            m.torn[foot] = 1
-        rise = min(rise, m.rise[foot] + RISE_RATE * dt)
-        m.rise[foot], m.rise_rate[foot] = rise, (rise - m.rise[foot]) / dt
-    else:
-        rise, m.rise_rate[foot] = spring_kernel(m.rise[foot], m.rise_rate[foot], 0.0, RISE_HALFLIFE, dt)
-        m.rise[foot] = max(rise, 0.0)
-    tilt_kernel(orientations[a], axis, m.rise[foot], turned)
-    for i in range(3):
-        ankle[i] = ball[i]
-        for k in range(3):
-            orientations[a, i, k] = turned[i, k]
-            ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
-    if not stands:
-        distance = distance_kernel(positions[hip], ankle)
-        share = soft_reach(distance, reach) / distance
-        for i in range(3):
-            ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * share
-
-
-@kernel
 def at_rest(m, legs):
     """Whether a body that wants to rest may: blended to rest, both feet down and near their places."""
-    if m.weights[legs.rest] < 0.98 or abs(m.command[0]) + abs(m.command[1]) + abs(m.command[2]) > 0.02:
+    for v in (m.command, m.asked):
+        if abs(v[0]) + abs(v[1]) + abs(v[2]) > 0.02:
+            return False
+    if m.weights[legs.rest] < 0.98:
         return False
     for foot in range(2):
         x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 2]

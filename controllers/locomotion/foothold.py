@@ -20,7 +20,7 @@ from .cycles import EVENTS
 from .foot_clearance import FADE, away_kernel, need_of_room, outline_kernel, with_toe
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
-from .root_motion import cadence_kernel
+from .root_motion import SHORTEST, cadence_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -80,7 +80,7 @@ def _slower(m, table, share):
     for k in range(5):
         duration = duration_kernel(table, m.weights, m.phase + 0.25 * k * share) if k > 0 else now
         total += (1.0, 4.0, 2.0, 4.0, 1.0)[k] / 12.0 * duration
-    return total / max(now, 0.3)
+    return total / max(now, SHORTEST)
 
 
 @kernel

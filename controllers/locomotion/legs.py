@@ -1,4 +1,4 @@
-"""Legs: small rigid-body kernels that bend a leg, lift a heel, turn a foot and bend a toe."""
+"""Legs: small rigid-body kernels that bend a leg, turn a foot and bend a toe."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ REACH = 0.999
 """Legs straighten to this share of their length, and those that must give way a little earlier."""
 SOFTNESS = 0.0045
 """Legs slow down over about this length before they are straight [m]."""
-HEEL_RISE = 0.9
-"""The most that a heel may rise about the ball to give a leg length [rad]."""
 
 
 @kernel
@@ -120,44 +118,6 @@ def soft_reach(distance, reach):
     A knee's angle changes infinitely fast where its leg runs into a hard limit.
     """
     return distance - SOFTNESS * math.log1p(math.exp((distance - reach) / SOFTNESS))
-
-
-@kernel
-def heel_rise_kernel(hip, ball, ankle, axis, reach):
-    """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
-
-    Zero if it is; at most HEEL_RISE. Bisection: the distance falls as the heel rises.
-    """
-    low, high = 0.0, HEEL_RISE
-    if _ankle_distance(hip, ball, ankle, axis, 0.0) <= reach:
-        return 0.0
-    if _ankle_distance(hip, ball, ankle, axis, high) > reach:
-        best, least = 0.0, 1e9
-        for n in range(10):
-            d = _ankle_distance(hip, ball, ankle, axis, n * HEEL_RISE / 9.0)
-            if d < least:
-                best, least = n * HEEL_RISE / 9.0, d
-        if least > reach:
-            return best
-        high = best
-    for _ in range(14):
-        middle = 0.5 * (low + high)
-        if _ankle_distance(hip, ball, ankle, axis, middle) > reach:
-            low = middle
-        else:
-            high = middle
-    return high
-
-
-@kernel
-def _ankle_distance(hip, ball, ankle, axis, angle):
-    c, s = math.cos(angle), math.sin(angle)
-    x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
-    dot = (axis[0] * x + axis[1] * y + axis[2] * z) * (1.0 - c)
-    px = ball[0] + c * x + s * (axis[1] * z - axis[2] * y) + dot * axis[0] - hip[0]
-    py = ball[1] + c * y + s * (axis[2] * x - axis[0] * z) + dot * axis[1] - hip[1]
-    pz = ball[2] + c * z + s * (axis[0] * y - axis[1] * x) + dot * axis[2] - hip[2]
-    return math.sqrt(px * px + py * py + pz * pz)
 
 
 @kernel

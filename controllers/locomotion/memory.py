@@ -99,7 +99,8 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
-        ("left", "f8", 2), ("held", "i4", 2), ("land", "f8", (2, 2)),  # the ground it left; whether it found its own; how far from where the blend does it comes down
+        ("left", "f8", 2), ("left_at", "f8", (2, 2)),  # the ground it left, and where, x, z in the world
+        ("held", "i4", 2), ("land", "f8", (2, 2)),  # whether it found its own; how far from where the blend does it comes down
         ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain
         ("coming", "f8", (2, 2, 2)),  # where heel and ball of each foot of the blend come down, x, z in the world
         ("pace", "f4"),  # the share of the wished speed that the ground allows
@@ -109,6 +110,8 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("swing", "f4", 2),  # how far each foot had to go when it left
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
         ("rise", "f4", 2), ("rise_rate", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
+        ("bears", "f4", 2), ("bears_rate", "f4", 2),  # how far each ball bears, or has just borne
+        ("lent", "f4", 2), ("lent_rate", "f4", 2),  # how free each heel is to rise, for its knee to bend as the blend's
         ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis
         ("row", "f4", COLUMNS), ("row_rate", "f4", COLUMNS),  # the blended series and its rate
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
@@ -128,7 +131,7 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     turn = (there - here) * [0.0, 0.0, 1.0]
     for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("land", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
-    for name in ("stood", "coming"):
+    for name in ("stood", "left_at", "coming"):
         memory[name] = _carried(memory[name], memory["ground"], ground)
     memory["ground"], memory["aimed"] = ground, 0
 

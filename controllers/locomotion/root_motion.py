@@ -15,6 +15,9 @@ DRIFT_HALFLIFE = 0.03
 PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
 """A standing foot this far off [m] makes one step sooner, the more the farther, by at most this share."""
 
+SHORTEST = 0.3
+"""No blend's cycle is shorter [s]."""
+
 
 @kernel
 def cadence_kernel(m):
@@ -24,7 +27,7 @@ def cadence_kernel(m):
         if m.standing[2 * foot] or m.standing[2 * foot + 1]:
             late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
     hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
-    return hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], 0.3)
+    return hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], SHORTEST)
 
 
 @kernel

@@ -17,10 +17,10 @@ from .gait_change import change_kernel
 from .gaze import gaze_kernel
 from .idle import add_idle, idle_kernel
 from .foot_points import foot_points, on_floor
-from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, pose_kernel, query_kernel,
-                     series_kernel)
+from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel,
+                     query_kernel, series_kernel)
 from .memory import RUN, WALK
-from .root_motion import cadence_kernel, follow_command, to_world_kernel
+from .root_motion import SHORTEST, cadence_kernel, follow_command, to_world_kernel
 from .uneven_ground import stand_on
 
 STRETCH_HALFLIFE = 0.08
@@ -29,6 +29,8 @@ HEAVY = 2.0
 """An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
+MOMENTS = 8
+"""So many moments of a step are looked at, so that gaits change as early in a long one as in a short one."""
 STRAIGHT = 0.2
 """… and who goes no faster to the side than this [m/s], or is so slow that nobody runs."""
 
@@ -54,9 +56,9 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     for n in range(memory.shape[0]):
         m = memory[n]
         leave_rest(m, wish[n])
-        shape_command(m, wish[n], leans(m, _share_of_cycle(m, settings.agility, 0.5 * dt)), dt, settings, walk, run, p, q)
+        shape_command(m, wish[n], leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt)), dt, settings, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
-        advance_phase(m, settings.agility, dt)
+        advance_phase(m, table, settings.agility, dt)
         start_kernel(m, start, wish[n], dt)
         idle_kernel(m, idle, settings.idle, dt)
         blend_series(m, settings, table, fresh, legs, dt)
@@ -85,14 +87,8 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
 @kernel
 def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     """Choose the family, locate the command in its space, low-pass the weights."""
-    common, phase = change_kernel(changes, m.family, m.phase)
-    straight = abs(m.command[2]) < STRAIGHT
-    switch = m.wanted != m.family and common and not m.settled and (
-        straight and m.command[0] > FASTEST_WALK if m.wanted == RUN else
-        m.command[0] < (SLOWEST_RUN if straight else FASTEST_WALK))
-    if switch:
-        m.family = m.wanted
-        m.phase = phase
+    since = _change(m, table, changes, settings.agility, dt) if m.wanted != m.family and not m.settled else -1.0
+    switch = since >= 0.0
     keep = 2.0 ** (-dt / settings.weight_halflife)
     space = walk if m.family == WALK else run
     for i in range(3):
@@ -118,13 +114,32 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
         m.weights[i] /= total
     if switch:  # inertialise: what was shown minus what the other family shows now
         m.fade = settings.switch_halflife
+        m.phase = (m.phase - since * _share_of_cycle(m, table, settings.agility, dt)) % 1.0
         series_kernel(table, m.weights, m.phase, fresh)
         for d in range(LABELS_AT):
             m.blend[d] = m.row[d] - fresh[d]
         m.row[DURATION_AT] = fresh[DURATION_AT]  # at the other family's pace, too
-        series_kernel(table, m.weights, (m.phase + _share_of_cycle(m, settings.agility, dt)) % 1.0, fresh)
+        series_kernel(table, m.weights, (m.phase + _share_of_cycle(m, table, settings.agility, dt)) % 1.0, fresh)
         for d in range(LABELS_AT):
             m.blend_rate[d] = m.row_rate[d] - (fresh[d] - (m.row[d] - m.blend[d])) / dt
+
+
+@kernel
+def _change(m, table, changes, agility, dt):
+    """Change to the other family, and to its phase, if that may be within dt, at the moment from which on it may be, so that
+    the size of a step does not matter; after which share of the step that is, negative if it may not."""
+    whole = _share_of_cycle(m, table, agility, dt)
+    for k in range(MOMENTS):
+        share = k / MOMENTS
+        ahead = m.velocity[0] + share * (m.command[0] - m.velocity[0])
+        straight = abs(m.velocity[2] + share * (m.command[2] - m.velocity[2])) < STRAIGHT
+        fits = straight and ahead > FASTEST_WALK if m.wanted == RUN else ahead < (SLOWEST_RUN if straight else FASTEST_WALK)
+        common, phase = change_kernel(changes, m.family, (m.phase + share * whole) % 1.0)
+        if fits and common:
+            m.family = m.wanted
+            m.phase = phase
+            return share
+    return -1.0
 
 
 @kernel
@@ -133,23 +148,37 @@ def _one_of(i, vertices):
 
 
 @kernel
-def advance_phase(m, agility, dt):
+def advance_phase(m, table, agility, dt):
     """Run the phase on; at rest it waits."""
     if m.settled:
         return
-    step = _share_of_cycle(m, agility, dt)
+    step = _share_of_cycle(m, table, agility, dt)
     m.onset = max(m.onset - step, 0.0)
     m.phase = (m.phase + step) % 1.0
 
 
 @kernel
-def _share_of_cycle(m, agility, dt):
+def _share_of_cycle(m, table, agility, dt):
     """How far the phase runs in dt, no faster than weight is shifted before a start's first toe-off."""
-    pace, left = cadence_kernel(m), shift_left(m)
+    left = shift_left(m)
     if left <= 0.0:
-        return pace * dt
-    shifting = min(pace, agility * BEFORE / SHIFT)
-    return min(shifting * dt, left) + pace * max(dt - left / shifting, 0.0)
+        return _run_on(m, table, 0.0, dt)
+    shifting = min(cadence_kernel(m), agility * BEFORE / SHIFT)
+    return min(shifting * dt, left) + _run_on(m, table, left, max(dt - left / shifting, 0.0))
+
+
+@kernel
+def _run_on(m, table, begin, dt):
+    """How far the phase runs in dt from `begin` ahead of where it is: its pace changes within a cycle, by the rule of Runge and Kutta."""
+    if dt <= 0.0:
+        return 0.0
+    pace = cadence_kernel(m) * max(m.row[DURATION_AT], SHORTEST)
+    step = total = 0.0
+    for k in range(4):
+        at = begin + (0.0, 0.5, 0.5, 1.0)[k] * step
+        step = pace / max(duration_kernel(table, m.weights, m.phase + at), SHORTEST) * dt
+        total += (1.0, 2.0, 2.0, 1.0)[k] / 6.0 * step
+    return total
 
 
 @kernel

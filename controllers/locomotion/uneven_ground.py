@@ -99,16 +99,15 @@ def follow_ground(m, tops, floor, swing, dt):
         ball = 2 * foot + 1
         firm = max(m.grip[ball - 1], m.grip[ball]) >= 1.0
         if firm and m.held[foot] == 1:
-            m.left[foot] = m.base[foot]
+            _left_at(m, foot, place)
             continue
         passed = ((m.phase - 0.5 * foot) % 1.0) / swing
         progress = min(passed, 1.0)
         aim = m.aim[foot]
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
-                shown_kernel(m, ball, place)
-                c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-                x, z = m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1]
+                _ball(m, foot, place)
+                c, s, x, z = math.cos(m.ground[2]), math.sin(m.ground[2]), place[0], place[1]
                 if m.aimed[foot] == 0 or math.hypot(x - aim[0], z - aim[1]) > ASTRAY:
                     _under(m, tops, floor, x, z, c, s, under)
                     if under[0] < m.base[1 - foot] - STEP and _upheld(m, tops, floor, 1 - foot, place):
@@ -117,7 +116,10 @@ def follow_ground(m, tops, floor, swing, dt):
                 else:
                     m.base[foot] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
                     m.tilt[foot, 0], m.tilt[foot, 1] = aim[3], aim[4]
-            m.left[foot] = bears[foot] = m.base[foot]
+                _left_at(m, foot, place)
+            else:
+                m.base[foot] = _along(m, foot, place)
+            bears[foot] = m.left[foot]
             if firm:
                 m.held[foot], m.aimed[foot] = 1, 0
             continue
@@ -126,10 +128,11 @@ def follow_ground(m, tops, floor, swing, dt):
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         share = min(max(share, 0.0), 1.0)
         path = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
-        m.base[foot] = min(max(path, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
-        bears[foot] = m.base[foot]
+        m.base[foot] = min(max(path, rising, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
+        bears[foot] = min(m.base[foot], path) if rising > path else m.base[foot]
         if under[0] < m.left[foot]:  # the body sinks all the way down
             bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
         for i in range(2):
@@ -149,10 +152,32 @@ def follow_ground(m, tops, floor, swing, dt):
 def _upheld(m, tops, floor, foot, place):
     """Whether a foot has the ground under it that it stands on: who set one foot over an edge has the other one still there."""
     ground = np.empty(3)
+    _ball(m, foot, place)
+    ground_kernel(tops, place[0], place[1], floor, m.level, ground)
+    return ground[0] > m.base[foot] - STEP
+
+
+@kernel
+def _left_at(m, foot, place):
+    """Note the ground that a foot is on, and where its ball is, as what it will have left."""
+    _ball(m, foot, place)
+    m.left[foot], m.left_at[foot, 0], m.left_at[foot, 1] = m.base[foot], place[0], place[1]
+
+
+@kernel
+def _along(m, foot, place):
+    """How high the ground that a foot has left lies under it now, if it goes on as it rose there."""
+    _ball(m, foot, place)
+    return m.left[foot] + m.tilt[foot, 0] * (place[0] - m.left_at[foot, 0]) + m.tilt[foot, 1] * (place[1] - m.left_at[foot, 1])
+
+
+@kernel
+def _ball(m, foot, place):
+    """Where a foot's ball is shown: x, z in the world, into `place` (2,)."""
     shown_kernel(m, 2 * foot + 1, place)
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    ground_kernel(tops, m.ground[0] + c * place[0] + s * place[1], m.ground[1] - s * place[0] + c * place[1], floor, m.level, ground)
-    return ground[0] > m.base[foot] - STEP
+    x, z = place[0], place[1]
+    place[0], place[1] = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z
 
 
 @kernel

@@ -123,13 +123,14 @@ def test_gaits_change_where_their_feet_are_alike(locomotion):
 
 
 def test_nobody_changes_gait_elsewhere(locomotion):
-    """Families change at open phases only, whatever the hands do."""
+    """Families change at open phases only, whatever the hands do: at one that is passed in that step."""
     motion = play(locomotion, whims(np.random.default_rng(3), 20.0, 8))
     family, phase = (np.array([s.memory[name] for s in motion.states]) for name in ("family", "phase"))
     changes, count = locomotion.tables[5], 0
     for n in range(8):
         for frame in np.flatnonzero(np.diff(family[:, n])):
-            assert changes.open[family[frame, n], int(phase[frame, n] * 64)] == 1
+            passed = (phase[frame, n] + np.linspace(0.0, 0.06, 8)) % 1.0
+            assert changes.open[family[frame, n], (passed * 64).astype(int)].any()
             count += 1
     assert count > 8
 

@@ -1,0 +1,92 @@
+"""Legs that are too short for where their feet stand: the heel rises about the ball, as legs do.
+
+From where a heel lets go until its foot is well into its swing the leg is as long as the blend's, so that its knee bends as
+recorded knees do, however far behind the foot was held; before, it is only kept from being straight.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..body import distance_kernel, spring_kernel
+from ..compiled import kernel
+from .foothold import swing_progress
+from .legs import soft_reach, tilt_kernel
+
+HEEL_RISE = 0.9
+"""The most that a heel may rise about the ball to give a leg length [rad] …"""
+NEAREST = 0.95
+"""… and how far, as a cosine from 1 on, to where the ankle is nearest to its hip."""
+RISE_RATE = 8.0
+"""A heel rises for its leg's sake no faster than this [rad/s] …"""
+RISE_HALFLIFE = 0.06
+"""… and follows what its leg needs with this half-life [s] once its ball is free."""
+TAKE_HALFLIFE, LEAVE_HALFLIFE = 0.03, 0.12
+"""A ball comes to bear with the first half-life [s], and to bear no more with the second once it has left …"""
+LEND_HALFLIFE = 0.035
+"""… and a heel that lets go comes with this one to be free to take what its leg lacks, so that its knee bends as the blend's …"""
+BENT = 0.006
+"""… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
+TORN, LATE = 0.02, 1.7
+"""A foot lets go that its leg is this much too short for [m], once it stood for long enough for its body to have come down
+to it: this many times as long as a swing after it left."""
+
+
+@kernel
+def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work):
+    """A leg too short lifts its heel about the ball, as far as the foot stands on it or has just left it; what then is
+    missing still, a foot that does not stand comes nearer."""
+    a, grip = hip + 2, m.grip[2 * foot + 1]
+    ball, axis, turned = work[0, 0], work[0, 1], work[1]
+    for i in range(3):
+        axis[i] = orientations[a, i, 0]
+        ball[i] = ankle[i]
+        for k in range(3):
+            ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
+    on = 1.0 if grip > 0.0 else 0.0
+    m.bears[foot], m.bears_rate[foot] = spring_kernel(m.bears[foot], m.bears_rate[foot], on, TAKE_HALFLIFE if grip > 0.0
+                                                      else LEAVE_HALFLIFE, dt)
+    m.lent[foot], m.lent_rate[foot] = spring_kernel(m.lent[foot], m.lent_rate[foot], 1.0 - m.grip[2 * foot], LEND_HALFLIFE, dt)
+    bears = min(max(m.bears[foot], 0.0), 1.0)
+    free = bears * m.lent[foot] * (1.0 - min(m.onset, 1.0))
+    asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
+    length = soft_reach(asked - free * max(asked - blended, 0.0), reach - free * BENT)
+    rise = heel_rise_kernel(positions[hip], ball, ankle, axis, length)
+    firm = grip * grip * (3.0 - 2.0 * grip)
+    later, rate = spring_kernel(m.rise[foot], m.rise_rate[foot], rise * bears, RISE_HALFLIFE, dt)
+    later = max(later + firm * (min(rise * bears, m.rise[foot] + RISE_RATE * dt) - later), 0.0)
+    m.rise[foot], m.rise_rate[foot] = later, rate + firm * ((later - m.rise[foot]) / dt - rate)
+    tilt_kernel(orientations[a], axis, m.rise[foot], turned)
+    for i in range(3):
+        ankle[i] = ball[i]
+        for k in range(3):
+            orientations[a, i, k] = turned[i, k]
+            ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
+    distance = distance_kernel(positions[hip], ankle)
+    late = swing_progress(m, foot) > LATE
+    if late and distance > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes: let go before it tears
+        m.torn[foot] = 1
+    if distance > length:
+        share = (length + firm * (distance - length)) / distance
+        for i in range(3):
+            ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * share
+
+
+@kernel
+def heel_rise_kernel(hip, ball, ankle, axis, reach):
+    """The angle [rad] about the ball and the foot's lateral axis that brings the ankle within reach.
+
+    Zero if it is, or if a rising heel would only lead it away; at most HEEL_RISE, and not quite where it is nearest, which
+    it would come to infinitely fast. The square of the distance goes as c + p cos θ + q sin θ.
+    """
+    x, y, z = ankle[0] - ball[0], ankle[1] - ball[1], ankle[2] - ball[2]
+    u, v, w = ball[0] - hip[0], ball[1] - hip[1], ball[2] - hip[2]
+    along = axis[0] * x + axis[1] * y + axis[2] * z
+    still = (axis[0] * u + axis[1] * v + axis[2] * w) * along
+    p = 2.0 * (u * x + v * y + w * z - still)
+    q = 2.0 * (u * (axis[1] * z - axis[2] * y) + v * (axis[2] * x - axis[0] * z) + w * (axis[0] * y - axis[1] * x))
+    c = u * u + v * v + w * w + x * x + y * y + z * z + 2.0 * still
+    if c + p <= reach * reach or q >= 0.0:
+        return 0.0
+    cosine = max((reach * reach - c) / math.hypot(p, q), -NEAREST)
+    return min(max(math.atan2(q, p) + math.acos(min(cosine, 1.0)), 0.0), HEEL_RISE)
