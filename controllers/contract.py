@@ -35,15 +35,16 @@ class Leap:
     """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land, or
     None for where it is now: straight up.
 
-    airtime: [s], or None for the least effort.
+    airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
     """
 
     place: np.ndarray | None
     airtime: float | None = None
+    slack: float = 0.0
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
-        return (other is not None and self.airtime == other.airtime and (self.place is None) == (other.place is None)
+        return (other is not None and (self.airtime, self.slack) == (other.airtime, other.slack) and (self.place is None) == (other.place is None)
                 and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
 
 

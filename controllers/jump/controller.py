@@ -15,7 +15,7 @@ from .body import GRAVITY, Physique, Start, along
 from .crouching import Crouching, begun, crouched
 from .motion import Plan, fall, over_nothing, struck
 from .prior import Prior
-from .reach import Reach, Refused
+from .reach import TRIES, Reach, Refused
 from .starting import ready, start_of
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
@@ -119,7 +119,12 @@ class Jump(Reach, Controller):
             if other is not None and abs(other.path.airtime - leap.airtime) > 0.01:
                 raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.path.airtime else 'short'} for this "
                               f"body there; the jump takes {other.path.airtime:.2f} s")
-        raise Refused(reason, self.nearest(start, place, floor, leap.airtime, intent.around), here)
+        nearest = self.nearest(start, place, floor, leap.airtime, intent.around)
+        if nearest is not None and 0.0 < float((nearest - place) @ (place - here)) / max(float(np.linalg.norm(place - here)), 1e-9) <= leap.slack:
+            made = self.attempt(start, nearest, floor, leap.airtime, intent.around, TRIES)[0]  # it was planned as it was found
+            if made is not None:
+                return made
+        raise Refused(reason, nearest, here)
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
         """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""

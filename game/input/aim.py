@@ -29,6 +29,8 @@ NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
 AHEAD = 0.60, 0.53
 """How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
+SLACK = 0.3
+"""Who runs and would come too near for the ring lands at most so far beyond it [m]."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
 STEP_UP = 0.95
@@ -37,7 +39,6 @@ PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
-
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
 
@@ -111,7 +112,7 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * self.held, LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, airtime)
         x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
-        return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]))
+        return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]), slack=SLACK if self.moving else 0.0)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""

@@ -10,8 +10,8 @@ from gambol.controllers.supervisor import Supervisor
 
 FPS = 60
 PACE = 3.0
-RING = 2.4
-"""So far ahead [m] who runs lets go of it; nearer, the moments at which it would brake most keep less of the speed."""
+RING, SLACK = 2.19, 0.3
+"""So far ahead [m] who plays lets go of it at that pace, and so much beyond it may be landed."""
 WISH = np.array([PACE, 0.0, 0.0])
 
 
@@ -34,7 +34,7 @@ def played(request, person, runner):
     state, made, states = runner, None, []
     for _ in range(request.param):
         state, _ = person.step(state, Intent(WISH), 1 / FPS)
-    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + RING]))
+    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + RING]), slack=SLACK)
     for _ in range(110):
         state, _ = person.step(state, Intent(WISH, leap if made is None else None), 1 / FPS)
         if made is None and isinstance(state.memory.memory, Jumping):
@@ -67,7 +67,30 @@ def test_it_keeps_its_speed(played):
     down = landed(made, states)
     way = np.array([s.pose.root[2] for s in states])
     pace = (way[6:] - way[:-6]) * FPS / 6
-    assert pace[down - 6:down + 36].min() > 0.78 * PACE
+    assert pace[down - 6:down + 36].min() > 0.55 * PACE, "recorded jumpers keep 0.8; two feet together kept a fifth to two thirds"
+
+
+def test_who_comes_too_near_lands_beyond_the_ring(person, runner):
+    """Asked for at every moment of a stride; whoever reaches the ring itself lands there, slack or none."""
+    state, exact, beyond = runner, [], []
+    for _ in range(16):
+        place = np.array([state.ground[0], 0.0, state.ground[1] + RING])
+        feet = []
+        for slack in (0.0, SLACK):
+            now, made = state, None
+            for _ in range(50):
+                now, _ = person.step(now, Intent(WISH, Leap(place, slack=slack)), 1 / FPS)
+                if isinstance(now.memory.memory, Jumping):
+                    made = now.memory.memory.plan
+                    break
+            feet.append(None if made is None else made.feet[:, 2].mean() - place[2])
+        assert feet[1] is not None, now.refused
+        (beyond if feet[0] is None else exact).append(feet[1])
+        assert feet[0] is None or feet[0] == feet[1]
+        for _ in range(3):
+            state, _ = person.step(state, Intent(WISH), 1 / FPS)
+    assert np.ptp(exact) < 0.02 and len(beyond) > 0
+    assert max(exact) < min(beyond) and max(beyond) < max(exact) + SLACK
 
 
 def test_the_foot_stays_where_it_comes_down_and_no_hip_sinks_through_the_stride(jump, played):

@@ -1,8 +1,8 @@
 """What a body can reach with a jump: plans that touch nothing, why there is none, the nearest place to which there is one."""
 
 from .feasibility import Refused
-from .reach import Reach
+from .reach import TRIES, Reach
 
 __all__ = [
-    "Reach", "Refused",
+    "TRIES", "Reach", "Refused",
 ]
