@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,10 @@ import numpy as np
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Status, level, seconds
 from ..navigation import floor_at
-from .body import GRAVITY, Physique, Start, along
+from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
 from .motion import Plan, fall, over_nothing, struck
+from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
 from .starting import ready, start_of
@@ -27,6 +29,10 @@ PULLS = 0.1, 100.0
 """How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
+SPARES = 0.97
+"""Straight up a body is asked for this share of how high its muscles would take it at most."""
+SHIFTS = 8.0
+"""Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
 MOST_HITS = 3
 """A body that still touches something after so many hits slips by."""
 
@@ -34,12 +40,18 @@ MOST_HITS = 3
 @dataclass(frozen=True, eq=False)
 class Jumping:
     """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
-    plan is a fall. hits: how often."""
+    plan is a fall. hits: how often. shift: (2,) x, z [m] of the ground frame from under the centre of mass as the plan began."""
 
     plan: Plan
     time: float = 0.0
     fault: str = ""
     hits: int = 0
+    shift: np.ndarray = field(default_factory=lambda: np.zeros(2))
+
+    @staticmethod
+    def begun(made: Plan, state: CharacterState, fault: str = "", hits: int = 0) -> Jumping:
+        """The memory of one who begins a plan in a state."""
+        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float)[:2] - made.centres[0, [0, 2]])
 
     @property
     def landed(self) -> bool:
@@ -94,10 +106,10 @@ class Jump(Reach, Controller):
         if the jump can't be made."""
         if intent.around and self._lost_floor(state, intent):
             fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
-            return replace(state, memory=Jumping(fallen, 0.0, "there was nothing to step on"))
+            return replace(state, memory=Jumping.begun(fallen, state, "there was nothing to step on"))
         if intent.leap is None and intent.aim is not None:
             return replace(state, memory=begun(self, self.start_of(state), float(level(state.floor))))
-        return replace(state, memory=Jumping(self.plan(state, intent)))
+        return replace(state, memory=Jumping.begun(self.plan(state, intent), state))
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
         """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
@@ -134,6 +146,13 @@ class Jump(Reach, Controller):
         place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
         return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1]
 
+    @cached_property
+    def longest(self) -> float:
+        """How long [s] it can be in the air at most as it jumps straight up from a stand."""
+        heights, g = measures(self.physique), -float(self.gravity[1])
+        speed = strongest(self.physique, heights.leave(0.0) - heights.stand, self.gravity)
+        return airtime_up(self.physique, SPARES * 0.5 * speed**2 / g, self.gravity)
+
     def start_of(self, state: CharacterState) -> Start:
         """What a jump needs to know of a state."""
         return start_of(self.physique, state, isinstance(state.memory, Crouching))
@@ -154,9 +173,9 @@ class Jump(Reach, Controller):
         landed = time >= made.touch_down
         floor = float(made.feet[0, 1] - self.physique.tables.sole) if landed else float(state.floor)
         heading = float(state.ground[2])
-        ground = np.array([made.centres[n, 0], made.centres[n, 2], heading])
+        centre, (vx, _, vz) = made.moving(time)
+        ground = np.append(centre[[0, 2]] + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time), heading)
         c, s = np.cos(heading), np.sin(heading)
-        vx, _, vz = made.velocities[n]
         velocity = np.array([s * vx + c * vz, 0.0, c * vx - s * vz])
         after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n].copy(),
                         memory=replace(jumping, time=time), floor=floor)
@@ -173,7 +192,7 @@ class Jump(Reach, Controller):
         if leap.same(memory.asked):
             return state
         try:
-            return replace(state, memory=Jumping(self.plan(state, intent)))
+            return replace(state, memory=Jumping.begun(self.plan(state, intent), state))
         except Refused as reason:
             return replace(state, memory=replace(memory, refused=str(reason), asked=leap))
 
@@ -189,7 +208,7 @@ class Jump(Reach, Controller):
         before = max(time - dt, 0.0)
         start = self.start_of(replace(state, previous=made.at(before), elapsed=time - before))
         fallen = fall(self.physique, replace(start, velocity=velocity), hit, around, self.gravity)
-        return replace(state, memory=Jumping(fallen, 0.0, hit.reason, jumping.hits + 1))
+        return replace(state, memory=Jumping.begun(fallen, state, hit.reason, jumping.hits + 1))
 
     def status(self, state: CharacterState) -> Status:
         """Running until it stands; one that struck something says so at once, and fails once it stands."""

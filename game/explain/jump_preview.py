@@ -76,7 +76,7 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     jump = jump_of(character.controller)
     if jump is None or plan_of(character) is not None:
         return None
-    leap = aim.target(character.state, props, -float(jump.gravity[1]))
+    leap = aim.target(character.state, props, -float(jump.gravity[1]), jump.longest)
     if leap is None:
         return None
     solid, state = [prop for prop in props if not isinstance(prop, Goal)], character.controller.active(character.state)[1]

@@ -33,6 +33,8 @@ SLACK = 0.3
 """Who runs and would come too near for the ring lands at most so far beyond it [m]."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
+SINKS = 0.35
+"""A body goes down so long [s] behind the aim: it crouches for the jump that will be aimed at then."""
 STEP_UP = 0.95
 """The ring climbs onto whatever is no higher than this over the feet [m]."""
 PATIENCE = 0.9
@@ -103,26 +105,27 @@ class Aim:
         """Whether the sticks move the ring and not the body."""
         return (self.aiming or self.waiting > 0.0) and not self.moving
 
-    def target(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
-        """The jump that would be made now; None where nobody aims. gravity: [m/s²], downwards positive."""
+    def target(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf, ahead: float = 0.0) -> Leap | None:
+        """The jump that would be made now; None where nobody aims. gravity: [m/s²], downwards positive. longest: [s] that the body can be in
+        the air straight up; ahead: as it would be made so many seconds later."""
         if not (self.aiming or self.waiting > 0.0):
             return None
         floor = float(state.floor)
         if not self.moving and math.hypot(*self.offset) < NEAR:
-            airtime = min(AIRTIME + CHARGE * self.held, LONGEST) * math.sqrt(9.81 / gravity)
-            return Leap(None, airtime)
+            airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
+            return Leap(None, min(airtime, longest))
         x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
         return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]), slack=SLACK if self.moving else 0.0)
 
-    def readied(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
+    def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""
-        return None if self.moving or not self.aiming or self._askew(state) else self.target(state, around, gravity)
+        return None if self.moving or not self.aiming or self._askew(state) else self.target(state, around, gravity, longest, SINKS)
 
-    def asked(self, state: CharacterState, around: Sequence[Any], gravity: float) -> Leap | None:
+    def asked(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump that is wanted now that the button was let go; None while the body still turns to it."""
         if self.aiming or self.waiting <= 0.0:
             return None
-        return None if self._askew(state) else self.target(state, around, gravity)
+        return None if self._askew(state) else self.target(state, around, gravity, longest)
 
     def _askew(self, state: CharacterState) -> bool:
         """Whether a standing body still has to turn to the ring."""

@@ -78,7 +78,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         props = moment.after.props
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
-        leap, ready = (None, None) if jump is None else (ask(state, props, -float(jump.gravity[1])) for ask in (aim.asked, aim.readied))
+        leap, ready = (None, None) if jump is None else (ask(state, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
         intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal))
     passers, theirs = asked(moment)
     intents += theirs

@@ -19,7 +19,7 @@ from typing import Any
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
-from jump_trials import FINE, FPS, Motion, Trial, grown, ground, moved
+from jump_trials import FINE, FPS, Motion, Trial, grown, ground, moved, starts
 
 from gambol.controllers.body import contact_points, end_positions, log, sole_corners, yaw
 from gambol.controllers.contract import CharacterState, Intent, Leap, Unable
@@ -267,6 +267,30 @@ def told(jump: Jump, made: Plan, name: str) -> None:
           f"begin to take-off {made.take_off:.2f} s, on the ground after {made.duration - made.touch_down:.2f} s")
 
 
+def report_strides(locomotion: Locomotion, rng: np.random.Generator) -> None:
+    """Leaps out of runs of many speeds, from a foot that has just struck: on how many feet they land, and how hard."""
+    jump, rows, refused = Jump(), [], 0
+    for state in starts(locomotion, rng, 24)[1]:
+        for far in (1.8, 2.1, 2.4, 2.7):
+            t = Trial(jump, state, Leap(np.array([0.0, 0.0, far])), (), True, "running")
+            try:
+                plan = jump.plan(t.state, t.intent)
+            except Unable:
+                refused += 1
+                continue
+            r, last = ground(t, plan), min(plan.duration, plan.through)
+            seen = Motion.of(jump, plan, np.arange(plan.touch_down, last, 1 / FINE))
+            up = 1.0 + np.convolve(np.diff(seen.centre[:, 1], 2) * FINE**2 / 9.81, np.full(5, 0.2), "valid")
+            knee = np.degrees(np.linalg.norm(log(seen.local[:, jump.skeleton.index(("Left", "Right")[plan.path.lands or 0] + "Leg")]), axis=-1))
+            rows.append([plan.path.lands is not None, up.max(), r["pull %"], r["friction"], r["push off soles cm"], r["landing off soles cm"], knee[0], knee.max(),
+                         100.0 * (seen.centre[0, 1] - seen.centre[:, 1].min()), last - plan.touch_down])
+    a = np.array(rows)
+    print(f"leaps out of runs: {len(a)} planned, {refused} refused; {int(a[:, 0].sum())} land on one foot, with {np.median(a[:, 1]):.1f} body weights (median), {a[:, 1].max():.1f} (worst); pull > 1 % in "
+          f"{100 * (a[:, 2] > 1).mean():.0f} %, friction > 1 in {100 * (a[:, 3] > 1).mean():.0f} % ({a[:, 3].max():.2f}); pressure outside the sole in the push, as it lands {np.median(a[:, 4]):.0f}, "
+          f"{np.median(a[:, 5]):.0f} cm (median), {a[:, 4].max():.0f}, {a[:, 5].max():.0f} cm (worst); knee as it lands {np.median(a[:, 6]):.0f}°, most {np.median(a[:, 7]):.0f}°; it sinks "
+          f"{np.median(a[:, 8]):.0f} cm, and runs on after {np.median(a[:, 9]):.2f} s")
+
+
 def report_ring(locomotion: Locomotion) -> None:
     """A ring a little ahead of a runner, asked for at every phase of the stride; and what a refused one costs."""
     refused, asked, waits, told = 0, 0, [], Counter()
@@ -310,13 +334,15 @@ def table(locomotion: Locomotion, quick: bool, seed: int) -> None:
     report_obstacles(states)
     report_forces([(t, plan) for t, plan in made if abs(t.leap.place[1]) < 1e-9 or t.leap.place[1] == 0.0])
     report_shape(states)
+    report_strides(locomotion, rng)
     report_ring(locomotion)
     spent = []
     for t, _ in made[:60]:
-        begin = time.perf_counter()
-        t.jump.plan(t.state, t.intent)
-        spent.append(1e3 * (time.perf_counter() - begin))
-    print(f"planning: median {np.median(spent):.1f} ms, worst of {len(spent)} {max(spent):.1f} ms")
+        jump = Jump(t.jump.physique, t.jump.gravity)  # which knows of no plan
+        begin = time.process_time()
+        jump.plan(t.state, t.intent)
+        spent.append(1e3 * (time.process_time() - begin))
+    print(f"planning: median {np.median(spent):.1f} ms of the processor, worst of {len(spent)} {max(spent):.1f} ms")
 
 
 def main() -> None:

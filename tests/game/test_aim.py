@@ -55,6 +55,13 @@ def test_holding_longer_jumps_higher_up_to_a_limit_and_slower_where_gravity_is_l
     assert airtime(5.0, 1.62) == pytest.approx(LONGEST * math.sqrt(9.81 / 1.62))
 
 
+def test_it_crouches_for_the_jump_that_will_be_aimed_at_and_asks_no_body_for_more_than_it_can():
+    aim = aimed(HELD, 0.2, standing())
+    now, soon = aim.target(standing(), (), 9.81).airtime, aim.readied(standing(), (), 9.81).airtime
+    assert now + 0.05 < soon < LONGEST
+    assert aim.target(standing(), (), 9.81, 0.3).airtime == aim.readied(standing(), (), 9.81, 0.3).airtime == 0.3
+
+
 def test_a_body_turns_before_it_jumps():
     aim = aimed(Wish(jump=True, move=(1.0, 0.0)), 0.5, standing())
     let_go = aim.step(FREE, 0.0, standing(), False, DT)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.body import contact_points, forward_kinematics
-from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Crouching, Jump, Jumping, Physique
 from gambol.controllers.supervisor import Supervisor
 
@@ -66,6 +66,26 @@ def test_told_it_is_off_at_once_and_lands_where_it_should(person, waiting):
     assert np.linalg.norm(made.feet[:, [0, 2]].mean(0) - usual.feet[:, [0, 2]].mean(0)) < 1e-6
     shown = made.at(0.0)
     assert np.abs(shown.root - states[-1].pose.root).max() < 2e-3 and np.abs(shown.rotations - states[-1].pose.rotations).max() < 0.02
+
+
+def test_from_the_crouch_it_comes_up_without_bowing_and_the_ground_frame_goes_on_without_a_step(jump, person, waiting):
+    leap, states = waiting
+    after = led(person, [Intent(leap=leap)] + [Intent()] * 60, states[-1])
+    placed = [forward_kinematics(jump.skeleton, s.pose.root.astype(float), s.pose.rotations.astype(float))[0] for s in [states[-1], *after]]
+    neck = np.array([p[jump.skeleton.index("Neck")] - p[0] for p in placed])
+    lean = np.degrees(np.arctan2(neck[:, 2], neck[:, 1]))
+    assert lean[:20].max() < lean[0] + 3.0, "it is bent already as far as it will be"
+    moved = np.diff([s.ground[1] for s in [states[-1], *after]])
+    assert moved.min() >= 0.0 and moved.max() < 0.03 and np.abs(np.diff(moved)).max() < 0.005
+
+
+def test_straight_up_it_can_be_in_the_air_for_so_long_and_no_longer(jump, person, waiting):
+    state = person_state(waiting[1][5])
+    assert jump.plan(state, Intent(leap=Leap(None, jump.longest))).path.velocity[1] > 2.6
+    with pytest.raises(Unable, match="too long"):
+        jump.plan(state, Intent(leap=Leap(None, 1.05 * jump.longest)))
+    child = Jump(Physique(mass=30.0, height=1.3, strength=0.9))
+    assert child.longest < 0.9 * jump.longest
 
 
 def test_it_stands_up_if_nothing_comes_of_it_and_walks_at_once_if_it_shall(person, waiting):

@@ -116,7 +116,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         angles = [_low(prior.row(number * BETWEEN, some, start.single), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
         if start.single is None:
-            crouch = 0.0 if start.ready else size * prior.crouch(features[0])  # who waits needs no more than the muscles do
+            # who waits needs no more than the muscles do, and pushes from as deep as it is
+            crouch = upright.stand + floor - float(start.centre[1]) if start.ready else size * prior.crouch(features[0])
             pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet, angles[0], crouch)
         else:
             pushing = Running(physique, start, heights, balls, floor, gravity)
@@ -134,6 +135,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
     lands = _stride(start, velocity, flight, gravity, size)
     keys = _folded(_tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked), lands)
+    if start.ready:  # it has gone down already
+        keys[:BETWEEN] = keys[BETWEEN]
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,

@@ -43,10 +43,19 @@ class Plan:
         """Seconds until the jumper stands again."""
         return float(self.times[-1])
 
+    def moving(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Where (3,) [m] the centre of mass is `time` [s] after the start, and how fast (3,) [m/s] it moves."""
+        n, part = self._between(time)
+        return tuple(rows[n] + part * (rows[n + 1] - rows[n]) for rows in (self.centres, self.velocities))
+
+    def _between(self, time: float) -> tuple[int, float]:
+        """The sample before a time [s], and which share of the way to the next one it is on."""
+        n = int(np.clip(np.searchsorted(self.times, time, "right") - 1, 0, len(self.times) - 2))
+        return n, float(np.clip((time - self.times[n]) / (self.times[n + 1] - self.times[n]), 0.0, 1.0))
+
     def at(self, time: float) -> Pose:
         """The pose `time` [s] after the start, between the two samples around it."""
-        n = int(np.clip(np.searchsorted(self.times, time, "right") - 1, 0, len(self.times) - 2))
-        part = float(np.clip((time - self.times[n]) / (self.times[n + 1] - self.times[n]), 0.0, 1.0))
+        n, part = self._between(time)
         root, local = np.empty(3), np.empty_like(self.local[0])
         between_kernel(self.roots[n], self.roots[n + 1], self.local[n], self.local[n + 1], part, root, local)
         return Pose(root, local)
