@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from ..body import Pose, Skeleton
-from ..contract import CharacterState, Controller, Intent, Status, level, seconds
+from ..contract import CharacterState, Controller, Intent, Leap, Status, level, seconds
 from ..navigation import floor_at
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Plan, fall, over_nothing, struck
+from .motion import PLANT, Plan, fall, over_nothing, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
-from .starting import ready, start_of
+from .starting import landed, ready, rebounding, start_of
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -31,6 +31,8 @@ RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
 SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
+SPRINGS = 0.05
+"""So long after the lowest point of a landing [s] another leap may still go off from there."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
 MOST_HITS = 3
@@ -40,18 +42,27 @@ MOST_HITS = 3
 @dataclass(frozen=True, eq=False)
 class Jumping:
     """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
-    plan is a fall. hits: how often. shift: (2,) x, z [m] of the ground frame from under the centre of mass as the plan began."""
+    plan is a fall. hits: how often. shift: (2,) x, z [m] of the ground frame from under the centre of mass as the plan began. asked: what is
+    not to be asked again until it was let go; refused: why the leap that was to follow can't be made."""
 
     plan: Plan
     time: float = 0.0
     fault: str = ""
     hits: int = 0
     shift: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    asked: Leap | None = None
+    refused: str = ""
 
     @staticmethod
-    def begun(made: Plan, state: CharacterState, fault: str = "", hits: int = 0) -> Jumping:
+    def begun(made: Plan, state: CharacterState, asked: Leap | None = None, fault: str = "", hits: int = 0) -> Jumping:
         """The memory of one who begins a plan in a state."""
-        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float)[:2] - made.centres[0, [0, 2]])
+        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float)[:2] - made.centres[0, [0, 2]], asked)
+
+    @property
+    def rebounds(self) -> bool:
+        """Whether its legs give to a landing on both feet, so that another leap could go off from there."""
+        made = self.plan
+        return not self.fault and made.path.lands is None and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
 
     @property
     def landed(self) -> bool:
@@ -106,10 +117,10 @@ class Jump(Reach, Controller):
         if the jump can't be made."""
         if intent.around and self._lost_floor(state, intent):
             fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
-            return replace(state, memory=Jumping.begun(fallen, state, "there was nothing to step on"))
+            return replace(state, memory=Jumping.begun(fallen, state, intent.leap, "there was nothing to step on"))
         if intent.leap is None and intent.aim is not None:
             return replace(state, memory=begun(self, self.start_of(state), float(level(state.floor))))
-        return replace(state, memory=Jumping.begun(self.plan(state, intent), state))
+        return replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
         """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
@@ -153,9 +164,15 @@ class Jump(Reach, Controller):
         speed = strongest(self.physique, heights.leave(0.0) - heights.stand, self.gravity)
         return airtime_up(self.physique, SPARES * 0.5 * speed**2 / g, self.gravity)
 
+    def landing(self, state: CharacterState) -> CharacterState:
+        """The state of somebody who jumps as he will stand once he has landed, if it is on both feet; of everybody else as it is."""
+        memory = state.memory
+        return state if not isinstance(memory, Jumping) or memory.plan.path.lands is not None else landed(self.physique, state, memory.plan)
+
     def start_of(self, state: CharacterState) -> Start:
         """What a jump needs to know of a state."""
-        return start_of(self.physique, state, isinstance(state.memory, Crouching))
+        memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
+        return rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
@@ -163,6 +180,8 @@ class Jump(Reach, Controller):
         level(state.floor)
         if isinstance(state.memory, Crouching):
             state = self._released(state, intent)
+        elif state.memory.time > state.memory.plan.take_off:
+            state = self._followed(state, intent)
         if isinstance(state.memory, Crouching):
             after = crouched(self, state, intent.leap or intent.aim, dt)
             return after, after.pose
@@ -192,7 +211,22 @@ class Jump(Reach, Controller):
         if leap.same(memory.asked):
             return state
         try:
-            return replace(state, memory=Jumping.begun(self.plan(state, intent), state))
+            return replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
+        except Refused as reason:
+            return replace(state, memory=replace(memory, refused=str(reason), asked=leap))
+
+    def _followed(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state of who comes down at the beginning of the leap that is to follow, or of a crouch if one is aimed at; as it is where there
+        is none. What was asked for this jump is no other until it was let go."""
+        memory, leap = state.memory, intent.leap
+        if leap is None:
+            if intent.aim is not None and memory.rebounds and memory.time >= memory.plan.lowest:
+                return replace(state, memory=begun(self, self.start_of(state), float(memory.plan.feet[0, 1] - self.physique.tables.sole)))
+            return state if memory.asked is None else replace(state, memory=replace(memory, asked=None, refused=""))
+        if not memory.rebounds or leap.same(memory.asked):
+            return state
+        try:
+            return replace(state, memory=Jumping.begun(self.plan(state, intent), state, leap))
         except Refused as reason:
             return replace(state, memory=replace(memory, refused=str(reason), asked=leap))
 
@@ -208,7 +242,7 @@ class Jump(Reach, Controller):
         before = max(time - dt, 0.0)
         start = self.start_of(replace(state, previous=made.at(before), elapsed=time - before))
         fallen = fall(self.physique, replace(start, velocity=velocity), hit, around, self.gravity)
-        return replace(state, memory=Jumping.begun(fallen, state, hit.reason, jumping.hits + 1))
+        return replace(state, memory=Jumping.begun(fallen, state, jumping.asked, hit.reason, jumping.hits + 1))
 
     def status(self, state: CharacterState) -> Status:
         """Running until it stands; one that struck something says so at once, and fails once it stands."""
@@ -216,7 +250,7 @@ class Jump(Reach, Controller):
             return Status("running", state.memory.refused)
         jumping: Jumping = state.memory
         if jumping.time < min(jumping.plan.through, jumping.plan.duration):
-            return Status("running", jumping.fault)
+            return Status("running", jumping.fault or jumping.refused)
         if jumping.fault:
             return Status("failed", jumping.fault)
         return Status("done", "it has landed and can't stop here" if jumping.time >= jumping.plan.through else "")

@@ -62,7 +62,7 @@ def begun(reach: Reach, start: Start, floor: float) -> Crouching:
     place, still = np.concatenate([start.centre, carriage.STAND]), np.zeros(LEGS)
     planted = start.planted(floor, reach.physique.tables)
     return Crouching(start, 0.0, vectors(start.rotations @ np.swapaxes(local, -1, -2)), planted, place, np.concatenate([start.velocity, still]),
-                     np.zeros(len(place)), _upright(reach, planted, floor))
+                     np.concatenate([start.acceleration, still]), _upright(reach, planted, floor))
 
 
 def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float) -> Crouching:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
 from ..contract import CharacterState
-from .body import FLAT, Physique, Start, vectors
+from .body import FLAT, Physique, Start, soles, vectors
+from .motion import Plan
 
 RUNNING = 1.2
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
@@ -33,6 +36,22 @@ def start_of(physique: Physique, state: CharacterState, crouched: bool = False) 
         feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
         rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
     return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]), feet_rates, _single(state), crouched)
+
+
+def rebounding(start: Start, made: Plan, time: float) -> Start:
+    """The start of one who is `time` [s] into a plan and comes down: its landing is the crouch of the jump that follows."""
+    n = int(np.clip(np.searchsorted(made.times, time), 1, len(made.times) - 1))
+    gains = (made.velocities[n] - made.velocities[n - 1]) / (made.times[n] - made.times[n - 1])
+    low = min(float(start.centre[1]), float(made.centres[n:, 1].min()))
+    return replace(start, velocity=made.moving(time)[1], acceleration=gains, ready=True, low=low, single=None)
+
+
+def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterState:
+    """The state of one who plays a plan that lands on both feet as it will stand there, at rest."""
+    middle = soles(made.feet, physique.tables).mean(0)
+    pose = made.at(made.duration if np.isinf(made.through) else made.lowest)
+    return replace(state, ground=np.array([middle[0], middle[2], made.path.heading]), velocity=np.zeros(3), pose=pose, contacts=np.ones(4, bool),
+                   memory=None, floor=float(made.feet[0, 1] - physique.tables.sole), previous=None, elapsed=0.0)
 
 
 def ready(physique: Physique, state: CharacterState) -> bool:

@@ -37,7 +37,7 @@ def explained(figures: Sequence[Figure], before: World, after: World, alpha: flo
             seen = previews[n] if n < len(previews) else None
             if seen is not None:
                 sketches += aimed(seen, after.props)
-            elif now is not None:
+            if now is not None:
                 sketches += flown(*now)
         if overlays.balance or overlays.forces:
             body = Body.of(new, figure)

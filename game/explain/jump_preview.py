@@ -14,7 +14,7 @@ from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
 from gambol.controllers.navigation import floor_at
 
-from ..input import Aim, jumping
+from ..input import Aim, jumping, landing, leaving
 from ..scene import Dot, Goal, Line, Patch, Prop, Sketch
 from ..world import Character, jump_of
 
@@ -74,12 +74,12 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     before: what was seen a moment ago, whose nearest place is kept as long as it is one.
     """
     jump = jump_of(character.controller)
-    if jump is None or plan_of(character) is not None:
+    if jump is None or leaving(character.state):
         return None
-    leap = aim.target(character.state, props, -float(jump.gravity[1]), jump.longest)
+    leap = aim.target(landing(jump, character.state), props, -float(jump.gravity[1]), jump.longest)
     if leap is None:
         return None
-    solid, state = [prop for prop in props if not isinstance(prop, Goal)], character.controller.active(character.state)[1]
+    solid, state = [prop for prop in props if not isinstance(prop, Goal)], jump.landing(character.controller.active(character.state)[1])
     seen = previewed(jump, state, leap, solid)
     if not seen.fault or aim.moving or leap.place is None:
         return seen

@@ -61,16 +61,17 @@ class Aim:
     moving: bool = False
     place: tuple[float, float] | None = None
 
-    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, jumping: bool, dt: float) -> Aim:
-        """The aim `dt` seconds later. jumping: the body is in the air or about to be."""
-        if jumping:
+    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False) -> Aim:
+        """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
+        the state is then that in which it will stand there."""
+        if leaving:
             return Aim()
         if not wish.jump:
             if self.aiming:
                 x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
-            given_up = self.waiting <= dt or not self.moving and state.refused
-            return Aim() if given_up else replace(self, waiting=self.waiting - dt)
+            given_up = self.waiting <= dt and not aloft or not self.moving and state.refused
+            return Aim() if given_up else replace(self, waiting=self.waiting - dt * (not aloft))
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
         moving = speed > MOVING

@@ -198,3 +198,21 @@ def _from_here(ground: np.ndarray, points) -> Path | None:
         if math.dist(point, way[-1]) > 1e-3:
             way.append(point)
     return Path(np.array(way)) if len(way) > 1 else None
+
+
+def leaving(state: CharacterState) -> bool:
+    """Whether somebody has begun a jump and is about to leave the floor."""
+    made = jumping(state)
+    return made is not None and made.time <= made.plan.take_off
+
+
+def aloft(state: CharacterState) -> bool:
+    """Whether somebody flies."""
+    made = jumping(state)
+    return made is not None and made.plan.take_off < made.time < made.plan.touch_down
+
+
+def landing(jump: Any, state: CharacterState) -> CharacterState:
+    """The state of somebody who jumps as he will stand once he has landed on both feet; of everybody else as it is."""
+    made = jumping(state)
+    return state if made is None else replace(jump.landing(replace(state, memory=made)), memory=state.memory)

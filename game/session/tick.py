@@ -18,7 +18,7 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.navigation import in_world, slide
 
 from ..explain import preview
-from ..input import Aim, Wish, jumping
+from ..input import Aim, Wish, aloft, landing, leaving
 from ..world import DT, RATE, ground_between, jump_of
 from . import settings
 from .actions import done
@@ -68,7 +68,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         if player.camera.flown:  # the sticks fly the camera
             wish = Wish()
         jump = jump_of(character.controller)
-        aim = player.aim.step(wish, player.camera.yaw, state, jumping(state) is not None, DT) if jump is not None else player.aim
+        stands = state if jump is None else landing(jump, state)  # in the air one aims from where one will land
+        aim = player.aim.step(wish, player.camera.yaw, stands, leaving(state), DT, aloft(state)) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
@@ -78,7 +79,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         props = moment.after.props
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
-        leap, ready = (None, None) if jump is None else (ask(state, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
+        leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
         intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal))
     passers, theirs = asked(moment)
     intents += theirs
@@ -91,7 +92,7 @@ def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
     """Why jumps that players had asked for were given up in the last step: a line for each."""
     lines = []
     for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
-        if old.aim.waiting > 0.0 and new.aim == Aim() and jumping(now.state) is None and now is not was:
+        if old.aim.waiting > 0.0 and new.aim == Aim() and not leaving(now.state) and now is not was:
             seen = preview(was, old.aim, before.after.props)
             why = seen.why if seen is not None else ""
             lines.append(f"no jump: {why or was.state.refused or 'no foot stood ready'}")

@@ -33,6 +33,7 @@ name = "A"
 moves = [
     { for = 0.3, stop = true },
     { jump_to = [0, 1.4] },
+    { for = 1.2, stop = true },
     { jump = 0.2 },
     { for = 1.6, stop = true },
     { jump_to = [0, 0, 40] },
@@ -132,9 +133,9 @@ def test_a_run_with_jumps_is_the_same_to_the_bit(played, somebody):
 
 
 FAULTS = [
-    ("{ jump = 0.2 }", "{ jump = -1 }", "actors[0].moves[2].jump: input should be greater than 0, got -1"),
-    ("{ jump = 0.2 }", "{ jump = 0.2, airtime = 0.5 }", "actors[0].moves[2]: `airtime` goes with jump_to"),
-    ("{ jump = 0.2 }", "{ jump = 0.2, velocity = [1, 0, 0], for = 1 }", "actors[0].moves[2]: needs exactly one of"),
+    ("{ jump = 0.2 }", "{ jump = -1 }", "actors[0].moves[3].jump: input should be greater than 0, got -1"),
+    ("{ jump = 0.2 }", "{ jump = 0.2, airtime = 0.5 }", "actors[0].moves[3]: `airtime` goes with jump_to"),
+    ("{ jump = 0.2 }", "{ jump = 0.2, velocity = [1, 0, 0], for = 1 }", "actors[0].moves[3]: needs exactly one of"),
     ("{ jump_to = [0, 1.4] }", "{ jump_to = [0, 1.4], within = 1 }", "actors[0].moves[1]: `within` goes with jump_to and a run-up"),
     ("jump_to = [-3, 6], for = 6", "jump_to = [-3, 6], for = 6, aim = 1", "actors[2].moves[0]: `aim` goes with jump or jump_to without a run-up"),
     ("{ jump_to = [0, 1.4] }", "{ jump_to = [0, 1.4], facing = 3 }", "actors[0].moves[1]: `facing` goes with"),
@@ -331,3 +332,20 @@ def test_the_ground_s_push_does_not_tremble_and_is_the_same_after_going_back(som
     assert turns / (len(steady) / 60) < 10.0 and np.abs(np.diff(steady)).max() < 0.15
     once, again = (walker.step(walk, 301).centre_of_mass for _ in range(2))
     assert np.array_equal(once.acceleration, again.acceleration)
+
+
+def test_pressed_in_the_air_it_aims_from_where_it_will_land_and_goes_off_again_from_the_landing(somebody):
+    """The ring is drawn meanwhile, and the second jump lands in it."""
+    timeline, plans, rings = Timeline(opening(somebody)), [], []
+    for step in range(260):
+        now = jumping(timeline.now.after.characters[0].state)
+        if now is not None and (not plans or now.plan is not plans[-1]):
+            plans.append(now.plan)
+        flies = now is not None and len(plans) == 1 and now.plan.take_off + 0.05 < now.time < now.plan.touch_down - 0.05
+        timeline.advance([Wish(jump=20 < step < 60 or flies, move=(0.0, 1.0) if 30 < step < 60 or flies else (0.0, 0.0))])
+        seen = previews(timeline.now, ())[0] if flies else None
+        rings += [] if seen is None else [seen.place]
+    assert len(plans) == 2 and plans[1].take_off < 0.45
+    middles = [plan.feet[:, [0, 2]].mean(0) for plan in plans]
+    assert len(rings) > 10 and np.linalg.norm(rings[0][[0, 2]] - middles[0]) < 0.1
+    assert np.linalg.norm(rings[-1][[0, 2]] - middles[1]) < 0.1 < np.linalg.norm(middles[1] - middles[0])

@@ -38,7 +38,8 @@ class Start:
     root: (3,) [m], rotations: (J, 3, 3) of the pose. rates: (J, 3) [rad/s] how fast the joints turn,
     each in its parent's frame. centre, velocity: (3,) of the centre of mass [m, m/s]. feet, feet_rates:
     (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
-    or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told.
+    or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told. low: it comes down from a
+    jump, and its legs give until the centre of mass is so high [m]; None where it does not. acceleration: (3,) [m/s²] of the centre then.
     """
 
     root: np.ndarray
@@ -51,6 +52,8 @@ class Start:
     feet_rates: np.ndarray = field(default_factory=lambda: np.zeros((2, 5)))
     single: int | None = None
     ready: bool = False
+    low: float | None = None
+    acceleration: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     def planted(self, floor: float, body: BodyTables) -> np.ndarray:
         """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""

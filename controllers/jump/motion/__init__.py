@@ -2,7 +2,7 @@
 the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
 """
 
-from .airborne import FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, faded, ground_kernel
+from .airborne import FADE, FREE, GROUND_RATE, HEEL, PLANT, SAME, Airborne, faded, ground_kernel
 from .descent import descent
 from .fall import fall, over_nothing, struck
 from .flight import flight_kernel
@@ -11,6 +11,6 @@ from .plan import Plan
 from .thrust import Push, push
 
 __all__ = [
-    "FADE", "FREE", "GROUND_RATE", "HEEL", "SAME", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
+    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "SAME", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
     "flight_kernel", "ground_kernel", "over_nothing", "path", "push", "struck",
 ]

@@ -32,8 +32,9 @@ def descent(way: Path, start: Start, floor: float, times: np.ndarray) -> tuple[n
     late = np.maximum(half - max(way.wind_up - way.dip, 0.0), 0.0)
     pushed[1] = min(pushed[1], -MEETS * way.gravity[1])
     sinking = start.velocity if way.dip >= way.wind_up else 0.0 * start.velocity
-    c, v, a = joined(start.centre, sinking, np.zeros(3), way.low, way.passing, pushed, late)
-    fallen = fallen_kernel(half, (a[:, 1] + 1e-9 - way.gravity[1]) / (c[:, 1] - floor), start.centre[[0, 2]],
+    c, v, a = joined(start.centre, sinking, start.acceleration, way.low, way.passing, pushed, late)
+    rates = (a[:, 1] + 1e-9 - way.gravity[1]) / (c[:, 1] - floor)
+    fallen = fallen_kernel(half, rates, start.centre[[0, 2]], (start.centre - start.acceleration / rates[0])[[0, 2]],
                            start.velocity[[0, 2]], way.low[[0, 2]], way.passing[[0, 2]], way.pressed[[0, 2]])
     c, v, a = c[::2], v[::2], a[::2]
     c[:, [0, 2]], v[:, [0, 2]], a[:, [0, 2]] = fallen
@@ -56,10 +57,10 @@ def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, t
 
 
 @kernel
-def fallen_kernel(times, rates, start, velocity, end, end_velocity, pressed):
+def fallen_kernel(times, rates, start, under, velocity, end, end_velocity, pressed):
     """Along the floor (N, 2) place, velocity and acceleration of a body that falls as an inverted pendulum.
 
-    ẍ = rates (x − p): times, rates: (2 N − 1,) [s], [1/s²], evenly spaced. The centre of pressure p goes from under `start`
+    ẍ = rates (x − p): times, rates: (2 N − 1,) [s], [1/s²], evenly spaced. The centre of pressure p goes from `under` (2,)
     to `pressed` (2,); two bumps on its way, one early and one late, are chosen so that x ends at `end` with `end_velocity` (2,).
     """
     count, step = (len(times) + 1) // 2, times[2] - times[0]
@@ -68,7 +69,7 @@ def fallen_kernel(times, rates, start, velocity, end, end_velocity, pressed):
     for n in range(len(times)):
         s = times[n] / times[-1]
         for k in range(2):
-            foot[n, k] = start[k] + (pressed[k] - start[k]) * s
+            foot[n, k] = under[k] + (pressed[k] - under[k]) * s
         foot[n, 2], foot[n, 3] = (1.0 - s) * (1.0 - (1.0 - s) ** 6), s * (1.0 - s**6)
     place[0, :2], speed[0, :2] = start, velocity
     place[0, 2:], speed[0, 2:] = 0.0, 0.0

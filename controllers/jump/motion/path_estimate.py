@@ -117,7 +117,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         heights = upright.of(*(carried(physique, some) for some in angles))
         if start.single is None:
             # who waits needs no more than the muscles do, and pushes from as deep as it is
-            crouch = upright.stand + floor - float(start.centre[1]) if start.ready else size * prior.crouch(features[0])
+            crouch = upright.stand + floor - float(start.centre[1] if start.low is None else start.low) if start.ready else size * prior.crouch(features[0])
             pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet, angles[0], crouch)
         else:
             pushing = Running(physique, start, heights, balls, floor, gravity)

@@ -34,6 +34,8 @@ FROM_REST, READY = 0.34, 0.05
 """A wind-up from a stand takes so long [s] beside what it sinks; from the crouch, in which one has waited, the force rises in the second."""
 HEELS = 0.9
 """Who waits in the crouch begins to push from behind the middle of the soles by this share of how far they can press, to leap ahead."""
+FALLS = 0.3
+"""Legs that give to a landing faster than this [m/s] come to their lowest point as they would, and push from there."""
 STILL = 0.05
 """A body that rises or sinks slower stands [m/s]."""
 DROPS, RISES = 7.2, 18.0
@@ -120,15 +122,17 @@ class Standing:
         usual = quick = max((FROM_REST + sinking) / (1.0 + HURRY * pace), least)
         if start.ready:  # as far down as it is
             quick = max(READY + (FROM_REST - READY) * min(sinks / deep, 1.0) + sinking, least)
+        if start.low is not None and -start.velocity[1] > FALLS:  # as the legs give already
+            quick = max(2.0 * sinks / -float(start.velocity[1]), READY)
 
         rate = math.sqrt(g / self.heights.stand)
         pressed = self.middle
-        if start.ready:  # who waits leaning ahead pushes from the heels at first
+        if start.ready and start.low is None:  # who waits leaning ahead pushes from the heels at first
             flat = (land - leave) * FLAT
             pressed = pressed - HEELS * self.reach * flat / max(float(np.linalg.norm(flat)), 0.3 * size)
         fixed = (duration, early, late, rate, start.centre, start.velocity, pressed, toes, land, flight)
         found = np.empty((4, 3))
-        longest = quick if pace >= SLOW and not start.ready else MOST * max(math.sqrt(9.81 / g), 1.0) * usual
+        longest = quick if pace >= SLOW and not start.ready or start.low is not None else MOST * max(math.sqrt(9.81 / g), 1.0) * usual
         wind_up = waiting_kernel(quick, longest, self.reach, self.middle, fixed, found)
         low, ahead, passing, _ = found
         lead = (ahead - self.balls) * FLAT
@@ -138,7 +142,7 @@ class Standing:
         leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf
-        if abs(start.velocity[1]) < STILL:  # if it took longer it would rise first
+        if abs(start.velocity[1]) < STILL and start.low is None:  # if it took longer it would rise first
             dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
         return TakeOff(low, leave, passing, wind_up, dip, strong, pressed)
 
