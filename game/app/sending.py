@@ -27,10 +27,9 @@ class Sending:
     """
 
     def __init__(self, to: str):
-        from gambol.controllers.body import human
         from gambol.controllers.reconstruction.live import Sender, address
 
-        self._sender = Sender(human(), *address(to))
+        self._sender = Sender(*address(to))
 
     @property
     def lost(self) -> int:
@@ -40,8 +39,7 @@ class Sending:
     def send(self, world: World) -> None:
         """Send one frame."""
         one = shown(world)
-        self._sender.skeleton = one.controller.skeleton
-        self._sender.send(one.state.pose, one.state.ground, world.time, sure(one.state) if one.follows is not None else 1.0)
+        self._sender.send(one.controller.skeleton, one.state.pose, one.state.ground, world.time, sure(one.state) if one.follows is not None else 1.0)
 
     def close(self) -> None:
         """Send no more."""

@@ -40,10 +40,9 @@ def sent(to: str | None) -> Iterator[Any]:
     if to is None:
         yield None
         return
-    from gambol.controllers.body import human
     from gambol.controllers.reconstruction.live import Sender, address
 
-    sender = Sender(human(), *address(to))
+    sender = Sender(*address(to))
     try:
         yield sender
     finally:
@@ -87,7 +86,7 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
                 state, pose = someone.step(state, intent, 1 / FPS)
                 lost += someone.active(state)[0] != "reconstruction"
                 if sender is not None:
-                    sender.send(pose, state.ground, now, sure(state))
+                    sender.send(someone.skeleton, pose, state.ground, now, sure(state))
                 if out is not None:
                     poses.append(pose)
                     contacts.append(state.contacts)

@@ -41,7 +41,7 @@ def restless(places):
 @pytest.mark.parametrize("clock", [False, True])
 @pytest.mark.parametrize("rate", [50, 60, 72, 90, 120, 144])
 def test_a_stream_of_any_pace_is_seen_as_calmly_as_its_tracker_moved(rate, clock):
-    unrest = 0.003 if clock else min(0.003, 0.3 / rate)  # without the sender's clock no more than a third of the pace
+    unrest = 0.003
     times, seen, period = played(rate, unrest, 0.02, clock)
     delay = LATENCY + unrest * np.sqrt(2 / np.pi) + 1.0 / rate  # by a packet, and by what the network is late on the average
     late = min(np.arange(0.0, 0.06, 5e-4), key=lambda d: np.linalg.norm(seen - hand(times - d)))
@@ -62,9 +62,9 @@ def test_a_packet_that_is_late_is_waited_for_along_the_motion_and_not_for_ever()
     line = Timeline()
     for k in range(60):
         line.heard(k / 60, np.array([k / 60, 0.0, 0.0]))
-    for ahead in (1, 2):  # a step and two after the newest: two packets have not come
+    for ahead in (1, 2, 4):  # so many steps after the newest: up to three packets have not come
         assert line.at((59 + ahead) / 60)[0] == pytest.approx((58 + ahead) / 60, abs=1e-6)
-    assert line.at(5.0)[0] == pytest.approx(60 / 60, abs=1e-6)
+    assert line.at(5.0)[0] == pytest.approx(62 / 60, abs=1e-6)
 
 
 def test_after_a_silence_it_begins_anew():

@@ -69,11 +69,11 @@ def test_frames_arrive_and_nobody_listening_is_no_mistake():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
         listener.bind(("127.0.0.1", 0))
         listener.settimeout(10.0)
-        sender = Sender(skeleton, "127.0.0.1", listener.getsockname()[1])
-        sender.send(pose, np.zeros(3), 0.5)
+        sender = Sender("127.0.0.1", listener.getsockname()[1])
+        sender.send(skeleton, pose, np.zeros(3), 0.5)
         assert len(heard(listener.recv(65535))) == len(skeleton) + 5
     for k in range(5):
-        sender.send(pose, np.zeros(3), k / 60)
+        sender.send(skeleton, pose, np.zeros(3), k / 60)
     sender.close()
 
 
@@ -90,4 +90,4 @@ def test_an_address_with_a_mistake_is_told_of(text):
 
 def test_a_machine_that_is_none_is_told_of():
     with pytest.raises(SenderError, match="no machine that can be found"):
-        Sender(human(), "no such machine.invalid")
+        Sender("no such machine.invalid")

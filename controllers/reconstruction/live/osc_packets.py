@@ -1,24 +1,29 @@
 """What packets of trackers say, as VR programs send them: the VMC protocol and VRChat's OSC trackers.
 
 Understood are /VMC/Ext/Hmd/Pos, /VMC/Ext/Con/Pos and /VMC/Ext/Tra/Pos (a serial number, a position and a quaternion),
-/VMC/Ext/T (the sender's clock) and /tracking/trackers/N/position (a position), alone or in bundles. Both come from Unity, whose
-axes are left-handed: +X is to the right there.
+/VMC/Ext/T (the sender's clock), /tracking/trackers/N/position (a position) and …/rotation (degrees about X, Y and Z, turned about
+Z first, then X, then Y: Unity's order), alone or in bundles. SlimeVR sends either. Both come from Unity, whose axes are left-handed:
++X is to the right there.
 """
 
 from __future__ import annotations
 
 import logging
 import re
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from pythonosc import osc_bundle, osc_message
 from pythonosc.osc_packet import OscPacket, ParseError
+from scipy.spatial.transform import Rotation
 
 FROM_UNITY = np.array([-1.0, 1.0, 1.0])
 """From its axes into ours and back."""
+MIRRORED = np.array([1.0, -1.0, -1.0, 1.0])
+"""So are the quaternions x, y, z, w of turns."""
 _VMC = re.compile(r"/VMC/Ext/(Hmd|Con|Tra)/Pos")
-_VRCHAT = re.compile(r"/tracking/trackers/([1-8]|head)/position")
+_VRCHAT = re.compile(r"/tracking/trackers/([1-8]|head)/(position|rotation)")
 _CLOCK = "/VMC/Ext/T"
 LONGEST_NAME = 100
 """Letters of a tracker's name."""
@@ -29,13 +34,21 @@ for _module in (osc_bundle, osc_message):
     vars(_module)["logging"] = _quiet
 
 
-class Seen(NamedTuple):
-    """Trackers of a packet: serial numbers, kinds ("Hmd", "Con", "Tra") and places (3,) [m], Y up and +X to the left of +Z.
-
-    sent: when by the sender's clock [s]; None where it does not say.
+class Reading(NamedTuple):
+    """A tracker: serial number, kind ("Hmd", "Con", "Tra"), place (3,) [m], Y up and +X to the left of +Z, and turn (4,), a unit
+    quaternion x, y, z, w; NaN what is not said.
     """
 
-    trackers: list[tuple[str, str, np.ndarray]]
+    serial: str
+    kind: str
+    place: np.ndarray
+    turn: np.ndarray
+
+
+class Seen(NamedTuple):
+    """Trackers of a packet, each one once. sent: when by the sender's clock [s]; None where it does not say."""
+
+    trackers: list[Reading]
     sent: float | None = None
 
 
@@ -45,21 +58,54 @@ def understood(packet: bytes) -> Seen | None:
         messages = [timed.message for timed in OscPacket(packet).messages]
     except (ParseError, ValueError, IndexError, RecursionError):
         return None
-    found, sent = [], None
+    found: dict[str, Reading] = {}
+    sent = None
     for message in messages:
         values = message.params
         if match := _VMC.fullmatch(message.address):
-            serial, kind, numbers = (values[0] if values else None), match[1], values[1:4]
+            reading = _tracker(values[0], match[1], values[1:4], _turn(values[4:8])) if len(values) > 3 else None
         elif match := _VRCHAT.fullmatch(message.address):
-            serial, kind, numbers = match[1], "Hmd" if match[1] == "head" else "Tra", values[:3]
+            kind, turned = "Hmd" if match[1] == "head" else "Tra", match[2] == "rotation"
+            reading = None
+            if _numbers(values, 3, 1e6):
+                reading = _tracker(match[1], kind, [] if turned else values, _euler(values) if turned else None)
         else:
             if message.address == _CLOCK and len(values) == 1 and type(values[0]) in (int, float) and abs(values[0]) < 1e9:
                 sent = float(values[0])
             continue
-        if not isinstance(serial, str) or len(serial) > LONGEST_NAME or len(numbers) != 3 or not all(type(number) in (int, float) for number in numbers):
+        if reading is None:
             return None
-        place = np.array(numbers, float)
-        if not np.all(np.abs(place) < 1e3):  # NaN is not, either
+        before = found.get(reading.serial, reading)
+        found[reading.serial] = reading._replace(place=np.where(np.isnan(reading.place), before.place, reading.place),
+                                                 turn=np.where(np.isnan(reading.turn), before.turn, reading.turn))
+    return Seen(list(found.values()), sent)
+
+
+def _tracker(serial: Any, kind: str, place: Sequence[Any], turn: Rotation | None) -> Reading | None:
+    """A tracker of a place (3,), nothing where it is not said, and a turn in Unity's axes; None if it can't be one."""
+    if not isinstance(serial, str) or len(serial) > LONGEST_NAME:
+        return None
+    where = np.full(3, np.nan)
+    if place:
+        if not _numbers(place, 3, 1e3):
             return None
-        found.append((serial, kind, place * FROM_UNITY))
-    return Seen(found, sent)
+        where = np.array(place, float) * FROM_UNITY
+    return Reading(serial, kind, where, np.full(4, np.nan) if turn is None else turn.as_quat() * MIRRORED)
+
+
+def _turn(values: Sequence[Any]) -> Rotation | None:
+    """The turn of a quaternion; None of none, as some send for a tracker that knows no turn."""
+    if not _numbers(values, 4, 1.1) or not 0.9 < float(np.linalg.norm(values)) < 1.1:
+        return None
+    return Rotation.from_quat(values)
+
+
+def _euler(values: Sequence[Any]) -> Rotation:
+    """The turn of Unity's Euler angles [°]: about Z, then X, then Y."""
+    x, y, z = values
+    return Rotation.from_euler("YXZ", [y, x, z], degrees=True)
+
+
+def _numbers(values: Sequence[Any], count: int, most: float) -> bool:
+    """Whether they are so many numbers, none beyond `most`."""
+    return len(values) == count and all(type(value) in (int, float) and abs(value) < most for value in values)  # NaN is not, either

@@ -8,21 +8,20 @@ from __future__ import annotations
 
 import errno
 import socket
-import tomllib
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from threading import Thread
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from ...files import printable, reason, tables
-from ..control_points import ControlPoints, parse
-from ..pose_vector import SKELETON
+from ...files import printable, reason
 from .osc_packets import understood
 from .packet_log import PacketLog, packets_of
 from .placing import Placement
 from .timeline import Timeline
+from .tracker_map import StreamError, controls_of
 
 PORT = 39539
 """The port that VMC programs send to unless told otherwise. VRChat's is 9000."""
@@ -30,18 +29,11 @@ HOST = "127.0.0.1"
 """Only programs on this machine are heard unless somebody says so: OSC knows no password. 0.0.0.0 hears any machine."""
 STALE = 0.15
 """A tracker that was silent for so long [s] is lost."""
-USUAL = {"hmd": "head+0/0.09/0.09", "1": "root", "2": "lankle", "3": "rankle"}
-"""Which point a tracker is on unless somebody says so: a head-set is in front of the eyes, and VRChat's first three
-trackers are waist, left and right foot."""
 PINNED = 1.0
 """Whoever sends first is heard alone until silent for so long [s]."""
 _AT_ONCE = 4096  # packets taken in one go: a flood must not stop a frame
 _MOST_NAMES = 64  # of trackers that are on no point: how many are remembered
 _LAGGING = 0.02  # the share by which the time that is asked for is brought to the clock, a question
-
-
-class StreamError(ValueError):
-    """A stream that can't be had, and what would help."""
 
 
 class Trackers:
@@ -51,6 +43,7 @@ class Trackers:
     A tracker that is called like one of these points is on it, too. stale: [s] see STALE. placement: into the world; `placing`
     finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
     many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
+    turns: (n, 3, 3) how the trackers are turned as of when the points were told last, placed as they are; NaN where not known.
     """
 
     def __init__(self, points: Mapping[str, str], stale: float = STALE):
@@ -58,7 +51,8 @@ class Trackers:
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
         self.stale, self.placement, self.heard, self.broken, self.foreign = stale, Placement(), {}, 0, 0
-        self._places = [Timeline() for _ in points]
+        self._lines = [Timeline() for _ in points]
+        self.turns = np.full((len(points), 3, 3), np.nan)
         self._from = "", -np.inf
 
     @property
@@ -77,18 +71,25 @@ class Trackers:
             return
         if seen.trackers:
             self._from = sender, time
-        for serial, kind, place in seen.trackers:
+        for serial, kind, place, turn in seen.trackers:
             if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
                 self.heard[serial] = time
             number = self._index.get(serial, self._index.get("hmd") if kind == "Hmd" else None)
-            if number is not None:
-                self._places[number].heard(time, place, seen.sent)
+            if number is None:
+                continue
+            if np.isnan(place).any():
+                self._lines[number].turned(time, turn)
+            else:
+                self._lines[number].heard(time, place, seen.sent, turn)
 
     def told(self, now: float, evenly: bool = True) -> np.ndarray:
-        """Where the points are (n, 3) [m] at a time: evenly, one packet late, or as the newest packets say."""
-        lost = np.full(3, np.nan)
-        return self.placement(np.array([lost if now - one.last > self.stale else one.at(now) if evenly else one.newest
-                                        for one in self._places]))
+        """Where the points are (n, 3) [m] at a time: evenly, one packet late, or as the newest packets say. Sets `turns`."""
+        places, quaternions = np.full((len(self._lines), 3), np.nan), np.full((len(self._lines), 4), np.nan)
+        for n, line in enumerate(self._lines):
+            if now - line.last <= self.stale:
+                places[n], quaternions[n] = (line.at(now), line.turned_at(now)) if evenly else (line.newest, line.newest_turn)
+        self.turns = self.placement.turned(matrices(quaternions))
+        return self.placement(places)
 
 
 class Replayed(Trackers):
@@ -209,43 +210,10 @@ class Stream(Trackers):
         self.close()
 
 
-def controls_of(points: Mapping[str, str]) -> ControlPoints:
-    """The control points that trackers are on. StreamError for a point that there is not, or two trackers on one."""
-    try:
-        controls = parse(",".join(points.values()), SKELETON)
-    except ValueError as error:
-        raise StreamError(str(error)) from None
-    if len(controls) != len(points):
-        raise StreamError(f"each tracker is on one point: {', '.join(points.values())}")
-    return controls
-
-
-def read_map(path: str | Path) -> dict[str, str]:
-    """Which point each tracker is on, from a TOML file's table [trackers]: "LHR-1A2B3C4D" = "lwrist".
-
-    StreamError, naming file and field, for anything else.
-    """
-    path = Path(path)
-    try:
-        table = tables(path)
-    except OSError as error:
-        raise StreamError(f"{path}: can't be read: {reason(error)}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StreamError(f"{path}: {error}") from None
-    trackers = table.get("trackers")
-    if not isinstance(trackers, dict) or not trackers:
-        raise StreamError(f'{path}: needs a table [trackers] with lines such as "LHR-1A2B3C4D" = "lwrist"')
-    for serial, point in trackers.items():
-        if not isinstance(point, str):
-            raise StreamError(f'{path}: trackers.{printable(serial)}: needs a point in quotes, such as "lwrist"')
-    try:
-        controls_of(trackers)
-    except StreamError as error:
-        raise StreamError(f"{path}: trackers: {error}") from None
-    return trackers
-
-
-def usual_map(names: Sequence[str] = ()) -> dict[str, str]:
-    """Which tracker is on each of some points where nobody says so, see USUAL; the usual four where none is named."""
-    usual = {point.partition("+")[0]: (serial, point) for serial, point in USUAL.items()}
-    return dict(usual.get(name, (name, name)) for name in names or usual)
+def matrices(quaternions: np.ndarray) -> np.ndarray:
+    """Rotation matrices (n, 3, 3) of unit quaternions (n, 4), NaN of NaN."""
+    turns = np.full((len(quaternions), 3, 3), np.nan)
+    known = np.isfinite(quaternions).all(-1)
+    if known.any():
+        turns[known] = Rotation.from_quat(quaternions[known]).as_matrix()
+    return turns

@@ -36,6 +36,10 @@ class Placement:
         """The points (..., 3) placed."""
         return self.scale * points @ yaw(self.heading).T + self.shift
 
+    def turned(self, turns: np.ndarray) -> np.ndarray:
+        """The turns (..., 3, 3) placed."""
+        return yaw(self.heading) @ turns
+
 
 @dataclass(frozen=True, eq=False)
 class Standing:

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from ...body import Pose, Skeleton
 from ...files import printable, reason
-from .osc_packets import FROM_UNITY
+from .osc_packets import FROM_UNITY, MIRRORED
 
 PORT = 39539
 """The port that programs which show bodies listen at, unless told otherwise."""
@@ -26,7 +26,6 @@ BONES = {"Hips": "Hips", "Spine": "Spine", "Spine1": "Chest", "Spine2": "UpperCh
         ("Shoulder", "Shoulder"), ("Arm", "UpperArm"), ("ForeArm", "LowerArm"), ("Hand", "Hand"),
         ("UpLeg", "UpperLeg"), ("Leg", "LowerLeg"), ("Foot", "Foot"), ("Toe", "Toes"))}
 """Unity's name of each joint."""
-_TURNED = np.array([1.0, -1.0, -1.0, 1.0])  # a quaternion x, y, z, w seen in a mirror across x
 
 
 class SenderError(ValueError):
@@ -56,8 +55,8 @@ def bundle(skeleton: Skeleton, pose: Pose, ground: np.ndarray, time: float, sure
     places[0] = about.inv().apply(np.asarray(pose.root, float) - [x, 0.0, z])
     builder = OscBundleBuilder(IMMEDIATELY)
     for path, *values in (("/VMC/Ext/OK", 1),
-                          ("/VMC/Ext/Root/Pos", "root", *(np.array([x, 0.0, z]) * FROM_UNITY), *(about.as_quat() * _TURNED)),
-                          *(("/VMC/Ext/Bone/Pos", BONES[name], *(place * FROM_UNITY), *(quaternion * _TURNED))
+                          ("/VMC/Ext/Root/Pos", "root", *(np.array([x, 0.0, z]) * FROM_UNITY), *(about.as_quat() * MIRRORED)),
+                          *(("/VMC/Ext/Bone/Pos", BONES[name], *(place * FROM_UNITY), *(quaternion * MIRRORED))
                             for name, place, quaternion in zip(skeleton.names, places, quaternions) if name in BONES),
                           ("/VMC/Ext/Blend/Val", SURE, float(np.clip(sure, 0.0, 1.0))), ("/VMC/Ext/Blend/Apply",),
                           ("/VMC/Ext/T", float(time))):
@@ -69,10 +68,10 @@ def bundle(skeleton: Skeleton, pose: Pose, ground: np.ndarray, time: float, sure
 
 
 class Sender:
-    """Sends a body to a program. SenderError if its address is none. lost: how many frames could not be sent."""
+    """Sends bodies to a program. SenderError if its address is none. lost: how many frames could not be sent."""
 
-    def __init__(self, skeleton: Skeleton, host: str, port: int = PORT):
-        self.skeleton, self.lost = skeleton, 0
+    def __init__(self, host: str, port: int = PORT):
+        self.lost = 0
         try:
             family, kind, _, _, self._to = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
         except (OSError, UnicodeError) as error:
@@ -80,10 +79,10 @@ class Sender:
         self._socket = socket.socket(family, kind)
         self._socket.setblocking(False)
 
-    def send(self, pose: Pose, ground: np.ndarray, time: float, sure: float = 1.0) -> None:
+    def send(self, skeleton: Skeleton, pose: Pose, ground: np.ndarray, time: float, sure: float = 1.0) -> None:
         """See `bundle`. Nobody listening is no mistake."""
         try:
-            self._socket.sendto(bundle(self.skeleton, pose, ground, time, sure), self._to)
+            self._socket.sendto(bundle(skeleton, pose, ground, time, sure), self._to)
         except OSError:
             self.lost += 1
 
