@@ -26,11 +26,9 @@ from _plots import pictures
 from gambol.controllers.body import wrap
 from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation import arrived, wish
+from gambol.controllers.navigation import DEPTH, arrived, wish
 from gambol.controllers.navigation.identification import likeness, planned_like, read_paths, straight
-from gambol.controllers.navigation.obstacles import DEPTH
-from gambol.controllers.navigation.planning import FREE, plan
-from gambol.controllers.navigation.planning.limits import too_near
+from gambol.controllers.navigation.planning import FREE, plan, too_near
 from gambol.controllers.navigation.routes import distance, grid_way, shapes_of
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box, Pillar
