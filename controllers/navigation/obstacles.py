@@ -23,6 +23,8 @@ KNEE = 0.05
 """What stands lower than a step and this beside a walker is in nobody's way [m]."""
 SHOULDER = 0.30
 """A walker keeps so far from walls [m] ..."""
+DEPTH = 0.25, 0.20
+"""... where he faces them, and where they are behind him, so far: what a body takes that side-steps [m] ..."""
 LOOK = 0.75
 """... and looks so far ahead [s]: about what stopping from a run takes."""
 PACE = 0.15

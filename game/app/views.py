@@ -32,7 +32,7 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     before, after, width = moment.before, moment.after, 1.0 / len(cameras)
     aimed = previews(moment) if aimed is None else aimed
     people = explained(figures(before, after, fraction), before, after, fraction, overlays, aimed)
-    people = stepping(led(pointed(people, before, after, fraction, overlays), after, overlays), after, overlays)
+    people = stepping(led(pointed(people, before, after, fraction, overlays), after, overlays, len(moment.players)), after, overlays)
     text = tuple(text) or ((),) * len(cameras)
     text = tuple((*lines, *broken(f"no jump: {seen.why}")) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))

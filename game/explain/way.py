@@ -31,12 +31,14 @@ PLACE = 0.16
 PARTS = ("time", "forward", "turning", "sideways", "looking away")
 
 
-def led(figures: Sequence[Figure], after: World, overlays: Overlays) -> tuple[Figure, ...]:
-    """The figures, those who go to a goal with the headings of the way that is left, and with the goal."""
+def led(figures: Sequence[Figure], after: World, overlays: Overlays, count: int | None = None) -> tuple[Figure, ...]:
+    """The figures, those who go to a goal with the headings of the way that is left, and with the goal. count: of the first so many alone: those who
+    are played."""
     if not overlays.path:
         return tuple(figures)
-    return tuple(figure if one.state.going is None else replace(figure, sketches=(*figure.sketches, *_way(one.state.going, float(one.state.floor))))
-                 for figure, one in zip(figures, after.characters, strict=True))
+    shown = [one.state.going is not None and (count is None or number < count) for number, one in enumerate(after.characters)]
+    return tuple(figure if not shows or one.state.going is None else replace(figure, sketches=(*figure.sketches, *_way(one.state.going, float(one.state.floor))))
+                 for figure, one, shows in zip(figures, after.characters, shown, strict=True))
 
 
 def _way(way: Going, floor: float) -> list[Sketch]:
@@ -82,7 +84,7 @@ def on_the_way(state: CharacterState) -> tuple[str, ...]:
     if way is None:
         return ()
     if way.planned is None:
-        return ("which way?",)
+        return ("which way?" if way.thinking is not None else "not before he walks",)
     if way.plan.reason:
         return (f"no way there: {way.plan.reason}",)
     if way.there:

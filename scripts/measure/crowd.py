@@ -98,6 +98,26 @@ def walked(walker: Locomotion, scene: Scene, seconds: float, rng, speeds=None) -
                   (moved < 0.5) & ~done, steps / spent)
 
 
+def waits(trails: np.ndarray) -> str:
+    """Who waits for whom at a door at z = 0, in words: for each side, how long nobody of it passed at most while some of it stood within 3 m of the
+    door, and how many of the other side passed meanwhile."""
+    sides, told = np.sign(trails[:, :, 1]), []
+    passes = [(int(t), float(sides[t, who])) for who in range(trails.shape[1]) for t in np.flatnonzero(np.diff(sides[:, who]))[:1]]
+    for side in (-1.0, 1.0):
+        mine = sides[0] == side
+        there = np.any((sides[:, mine] == side) & (np.hypot(trails[:, mine, 0], trails[:, mine, 1]) < 3.0), 1)
+        longest, most, since, others = 0, 0, 0, 0
+        own, theirs = ([t for t, from_ in passes if from_ == s] for s in (side, -side))
+        for t in range(len(trails)):
+            if t in own or not there[t]:
+                since, others = 0, 0
+            else:
+                since, others = since + 1, others + theirs.count(t)
+            longest, most = max(longest, since), max(most, others)
+        told.append(f"{longest / RATE:.1f} s, {most} others")
+    return "; ".join(told)
+
+
 def near_pairs(places, within: float) -> tuple[np.ndarray, np.ndarray]:
     """Pairs (P, 2) nearer than `within` [m], and how near (P,) they are."""
     gaps = np.linalg.norm(places[:, None] - places[None], axis=-1)
@@ -173,6 +193,8 @@ def main() -> None:
             print(f"{name}: {made.touched} frames of two capsules in each other, deepest {100 * made.deepest:.1f} cm; limbs {made.limbs} of each third frame, deepest "
                   f"{100 * made.limbs_deepest:.1f} cm, without arms {made.legs}, {100 * max(made.legs_deepest, 0.0):.1f} cm; walls {100 * made.walls:.1f} cm away; arrivals {made.arrivals.sum()}, never {(made.arrivals == 0).sum()}; "
                   f"stuck {made.stuck.sum()}; mean speed {speed.mean():.2f} of {made.speeds.mean():.2f} m/s; {made.rate:.0f} Hz", flush=True)
+            if name == "two_ways":
+                print(f"  longest wait of each side, and who passed meanwhile: {waits(made.trails)}")
             if asked.plots:
                 drawn(asked.plots, name, scene, made)
 

@@ -5,7 +5,7 @@
 Cost: the same problem stated anew for casadi and IPOPT (`tests/navigation/oracle.py`), with and without limits; where casadi is
 installed. Likeness: in full, and on walks left out, it is told by `gambol navigate fit`; here the shipped weights on the recorded
 walks in ../shared/human_paths, where they lie. Obstacles: random rooms with ten discs, boxes and walls; a goal counts as one that can
-be reached where a grid twice as fine as the planner's has a way for a disc of the clearance's radius; that disc is swept along every plan. Times are the processor's.
+be reached where a grid twice as fine as the planner's has a way for a disc of the clearance's radius; along every plan the body is swept as it is turned, as wide as that disc, less deep. Times are the processor's.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from _plots import pictures
 from gambol.controllers.body import wrap
 from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation import arrived, wish
+from gambol.controllers.navigation import DEPTH, arrived, wish
 from gambol.controllers.navigation.identification import likeness, planned_like, read_paths, straight
-from gambol.controllers.navigation.planning import FREE, plan
+from gambol.controllers.navigation.planning import FREE, plan, too_near
 from gambol.controllers.navigation.routes import distance, grid_way, shapes_of
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box, Pillar
@@ -36,6 +36,8 @@ from gambol.game.scene import Box, Pillar
 ROOT = Path(__file__).resolve().parents[2]
 SWEPT = 1e-3
 """A disc this much smaller [m] than the clearance is swept: grazing is no collision."""
+GIRTH = np.array([CLEARANCE, *DEPTH])
+"""How far a walker reaches aside, ahead and back [m]."""
 SHARE = 0.9
 """What is left of the library's velocities [share] serves to catch up."""
 HARD = [(0.0, 3.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (-1.5, 1.0, -np.pi), (0.0, 0.5, np.pi), (0.0, 0.0, np.pi)]
@@ -112,11 +114,16 @@ def nearest(places, shapes) -> float:
     return min(distance(x, z, shape, out) for x, z in places for shape in shapes)
 
 
+def room_at(grounds, shapes) -> float:
+    """How much room is left beside a walker at ground frames (N, 3) [m], as he is turned."""
+    return -max(too_near(x, z, heading, shape, GIRTH) for x, z, heading in grounds for shape in shapes)
+
+
 def rooms(limits, count: int, seed: int, plots: Path | None) -> None:
     """Goals in rooms: whether they are reached, and whether anything is touched."""
     for name, weights in SETS.items():
         rng = np.random.default_rng(seed)
-        spent, missed, touched, shut, beyond, drawn = [], [], 0, 0, 0, []
+        spent, missed, touched, turned, shut, beyond, drawn = [], [], 0, 0, 0, 0, []
         while len(spent) < count:
             things = room(rng)
             shapes = shapes_of(things)
@@ -134,11 +141,12 @@ def rooms(limits, count: int, seed: int, plots: Path | None) -> None:
                 continue
             beyond += not there
             _, ground, _ = made.sampled(800)
-            touched += nearest(ground[:, :2], shapes) < CLEARANCE - SWEPT
+            touched += room_at(ground, shapes) < -SWEPT
+            turned += nearest(ground[:, :2], shapes) < CLEARANCE - SWEPT
             if len(drawn) < 12:
                 drawn.append((shapes, made))
         print(f"rooms of ten things, {name}: {count} goals, {shut} that no grid search reaches; of the others {count - shut - len(missed)} reached"
-              f" ({100 * (count - shut - len(missed)) / max(count - shut, 1):.1f} %), {beyond} reached where the grid is too rough; {touched} plans touch something")
+              f" ({100 * (count - shut - len(missed)) / max(count - shut, 1):.1f} %), {beyond} reached where the grid is too rough; {turned} turn aside to pass; {touched} plans touch something")
         for line in missed[:10]:
             print(f"  missed {line}")
         print(f"  time of a plan: median {np.median(spent):.1f} ms, 95 % {np.percentile(spent, 95):.1f} ms, worst {max(spent):.1f} ms", flush=True)

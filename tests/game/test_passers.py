@@ -6,7 +6,9 @@ import pytest
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.app.app import Play
+from gambol.game.app.views import scenes
 from gambol.game.input import Wish
+from gambol.game.scene import Overlays
 from gambol.game.session import Timeline, opening, tick
 from gambol.game.session.input_log import LogWriter, read
 from gambol.game.session.replay import replay
@@ -75,3 +77,15 @@ def test_a_log_has_them(walker, tmp_path):
     assert len(last.after.characters) == 5
     for one, other in zip(last.after.characters, game.now.after.characters):
         assert one.state.pose.root.tobytes() == other.state.pose.root.tobytes()
+
+
+def test_only_who_is_played_shows_his_plan(walker):
+    """Passers-by have plans, too, which would cover the floor."""
+    line = Timeline(opening(walker))
+    line.advance([Wish(pressed=("crowd=2", "goto=-2/3"))])
+    for _ in range(30):
+        line.advance([Wish()])
+    assert all(one.state.going is not None for one in line.now.after.characters)
+    scene, = scenes(line.now, 1.0, [line.now.players[0].view(1.0)], Overlays(path=True))
+    drawn = [any(sketch.layer == "path" for sketch in figure.sketches) for figure in scene.figures]
+    assert drawn == [True, False, False]

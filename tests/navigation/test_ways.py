@@ -83,7 +83,7 @@ def ring(count=16, radius=1.2):
 
 
 @pytest.mark.parametrize(("goal", "around", "told"), [
-    ((0, 3, 0), ring(), "no way leads there that is 0.60 m wide"), ((0, 1.8, 0), [WALL], "the goal is 0.15 m from something, 0.30 m are needed"),
+    ((0, 3, 0), ring(), "no way leads there that is 0.45 m wide"), ((0, 1.8, 0), [WALL], "the goal is 0.15 m from something, 0.30 m are needed"),
     ((0, 2, 0), [WALL], "the goal lies in something")])
 def test_a_goal_that_cant_be_reached_gives_a_reason(goal, around, told):
     made = plan(np.zeros(3), goal, around=around)
@@ -127,7 +127,7 @@ def test_the_derivatives_of_limits_are_their_derivatives():
         def penalties(x, t, by_plane=by_plane, by_shape=by_shape):
             g, h, m = np.zeros(9), np.zeros((9, 9)), np.zeros(9)
             cost, by_t, _, _ = keep_velocity(x, t, LIMITS, by_plane, 3.0, 1.0, g, h, m)
-            near, _ = keep_clear(x, shapes, 0.5, by_shape, 20.0, 1.0, g, h)
+            near, _ = keep_clear(x, shapes, np.full(3, 0.5), by_shape, 20.0, 1.0, g, h)
             return cost + near, np.append(g, by_t)
 
         slopes = [(penalties(y + e[:9], seconds + e[9])[0] - penalties(y - e[:9], seconds - e[9])[0]) / 2e-6 for e in 1e-6 * np.eye(10)]

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import BSpline
 
-from ...compiled import kernel
-from ..obstacles import SHOULDER
-from ..routes import distance, grid_way, separation, shapes_of, ways
+from ..obstacles import DEPTH, SHOULDER
+from ..routes import distance, shapes_of
 from ..steering import in_world
 from .guesses import faced, guesses
 from .walk_plan import Plan
 from .plan_search import search
-from .splines import basis, knots_of
+from .room import far, narrow, room_on, round_ends, ways_of
+from .splines import basis
 from .walking_cost import Weights
 from .weights import HUMAN
 
@@ -25,8 +23,8 @@ INTERVALS = 24, 80
 """A plan has so many intervals at least, and at most ..."""
 INTERVAL = 0.25
 """... about so long [s] ..."""
-STRETCH = 0.15
-"""... and among things that stand about no longer than this [m]."""
+STRETCH = 0.15, 0.1
+"""... and among things that stand about no longer than the one, where he turns aside to pass than the other [m]."""
 REPAIRS = 2
 """A plan that comes too near to something between the places that are looked at is mended so often."""
 MOST = 250
@@ -35,6 +33,8 @@ TOLERANCE = 1e-6
 """A search ends where another step would gain less than this share of the cost."""
 ALLOWED = np.array([0.01, 0.004])
 """Velocities [m/s, rad/s] and distances [m] may break their limits by so much within a search ..."""
+TIGHT = np.array([0.01, 0.009])
+"""... where he turns aside to pass, which is searched for stiffly and slowly, by nearly the margin: the sweep tells ..."""
 STRICT = np.array([0.01, 0.0004])
 """... and where a plan is mended by so much ..."""
 MARGIN = 0.01
@@ -47,20 +47,21 @@ FASTEST = 20.0
 
 def plan(ground: ArrayLike, goal: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
          limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0,
-         leaving: ArrayLike = (0.0, 0.0, 0.0)) -> Plan:
+         leaving: ArrayLike = (0.0, 0.0, 0.0), aside: tuple[float, float] = DEPTH) -> Plan:
     """The walk from ground (3,) x, z [m], heading [rad] to goal (3,) that costs least: Mombaur 2010.
 
     velocity: (3,) v_f, ω, v_l at the start [m/s, rad/s, m/s]. limits: (H, 4) half-spaces n·(v_f, ω, v_l) + d ≤ 0 that velocities
     keep to, as `ControlSpace.half_spaces` gives them. around: boxes and pillars, of which those count that stop somebody on a
     floor `floor` [m] high. clearance: how far from them the middle of the body stays [m]; as near as he is, where he starts nearer.
-    leaving: (3,) how he moves on as he is there; by default he stands. A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
+    leaving: (3,) how he moves on as he is there; by default he stands. aside: the clearances where he faces something and where he has it behind him [m]: with
+    these he side-steps through narrow passages. A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
     """
-    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor, leaving)[0]
+    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor, leaving, aside)[0]
 
 
 def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
           limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0,
-          leaving: ArrayLike = (0.0, 0.0, 0.0)) -> list[Plan]:
+          leaving: ArrayLike = (0.0, 0.0, 0.0), aside: tuple[float, float] = DEPTH) -> list[Plan]:
     """Plans to many goals (G, 3) in one search, each as of `plan`. ground, velocity, leaving: (3,), or (G, 3) for each."""
     goals = _numbers("goal", goals)
     if goals.ndim != 2 or goals.shape[1] != 3:
@@ -81,7 +82,8 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
     with np.errstate(divide="ignore"):
         top = float(np.min(-planes[:, 3] / planes[:, 0], initial=FASTEST, where=planes[:, 0] > 1e-9))
     found: list[Plan | None] = [None] * len(goals)
-    same: dict[bytes, tuple[np.ndarray, list]] = {}  # searches among the same shapes, at the same clearances
+    same: dict[bytes, tuple[np.ndarray, np.ndarray, list]] = {}  # searches among the same shapes, for the same girth
+    girth = np.minimum([clearance, *aside], clearance)
     for number, (start, goal) in enumerate(zip(grounds, goals)):
         if max(np.abs(velocities[number]).max(), np.abs(onward[number]).max()) < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
             found[number] = Plan(np.repeat(goal[None], 4, 0), 0.0, 0.0, goal)
@@ -89,16 +91,12 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
         if why := _refused(start, goal, shapes, clearance):
             found[number] = Plan.none(start, goal, why)
             continue
-        near = _round_ends(start, goal, shapes, clearance + MARGIN)
-        routes = ways(start[:2], goal[:2], near, clearance + MARGIN)
-        if not routes:
-            routes = [way for way in [grid_way(start[:2], goal[:2], near, clearance + MARGIN)] if len(way)]
-        if not routes:
-            found[number] = Plan.none(start, goal, f"no way leads there that is {2 * clearance:.2f} m wide")
-            continue
-        same.setdefault(near.tobytes(), (near, []))[1].append((number, routes))
-    for near, tasks in same.values():
-        _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, near, shapes, clearance, top)
+        found[number] = Plan.none(start, goal, f"no way leads there that is {girth[1:].sum():.2f} m wide")
+        for routes, near, taken in ways_of(start, goal, shapes, girth, MARGIN):
+            if routes:
+                same.setdefault(near.tobytes() + taken.tobytes(), (near, taken, []))[2].append((number, routes))
+    for near, taken, tasks in same.values():
+        _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, near, shapes, taken, top)
     return [one for one in found if one is not None]
 
 
@@ -132,26 +130,17 @@ def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance:
     return ""
 
 
-def _round_ends(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float, slack: float = 0.0) -> np.ndarray:
-    """The shapes, those smaller that the walker starts, or ends, nearer to than the clearance; and these by a slack [m] more."""
-    out, near = np.empty(3), shapes.copy()
-    for shape in near:
-        here, there = (distance(place[0], place[1], shape, out) for place in (start, goal))
-        missing = clearance - min(here, there)
-        shape[5] -= (missing + slack if missing > 0.0 else 0.0) + 1e-6
-    return near
-
-
-def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, shapes, around, clearance, top, finer: int = 1) -> None:
-    """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found`.
+def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, shapes, around, girth, top, finer: int = 1) -> None:
+    """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found` where they cost less.
     finer: so many times the intervals; where nothing was found it is sought among twice as many."""
-    table = basis(finer * max(_intervals(way, weights, top, bool(len(shapes))) for _, routes in tasks for way in routes))
+    table = basis(finer * max(_intervals(way, weights, top, STRETCH[int(girth[1] < girth[0])] if len(shapes) else 0.0) for _, routes in tasks for way in routes))
     first, times, aims, whose = [], [], [], []
     for number, routes in tasks:
         for way in routes:
             moving = np.append(in_world(grounds[number], velocities[number]), velocities[number, 1])
             leaving = np.append(in_world(goals[number], onward[number]), onward[number, 1])
-            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table, moving, leaving)
+            tight = None if girth[1] == girth[0] else lambda places: narrow(places, shapes, girth[0] + MARGIN)
+            guess, seconds = guesses(way, grounds[number, 2], goals[number, 2], weights, top, table, moving, leaving, tight)
             first.append(guess)
             times.append(seconds)
             aims.append(np.broadcast_to(faced(way, table), (len(guess), len(table.shares), 2)))
@@ -166,30 +155,33 @@ def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, sh
         some, times, count = splines[which], seconds[which], len(splines[which])
         costs, faults, steps = np.empty(count), np.empty((count, 2)), np.empty(count, np.int64)
         search(some, times, starts[which], speeds[which], ends[which], leaves[which], facing[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
-               clearance + margin, allowed, MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
+               girth + margin, allowed, MOST if girth[1] == girth[0] else 2 * MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
         splines[which], seconds[which] = some, times
         return costs, faults, np.all(faults <= allowed, 1) & np.isfinite(costs)
 
-    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED)
+    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED if girth[1] == girth[0] else TIGHT)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
-        true = _round_ends(grounds[number], goals[number], around, clearance, MARGIN)
+        true = round_ends(grounds[number], goals[number], around, girth, MARGIN)
         for s in mine:
             for _ in range(REPAIRS):  # it may cut a corner between two places that are looked at
-                missing = clearance - swept(splines[s], true)
+                missing = -room_on(splines[s], true, girth)
                 if not sound[s] or missing <= 0.0:
                     break
                 margin = MARGIN + 2.0 * missing
-                wider = _round_ends(grounds[number], goals[number], around, clearance + margin)
+                wider = round_ends(grounds[number], goals[number], around, girth + margin)
                 (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), margin, wider, STRICT)
-            if sound[s] and swept(splines[s], true) >= clearance:
-                found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])
+            if sound[s] and room_on(splines[s], true, girth) >= 0.0:
+                if costs[s] < found[number].cost:
+                    found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])
                 break
         else:
+            if not found[number].reason:
+                continue
             found[number] = Plan.none(grounds[number], goals[number], _why(faults[mine], sound[mine]))
             if finer == 1:
                 task = [(number, routes) for one, routes in tasks if one == number]
-                _solve(found, task, grounds, velocities, goals, onward, weights, planes, shapes, around, clearance, top, finer=2)
+                _solve(found, task, grounds, velocities, goals, onward, weights, planes, shapes, around, girth, top, finer=2)
 
 
 def _why(faults: np.ndarray, sound: np.ndarray) -> str:
@@ -198,29 +190,7 @@ def _why(faults: np.ndarray, sound: np.ndarray) -> str:
     return "no walk was found past what stands about"
 
 
-def _intervals(way: np.ndarray, weights: Weights, top: float, among: bool) -> int:
-    length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+def _intervals(way: np.ndarray, weights: Weights, top: float, stretch: float) -> int:
+    length = far(way)
     seconds = max((36.0 * weights.forward * length**2 / weights.time) ** 0.25, 1.5 * length / top)
-    return int(np.clip(np.ceil(max(seconds / INTERVAL, among * length / STRETCH) / 8) * 8, *INTERVALS))
-
-
-def swept(spline: np.ndarray, shapes: np.ndarray, parts: int = 8) -> float:
-    """How near the middle of the body comes to shapes (K, 6) [m] on the way of a spline (M + 3, 3), by straight stretches between
-    `parts` places in each interval; inf where there are none."""
-    return _nearest(np.ascontiguousarray(spline[:, :2]), _fine(len(spline) - 3, parts), shapes)
-
-
-@lru_cache(maxsize=64)
-def _fine(intervals: int, parts: int) -> np.ndarray:
-    """The basis (8M + 1, M + 3) at even shares."""
-    return BSpline.design_matrix(np.linspace(0.0, 1.0, parts * intervals + 1), knots_of(intervals), 3).toarray()
-
-
-@kernel
-def _nearest(spline, table, shapes):
-    near = np.inf
-    places = table @ spline
-    for n in range(len(places) - 1):
-        for k in range(shapes.shape[0]):
-            near = min(near, separation(places[n, 0], places[n, 1], places[n + 1, 0], places[n + 1, 1], shapes[k]))
-    return near
+    return int(np.clip(np.ceil(max(seconds / INTERVAL, length / stretch if stretch else 0.0) / 8) * 8, *INTERVALS))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...body import wrap
@@ -17,6 +19,8 @@ AHEAD = 1.2
 MOVES = 0.2
 """Who is faster than this [m/s, half as much in rad/s] is moving."""
 STANDING = np.zeros(3)
+TURNED, TURNS = 0.15, 0.6
+"""Who passes where it is narrow is turned aside so far before and after it [m], and begins to turn so much farther from there [m]."""
 NEAR = 2.5
 """Ways shorter than this [m] are tried without turning to them: to the side, or backward."""
 
@@ -43,11 +47,12 @@ def faced(way: np.ndarray, basis: Basis) -> np.ndarray:
 
 
 def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: float, basis: Basis,
-            moving: np.ndarray = STANDING, leaving: np.ndarray = STANDING) -> tuple[np.ndarray, np.ndarray]:
+            moving: np.ndarray = STANDING, leaving: np.ndarray = STANDING,
+            narrow: Callable[[np.ndarray], np.ndarray] | None = None) -> tuple[np.ndarray, np.ndarray]:
     """First splines (S, M + 3, 3) and times (S,) [s] along a way (n, 2) [m], from one heading to another [rad].
 
     top: the fastest that is gone ahead [m/s]. moving: (3,) ẋ, ż, ω in the world at the start [m/s, rad/s]: who moves may also go on
-    so at first. leaving: (3,) likewise, at the goal.
+    so at first. leaving: (3,) likewise, at the goal. narrow: whether it is too narrow at places (P, 2) of the way for who is not turned aside, to the left or to the right.
     """
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
     length = along[-1]
@@ -62,13 +67,16 @@ def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: f
     if length >= 1e-9:
         steps = np.diff(way, axis=0)
         bearings = np.unwrap(np.arctan2(steps[:, 0], steps[:, 1]))
+        aside = _aside(share * length, np.zeros(len(place), bool) if narrow is None else narrow(place))
         for first in both_ways(start, bearings[0]):
-            path = np.interp(share * length, 0.5 * (along[1:] + along[:-1]), bearings - bearings[0] + first)
+            ahead = np.interp(share * length, 0.5 * (along[1:] + along[:-1]), bearings - bearings[0] + first)
             end = bearings[-1] - bearings[0] + first
             for last in both_ways(end, goal):
-                towards, away = ease(basis.peaks / TURNING), ease((basis.peaks - 1.0) / TURNING + 1.0)
-                made.append(start + towards * (path - start) + away * (last - path))
-                times.append((length, abs(first - start) + np.abs(np.diff(path)).sum() + abs(last - end)))
+                for side in (0.5 * np.pi, -0.5 * np.pi) if aside.any() else (0.0,):
+                    path = ahead + side * aside
+                    towards, away = ease(basis.peaks / TURNING), ease((basis.peaks - 1.0) / TURNING + 1.0)
+                    made.append(start + towards * (path - start) + away * (last - path))
+                    times.append((length, abs(first - start) + np.abs(np.diff(path)).sum() + abs(last - end)))
     far, turned = np.array(times).T
     seconds = (36.0 * (weights.forward * far**2 + weights.turning * turned**2) / weights.time) ** 0.25
     seconds = np.maximum(seconds, 1.5 * far / top) + 0.1
@@ -81,3 +89,10 @@ def guesses(way: np.ndarray, start: float, goal: float, weights: Weights, top: f
         guess = np.concatenate([guess, guess + going[..., None] * moving])
         seconds = np.tile(seconds, 2)
     return guess, seconds
+
+
+def _aside(along: np.ndarray, narrow: np.ndarray) -> np.ndarray:
+    """How much 0 … 1 somebody is turned aside at places along a way (P,) [m], some of which (P,) are narrow."""
+    if not narrow.any():
+        return np.zeros(len(along))
+    return ease(1.0 - (np.abs(along[:, None] - along[narrow]).min(1) - TURNED) / TURNS)

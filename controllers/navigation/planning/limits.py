@@ -56,20 +56,58 @@ def keep_velocity(y, seconds, planes, multipliers, stiffness, weight, gradient, 
 
 
 @kernel
-def keep_clear(y, shapes, clearance, multipliers, stiffness, weight, gradient, hessian):
-    """The penalty of places nearer than `clearance` [m] to shapes (K, 6), and the worst violation [m]."""
+def reach(nx, nz, heading, girth, by):
+    """How far [m] a walker turned to a heading [rad] reaches against (nx, nz), of length 1; by: (2,) its first and second derivative by the heading.
+
+    girth: (3,) how far he reaches aside, a, arms and all, and ahead and back, b [m]. With q the sine by which he is turned, r² = a² − (a² − b²) q⁸: between the
+    two he is hardly narrower than at his widest, as who goes aslant swings his feet out.
+    """
+    by[0], by[1] = 0.0, 0.0
+    if girth[1] >= girth[0] and girth[2] >= girth[0]:
+        return girth[0]
+    sine, cosine = math.sin(heading), math.cos(heading)
+    p, q = cosine * nx - sine * nz, sine * nx + cosine * nz
+    depth = girth[2] if q > 0.0 else girth[1]  # (nx, nz) points away from what is near
+    spare = girth[0] ** 2 - depth**2
+    r = math.sqrt(girth[0] ** 2 - spare * q**8)
+    by[0] = -4.0 * spare * q**7 * p / r
+    by[1] = (-spare * (28.0 * q**6 * p * p - 4.0 * q**8) - by[0] ** 2) / r
+    return r
+
+
+@kernel
+def too_near(x, z, heading, shape, girth):
+    """How much farther [m] from a shape a walker would have to be, negative where he is far enough."""
+    slope, by = np.empty(3), np.empty(2)
+    there = distance(x, z, shape, slope)
+    return reach(slope[0], slope[1], heading, girth, by) - there
+
+
+@kernel
+def keep_clear(y, shapes, girth, multipliers, stiffness, weight, gradient, hessian):
+    """The penalty of walkers of a girth (3,) [m], see `reach`, too near to shapes (K, 6), and the worst violation [m].
+
+    n being the slope of the distance, t across it and κ the bend of its level line, n turns by κ t with the place, and the reach with n as with the heading.
+    """
     cost, worst = 0.0, 0.0
-    out = np.empty(3)
+    out, by, slope, bend = np.empty(3), np.empty(2), np.empty(3), np.empty((3, 3))
     for k in range(shapes.shape[0]):
-        c = clearance - distance(y[0], y[1], shapes[k], out)
+        there = distance(y[0], y[1], shapes[k], out)
+        c = reach(out[0], out[1], y[2], girth, by) - there
         worst = max(worst, c)
         push = stiffness * c + multipliers[k]
         if push <= 0.0:
             continue
         cost += weight * 0.5 * push * push / stiffness
-        across = (-out[1], out[0])
+        n, t, curved = (out[0], out[1]), (-out[1], out[0]), out[2]
         for i in range(2):
-            gradient[i] -= weight * push * out[i]
+            slope[i] = by[0] * curved * t[i] - n[i]
+            bend[i, 2] = bend[2, i] = by[1] * curved * t[i]
             for j in range(2):
-                hessian[i, j] += weight * (stiffness * out[i] * out[j] - push * out[2] * across[i] * across[j])
+                bend[i, j] = (by[1] * curved - 1.0) * curved * t[i] * t[j] - by[0] * curved**2 * (t[i] * n[j] + n[i] * t[j])
+        slope[2], bend[2, 2] = by[0], by[1]
+        for i in range(3):
+            gradient[i] += weight * push * slope[i]
+            for j in range(3):
+                hessian[i, j] += weight * (stiffness * slope[i] * slope[j] + push * bend[i, j])
     return cost, worst

@@ -22,7 +22,7 @@ HOPE = 5.0
 """A search that is to gain less than so many times what its next step promises is given up for a better one; on a pass
 between two ways a step promises little."""
 LEASH = 0.3
-"""Among things that stand about a way moves by so much in a step, at most [m]."""
+"""Among things that stand about a way moves by so much in a step, at most [m]; and turns, where he has to turn aside to pass [rad]."""
 
 
 @kernel
@@ -38,7 +38,7 @@ def _hold(coefficients, start, speed, goal, leave, seconds):
 
 
 @kernel
-def assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
+def assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, girth,
              by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient):
     """Cost with penalties, and all derivatives by the free coefficients and T; also the cost alone, and the worst violations.
 
@@ -60,7 +60,7 @@ def assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, 
             p, t, tt, worst = keep_velocity(y, seconds, planes, by_plane[place], stiff_speed, 1.0, g, h, mixed)
             penalty, by_t, by_tt, fast = penalty + weight * p, by_t + t, by_tt + tt, max(fast, worst)
         if shapes.shape[0]:
-            p, worst = keep_clear(y, shapes, clearance, by_shape[place], stiff_space, 1.0, g, h)
+            p, worst = keep_clear(y, shapes, girth, by_shape[place], stiff_space, 1.0, g, h)
             penalty, near = penalty + weight * p, max(near, worst)
         if first < 2 or first >= intervals - 2:  # the second coefficient moves with T, and the last but one
             for order in range(3):
@@ -162,7 +162,7 @@ def _step(band, column, corner, gradient, damping, shifted, factor, border, step
 
 
 @kernel
-def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, values, weights, planes, shapes, clearance,
+def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, values, weights, planes, shapes, girth,
              by_plane, by_shape, stiff_speed, stiff_space, most, tolerance, best):
     """Newton's method from a guess, in place. Returns T, the cost, that with penalties, the worst violations, the steps taken, and
     whether it converged. It gives up where it is not to come below `best`."""
@@ -172,7 +172,7 @@ def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, valu
     gradient, step = np.empty(n + 1), np.empty(n + 1)
     kept = coefficients.copy()
     _hold(coefficients, start, speed, goal, leave, seconds)
-    cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
+    cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, girth,
                                                  by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
     damping = 1e-4
     fresh = True
@@ -192,7 +192,7 @@ def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, valu
         share = min(1.0, 0.5 * seconds / abs(step[n])) if step[n] != 0.0 else 1.0
         if shapes.shape[0]:  # lest the way jumps to another side of something
             for i in range(n):
-                if i % 3 < 2 and share * abs(step[i]) > LEASH:
+                if (i % 3 < 2 or girth[1] < girth[0]) and share * abs(step[i]) > LEASH:
                     share = LEASH / abs(step[i])
         kept[:] = coefficients
         before = seconds
@@ -200,7 +200,7 @@ def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, valu
         for i in range(n):
             coefficients[2 + i // 3, i % 3] += share * step[i]
         _hold(coefficients, start, speed, goal, leave, seconds)
-        new = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
+        new = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, girth,
                        by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
         gained = (cost + penalty) - (new[0] + new[1])
         if gained > 1e-4 * share * promised * 0.5:
@@ -213,7 +213,7 @@ def minimise(coefficients, seconds, start, speed, goal, leave, aims, alpha, valu
                 fresh = False
             coefficients[:] = kept
             seconds = before
-            cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, clearance,
+            cost, penalty, corner, fast, near = assemble(coefficients, seconds, speed, leave, aims, alpha, values, weights, planes, shapes, girth,
                                                          by_plane, by_shape, stiff_speed, stiff_space, band, column, gradient)
             if not fresh:
                 return seconds, cost, cost + penalty, fast, near, count, True

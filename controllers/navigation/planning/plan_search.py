@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import kernel
-from ..routes import distance
-from .limits import too_fast
+from .limits import too_fast, too_near
 from .newton import minimise
 from .splines import at_place
 
 SOFT = (10.0, 10000.0)
 """How stiff limits on velocities and distances are at first: the cost rises by half of it where one unit [m/s, m] is missing ..."""
+TIGHT, WIDER = 3e5, 0.15
+"""... where he has to turn aside to pass, the distance so stiff at once, and he so much wider at first [m], lest he turns back: who stands straight in a gap
+no longer feels which way helps ..."""
 STIFFER = 8.0
 """... how much stiffer they become as long as they are broken ..."""
 STIFFEST = 1e6
@@ -21,34 +23,39 @@ ROUNDS = 9
 
 
 @kernel(nogil=True)
-def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values, weights, planes, shapes, clearance, allowed, most, tolerance,
+def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values, weights, planes, shapes, girth, allowed, most, tolerance,
            whose, costs, faults, steps):
     """Every guess (S, M + 3, 3) with its time (S,) [s] becomes the least cost near it, in place.
 
-    starts, speeds, goals, leaves: (S, 3), speeds, and those at the goals, as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), clearance [m]: the limits. allowed: (2,)
+    starts, speeds, goals, leaves: (S, 3), speeds, and those at the goals, as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), girth (3,) [m]: the limits. allowed: (2,)
     how far velocities and distances may break them. whose: (S,) whose guess it is, in order: a guess is given up where it would cost more
     than another of the same one that keeps to its limits. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
     negative where the search did not settle.
     """
     places = weights.shape[0]
     by_plane, by_shape = np.empty((places, planes.shape[0])), np.empty((places, shapes.shape[0]))
-    best = np.inf
+    best, tight, held = np.inf, girth[1] < girth[0], girth.copy()
     for s in range(guesses.shape[0]):
         if s and whose[s] != whose[s - 1]:
             best = np.inf
         by_plane[:], by_shape[:] = 0.0, 0.0
         stiff = np.array(SOFT)
+        if tight:
+            stiff[1] = TIGHT
         last = np.full(2, np.inf)
         total, settled, owed = 0, False, 0.0
         for lap in range(ROUNDS):
+            held[0] = girth[0] + (WIDER if lap == 0 and tight else 0.0)
             seconds[s], costs[s], dual, fast, near, count, settled = minimise(
-                guesses[s], seconds[s], starts[s], speeds[s], goals[s], leaves[s], aims[s], alpha, values, weights, planes, shapes, clearance,
+                guesses[s], seconds[s], starts[s], speeds[s], goals[s], leaves[s], aims[s], alpha, values, weights, planes, shapes, held,
                 by_plane, by_shape, stiff[0], stiff[1], most - total, tolerance if lap else 10.0 * tolerance, best + owed)
             total += count
             faults[s, 0], faults[s, 1] = fast, near
+            if lap == 0 and tight:
+                continue
             if (fast <= allowed[0] and near <= allowed[1]) or total >= most or dual - owed > best:
                 break
-            renew(guesses[s], seconds[s], values, planes, shapes, clearance, by_plane, by_shape, stiff)
+            renew(guesses[s], seconds[s], values, planes, shapes, girth, by_plane, by_shape, stiff)
             for i in range(2):
                 if faults[s, i] > allowed[i] and faults[s, i] > 0.25 * last[i]:
                     stiff[i] = min(STIFFER * stiff[i], STIFFEST)
@@ -62,12 +69,12 @@ def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values,
 
 
 @kernel
-def renew(coefficients, seconds, values, planes, shapes, clearance, by_plane, by_shape, stiff):
+def renew(coefficients, seconds, values, planes, shapes, girth, by_plane, by_shape, stiff):
     """The multipliers of all limits, after a minimum was found."""
-    y, out = np.empty(9), np.empty(3)
+    y = np.empty(9)
     for place in range(values.shape[0]):
         at_place(values[place], place * (coefficients.shape[0] - 3) // values.shape[0], coefficients, y)
         for h in range(planes.shape[0]):
             by_plane[place, h] = max(0.0, by_plane[place, h] + stiff[0] * too_fast(y, seconds, planes[h]))
         for k in range(shapes.shape[0]):
-            by_shape[place, k] = max(0.0, by_shape[place, k] + stiff[1] * (clearance - distance(y[0], y[1], shapes[k], out)))
+            by_shape[place, k] = max(0.0, by_shape[place, k] + stiff[1] * too_near(y[0], y[1], y[2], shapes[k], girth))

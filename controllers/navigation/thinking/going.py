@@ -41,12 +41,6 @@ class Thinking(NamedTuple):
     carries: np.ndarray | None = None
 
 
-def carried(carries: np.ndarray | None, steps: int, dt: float) -> np.ndarray | None:
-    """The velocity (3,) that somebody wishes for so many steps of dt [s] after he began to think; None for who follows his plan."""
-    return carries if carries is None or steps < steps_of(0, dt) else np.zeros(3)
-
-
-
 @dataclass(frozen=True, eq=False)
 class Going:
     """How somebody walks to a goal.
@@ -104,9 +98,12 @@ class Going:
     def wished(self, ground: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """The velocity (3,) that he wishes for at a ground frame (3,), as he moves (3,)."""
         thinks = self.thinking
-        blind = None if thinks is None else carried(thinks.carries, thinks.steps, thinks.dt)
-        if blind is not None:
-            return blind
+        return self.wished_while(None, 0, 0.0, ground, velocity) if thinks is None else self.wished_while(thinks.carries, thinks.steps, thinks.dt, ground, velocity)
+
+    def wished_while(self, carries: np.ndarray | None, steps: int, dt: float, ground: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """The same, so many steps of dt [s] after he began to think, carried on as of `Thinking`."""
+        if carries is not None:
+            return carries if steps < steps_of(0, dt) else np.zeros(3)
         return np.zeros(3) if self.there else wish(self.plan, self.time, ground, velocity)
 
 

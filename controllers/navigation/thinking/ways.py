@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...contract import CharacterState, Controller, Intent, Leap, but
-from ..goal import wish
 from ..levels import Leg, named, next_leg, onto, runs, take_off
-from ..obstacles import SHOULDER
-from .going import NEARER, Going, Thinking, carried
+from ..obstacles import DEPTH, SHOULDER
+from .going import NEARER, Going, Thinking
 from .thought import Thought, steps_of
 
 if TYPE_CHECKING:  # who never goes to a goal loads no planner
@@ -107,14 +106,12 @@ def poised(now: Going, state: CharacterState, intent: Intent, walker: Controller
 
 def foreseen(now: Going, state: CharacterState, intent: Intent, walker: Controller, steps: int, dt: float, carries: np.ndarray | None) -> CharacterState:
     """The state after so many steps of dt [s], if nobody comes in his way: he is played ahead."""
-    asked, time = but(intent, goal=None, aside=None, leap=None), now.time
+    asked = but(intent, goal=None, aside=None, leap=None)
     for step in range(steps):
-        velocity = carried(carries, step, dt)
-        if velocity is None:
-            velocity = wish(now.plan, time, state.ground, state.velocity)
-        elif not velocity.any() and np.abs(state.velocity).max() < REST:
+        velocity = now.wished_while(carries, step, dt, state.ground, state.velocity)
+        if carries is not None and not velocity.any() and np.abs(state.velocity).max() < REST:
             return state
-        time += dt * float(walker.readiness(state))
+        now = now.but(time=now.time + dt * float(walker.readiness(state)))
         state, _ = walker.step(state, but(asked, velocity=velocity), dt)
     return state
 
@@ -128,6 +125,6 @@ def _arrival(state: CharacterState, leg: Leg) -> float:
     from ..routes import shapes_of, ways
 
     shapes, here = shapes_of(leg.around, float(state.floor)), np.asarray(state.ground[:2], float)
-    found = ways(here, leg.place, shapes, SHOULDER) if len(shapes) else []
+    found = (ways(here, leg.place, shapes, SHOULDER) or ways(here, leg.place, shapes, 0.5 * sum(DEPTH))) if len(shapes) else []
     last = leg.place - (found[0][-2] if found else here)
     return float(state.ground[2]) if math.hypot(*last) < NEARER else math.atan2(*last)
