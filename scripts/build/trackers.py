@@ -4,7 +4,7 @@
 
 LARGE: a motion database (`gambol database build`) or a folder of motion files, of which CMU's are learnt from: those below cmu, cmu_bvh
 and cmu_30fps. --small: the folder whose clips scripts/measure/reconstruction.py measures on: takes that are tested or tuned on there
-are never learnt from, nor what a few subjects did (`STRANGERS`). --work: where checkpoints lie; begun again it goes on from the last
+are never learnt from, nor what a few subjects did (`evaluation.STRANGERS`). --work: where checkpoints lie; begun again it goes on from the last
 one, the same as if it had not stopped. --ship: write the network that the newest checkpoint holds, and learn nothing.
 It takes a night on one thread; progress is shown. The same seed gives the same network.
 """
@@ -21,31 +21,10 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 
 from gambol.controllers.files import whole
 from gambol.controllers.reconstruction.database import Database, DatabaseError, build
-from gambol.controllers.reconstruction.evaluation import trials
+from gambol.controllers.reconstruction.evaluation import learnt_from, small_of
 from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments
 
-CMU = ("cmu/", "cmu_bvh/", "cmu_30fps/")
-STRANGERS = ("10", "12", "26", "27", "32")
-"""Subjects of whom nothing is learnt: they are measured on."""
 CHECKPOINT = "trackers-learning.npz"
-
-
-def learnt_from(large: Database, small: Path) -> Database:
-    """CMU's takes of a large database, less all that is tested on."""
-    clips = {path.relative_to(small).with_suffix("").as_posix() for path in small.rglob("*") if path.suffix.lower() in (".bvh", ".amc")}
-    main = large.only([take for take in large.takes if take.clip in clips])
-    if {take.clip for take in main.takes} != clips:
-        raise DatabaseError(f"{large.path}: lacks takes of {small}; the large database must hold the small one's, too")
-    return remaining(large, main)
-
-
-def remaining(large: Database, main: Database) -> Database:
-    """As `learnt_from`, of databases."""
-    core = trials.split(main.only([take for take in main.takes if not take.interpolated]))
-    actions = trials.split_actions(main, avoid=core.validation)
-    held = (*core.test, *core.validation, *actions.test, *trials.long_takes(large))
-    rest = trials.without(large, held)
-    return rest.only([take for take in rest.takes if take.clip.startswith(CMU) and take.subject not in STRANGERS])
 
 
 def main() -> None:
@@ -68,7 +47,8 @@ def main() -> None:
             if not built.exists():
                 build(options.large, built, progress=lambda done, count: _say(f"reading {done} of {count} files"))
             options.large = built
-        database = learnt_from(Database.open(options.large), options.small)
+        large = Database.open(options.large)
+        database = learnt_from(large, small_of(large, options.small))
         _say(f"{len(database):,} poses of {len({take.subject for take in database.takes})} subjects, mirror images included")
         learner = Learner(Moments.of(database), options.batches, options.seed)
         if path.exists():

@@ -5,9 +5,9 @@ of the floor, and taking a body over without a pop; the way to points that are f
 from .approach import spread, towards
 from .feet import above
 from .hand_over import difference, guessed_past, joints_of, moved
-from .initial_pose import Starts
+from .initial_pose import Beginning, Starts
 from .point_gate import Gate
 
 __all__ = [
-    "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved", "spread", "towards",
+    "Beginning", "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved", "spread", "towards",
 ]
