@@ -17,18 +17,14 @@ from ..body import STATURE, Pose, Skeleton, human, settle
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
-from .following import Beginning, Gate, above, difference, guessed_past, joints_of, moved, spread
+from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
+                        spread)
 from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
 """How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""
 LOST = 1.0
 """Without a point for so long [s] it gives up."""
-FAR = 1.5
-"""Points that are farther from the body than this on the average [m] can't be taken hold of; a body that is farther from where
-it begins anew is there at once."""
-APART = 2.5
-"""No two points of a standard body are farther apart [m]."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 LEAP = 0.2
@@ -111,7 +107,7 @@ class Reconstruction(Controller):
         level = float(sound_level(state.floor))
         seen = self._seen(intent, level)
         pose = self._shrunk(state.pose, level)
-        away = self._possible(seen, self._points(pose))
+        away = reached(seen, self._points(pose), self.factor)
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, level)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
         if away <= ANEW or self.starts is None:
@@ -134,7 +130,7 @@ class Reconstruction(Controller):
         nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
         wanted = Intent(points=points, turns=turns)
         seen = self._seen(wanted, floor)
-        self._possible(seen, seen)
+        reached(seen, seen, self.factor)
         if self.starts is None:
             raise Unable("it knows no poses to begin from: enter it from a body, or give it `starts`")
         frames, tracks = self.starts.find(seen, None if velocities is None else velocities / self.factor, self._turns(wanted))
@@ -247,19 +243,6 @@ class Reconstruction(Controller):
         if turns is not None and turns.shape != (count, 3, 3):
             raise Unable(f"turns of shape {turns.shape}: {count} are followed, {', '.join(self.controls.names)}")
         return turns
-
-    def _possible(self, seen: np.ndarray, body: np.ndarray) -> float:
-        """How far they are from the body's on the average [m]. Unable unless these points can be of this body."""
-        there = np.isfinite(seen).all(-1)
-        if not there.any():
-            raise Unable("no point is seen")
-        away = float(np.linalg.norm(seen - body, axis=-1)[there].mean())
-        if away > FAR:
-            raise Unable(f"the points are {away * self.factor:.1f} m away from the body")
-        apart = spread(seen[there])
-        if apart > APART:
-            raise Unable(f"two points are {apart * self.factor:.1f} m apart, which no body is")
-        return away
 
     def _points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""

@@ -68,7 +68,7 @@ def raw(folder: Path, take: Take) -> Performance:
     known = calibrate(clips)
     ours = retarget(clips[0], calibration=known)
     theirs, _ = clips[0].kinematics()
-    root, rotations = ours.root, ours.rotations
+    rotations = ours.rotations
     _, turned = ours.kinematics()
     sources = dict(known.roles.limbs)
     for share, name in ((1, "Spine"), (2, "Spine1"), (3, "Spine2")):

@@ -19,12 +19,12 @@ LIE = 0.008
 _LOOSE = {"Spine", "Neck", "Shoulder", "Arm", "UpLeg"}
 
 
-def _plain(name):
+def _plain(name: str) -> str:
     plain = name.removeprefix("Left").removeprefix("Right")
     return _AS.get(plain, plain)
 
 
-_GROUPS = list(_PARTS)
+_GROUPS: list[str] = list(_PARTS)
 _GROUP = np.array([_GROUPS.index(_plain(name)) if j else 0 for j, name in enumerate(SKELETON.names)])
 _LYING = np.array([LIE if j and _plain(name) in _LOOSE else 0.0 for j, name in enumerate(SKELETON.names)])
 _TWIN = np.array([SKELETON.index(name.replace("Right", "Left")) for name in SKELETON.names])

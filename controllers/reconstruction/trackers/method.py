@@ -15,8 +15,9 @@ import numpy as np
 from ...body import Pose, Skeleton, contact_height, forward_kinematics, heel_offset
 from ..control_points import ControlPoints
 from ..ours import Motion, noise, placed
-from ..pose_vector import FORWARD, LEFTWARD, REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
-from ..regression import FAR, FLOOR, SPAN, posed, seen_kernel
+from ..pose_vector import REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
+from ..regression import FAR, FLOOR, SPAN, seen_kernel
+from .ground import GROUND, less, nothing, on, shown_as, turned_on
 from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
@@ -39,10 +40,11 @@ STEPS, TOLERANCE = 6, 1e-4
 """Of the solver: steps at most, and the share of the energy below which a gain ends them."""
 BEGINNINGS = 8
 """From so many headings the first frame is tried where no tracker turns."""
+SURE = np.radians(10.0)
+"""A first frame that turns by more than this when it is seen from its own heading hardly agrees with itself."""
 _RECENT = 15  # frames that tell the noise
 _JUMP = 1.0  # rad or m, beyond which the chart has jumped: nothing to be smoothed
 _WORLD = np.zeros(3)
-_PLACED = [LEFTWARD, FORWARD, YAW_RATE]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +88,7 @@ class Trackers:
     def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Remembered:
         """The memory after known frames (T, D) of the chart with ground tracks (T, 3), the newest last; one alone is no past."""
         frames = placed(np.asarray(frames, float)[-SPAN:], np.asarray(tracks, float)[-SPAN:])[::-1]
-        places, turns = _nothing(len(SLOTS))
+        places, turns = nothing(len(SLOTS))
         if len(frames) > 1:
             for k, frame in enumerate(frames):
                 positions, orientations = self._joints(frame)
@@ -95,7 +97,7 @@ class Trackers:
                 places[:, absent], turns[:, absent] = np.nan, np.nan
         pose, before = frames[0], frames[min(1, len(frames) - 1)]
         return Remembered(pose, before, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
-                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, _less(pose, before)), Soles.none())
+                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before)), Soles.none())
 
     def step(self, memory: Remembered, points: np.ndarray, turns: np.ndarray | None = None) -> tuple[Remembered, Pose]:
         """The pose a frame later, for trackers at points (n, 3) [m] in the world with turns (n, 3, 3), NaN where not known."""
@@ -115,13 +117,13 @@ class Trackers:
         after = self._followed(memory, points, turns)
         found = after.pose
         if not self.steady:
-            return replace(after, recent=recent), _posed(found)
-        if np.abs(_less(found, memory.shown.place)).max() > _JUMP:
+            return replace(after, recent=recent), shown_as(found)
+        if np.abs(less(found, memory.shown.place)).max() > _JUMP:
             shown = Motion(found, np.zeros(WIDTH))
         else:
-            near = memory.shown.place + _less(found, memory.shown.place)
+            near = memory.shown.place + less(found, memory.shown.place)
             shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
-        return replace(after, recent=recent, points=filtered, shown=shown), _posed(shown.place)
+        return replace(after, recent=recent, points=filtered, shown=shown), shown_as(shown.place)
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
              ) -> tuple[np.ndarray, np.ndarray]:
@@ -140,22 +142,22 @@ class Trackers:
             pose[YAW_RATE] = heading
             cost = np.inf
             for _ in range(2):
-                memory = self.begin(pose[None], pose[None, _PLACED])
+                memory = self.begin(pose[None], pose[None, GROUND])
                 after, cost = self._solved(self._told(memory, points, turns), points, turns)
-                turned = _less(after.pose, pose)[YAW_RATE]
+                turned = less(after.pose, pose)[YAW_RATE]
                 pose = after.pose
-                cost += (turned / _SURE) ** 2
+                cost += (turned / SURE) ** 2
             if cost < least:
                 best, least = pose, cost
-        frame, track = best.copy(), best[_PLACED]
-        frame[_PLACED] = 0.0
+        frame, track = best.copy(), best[GROUND]
+        frame[GROUND] = 0.0
         return frame[None], track[None]
 
     def _followed(self, memory, points, turns):
         """The memory a frame later."""
         if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
             told = self._told(memory, points, turns)
-            change = RESTING * _less(memory.pose, memory.before)
+            change = RESTING * less(memory.pose, memory.before)
             return replace(told, pose=memory.pose + change, before=memory.pose, soles=Soles.none())
         return self._solved(self._told(memory, points, turns), points, turns)[0]
 
@@ -183,20 +185,20 @@ class Trackers:
     def _solved(self, memory, points, turns):
         """The memory with the pose of its newest places, and the energy of that."""
         places, spun = np.ascontiguousarray(memory.places[LAGS]), np.ascontiguousarray(memory.turns[LAGS])
-        here = np.isfinite(places).all(-1)
-        turned = np.isfinite(spun).all((-1, -2)) & self._hearing(memory.turning)
+        here = np.asarray(np.isfinite(places).all(-1))
+        turned = np.asarray(np.isfinite(spun).all((-1, -2)) & self._hearing(memory.turning))
         inputs, ground = np.empty(INPUTS, np.float32), np.empty(3)
-        view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[_PLACED], inputs, ground)
+        view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
         mean = expected + FADING * memory.off
         soles = memory.soles.told(standing)
         goals, hold = soles.goals(ground)
-        goals, hold = np.concatenate([_on(points, ground), goals]), np.concatenate([np.full(len(points), EXACT_PLACE ** -2.0), hold])
+        goals, hold = np.concatenate([on(points, ground), goals]), np.concatenate([np.full(len(points), EXACT_PLACE ** -2.0), hold])
         hold[:len(points)][~np.isfinite(points).all(-1)] = 0.0
         keep = np.zeros(len(hold))
         keep[:len(points)][np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
         wanted = np.zeros((len(hold), 3, 3))
-        wanted[:len(points)] = _turned(turns, ground)
+        wanted[:len(points)] = turned_on(turns, ground)
         frame, joints = np.empty(WIDTH), (np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         parents, offsets, first, at, beside = self._body
         energy = fit_kernel(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), mean, self.network.lower, self.network.upper, parents,
@@ -205,7 +207,7 @@ class Trackers:
         seen_kernel(frame, ground, _WORLD, pose)
         points_found = joints[0][at[-4:]] + np.einsum("nij,nj->ni", joints[1][at[-4:]], beside[-4:])
         soles = soles.found(points_found, ground, contact_height(self.skeleton))
-        return replace(memory, pose=pose, before=memory.pose, off=_less(frame, expected), soles=soles), energy
+        return replace(memory, pose=pose, before=memory.pose, off=less(frame, expected), soles=soles), energy
 
     def _hearing(self, turning):
         """Which slots (S,) have a tracker that turns."""
@@ -215,7 +217,7 @@ class Trackers:
 
     def _joints(self, pose):
         """Positions (J, 3) and orientations (J, 3, 3) of a placed pose (D,)."""
-        return forward_kinematics(self.skeleton, *decode(pose, pose[_PLACED]))
+        return forward_kinematics(self.skeleton, *decode(pose, pose[GROUND]))
 
     @cached_property
     def _slots(self) -> np.ndarray:
@@ -242,38 +244,6 @@ class Trackers:
         def made(placed, turned):
             covariance = self.network.spread(np.frombuffer(placed, bool), np.frombuffer(turned, bool))
             floor = FLOOR.copy()
-            floor[_PLACED] = 0.002, 0.002, np.radians(0.3)
+            floor[GROUND] = 0.002, 0.002, np.radians(0.3)
             return np.linalg.inv(LOOSENING * (covariance + np.diag(floor ** 2)))
         return made
-
-
-_SURE = np.radians(10.0)
-"""A first frame that turns by more than this when it is seen from its own heading hardly agrees with itself."""
-
-
-def _nothing(slots):
-    return np.full((SPAN, slots, 3), np.nan), np.full((SPAN, slots, 3, 3), np.nan)
-
-
-def _less(pose, other):
-    """A placed pose (D,) less another, the heading's difference the short way."""
-    off = pose - other
-    off[YAW_RATE] = (off[YAW_RATE] + np.pi) % (2.0 * np.pi) - np.pi
-    return off
-
-
-def _posed(pose):
-    return posed(pose, pose[_PLACED])
-
-
-def _on(points, ground):
-    """Points (n, 3) as seen from ground (3,)."""
-    c, s = np.cos(ground[2]), np.sin(ground[2])
-    x, z = points[:, 0] - ground[0], points[:, 2] - ground[1]
-    return np.stack([c * x - s * z, points[:, 1], s * x + c * z], -1)
-
-
-def _turned(turns, ground):
-    """Turns (n, 3, 3) as seen from ground (3,)."""
-    c, s = np.cos(ground[2]), np.sin(ground[2])
-    return np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]) @ turns

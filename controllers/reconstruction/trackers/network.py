@@ -66,8 +66,8 @@ class Network:
         arrays |= {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
         with Path(path).open("wb") as file:
             np.savez_compressed(file, version=VERSION, places=np.array(PLACES), outs=self.outs.astype(np.float32), kinds=self.kinds,
-                                factors=self.factors.astype(np.float32), rests=self.rests.astype(np.float32), lower=self.lower.astype(np.float32), upper=self.upper.astype(np.float32),
-                                learnt=self.learnt, **arrays)
+                                factors=self.factors.astype(np.float32), rests=self.rests.astype(np.float32),
+                                lower=self.lower.astype(np.float32), upper=self.upper.astype(np.float32), learnt=self.learnt, **arrays)
 
     @staticmethod
     def load(path: str | Path = SHIPPED) -> Network:
@@ -79,8 +79,8 @@ class Network:
                 count = sum(name.startswith("weights") for name in file)
                 weights = tuple(file[f"weights{i}"].astype(np.float32) for i in range(count))
                 biases = tuple(file[f"biases{i}"].astype(np.float32) for i in range(count))
-                made = Network(weights, biases, *(file[name].astype(float) for name in ("outs",)), file["kinds"],
-                               *(file[name].astype(float) for name in ("factors", "rests", "lower", "upper")), int(file["learnt"]))
+                outs, factors, rests, lower, upper = (file[name].astype(float) for name in ("outs", "factors", "rests", "lower", "upper"))
+                made = Network(weights, biases, outs, file["kinds"], factors, rests, lower, upper, int(file["learnt"]))
         except OSError as error:
             raise ValueError(f"{path}: can't be read: {reason(error)}") from None
         except (KeyError, EOFError, BadZipFile) as error:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .ground import on
+
 TAKES, LEAVES = 0.6, 0.4
 """A point takes hold where the network is surer than this that it stands, and lets go where it is less sure than that."""
 EXACT = 0.01
@@ -45,9 +47,7 @@ class Soles:
 
     def goals(self, ground: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Places (4, 3) [m] seen from ground (3,), and 1/σ² (4,) of each, 0 where it is not held."""
-        c, s = np.cos(ground[2]), np.sin(ground[2])
-        x, z = self.places[:, 0] - ground[0], self.places[:, 2] - ground[1]
-        return np.stack([c * x - s * z, self.places[:, 1], s * x + c * z], -1), np.where(self.held, np.maximum(self.firm, 0.0), 0.0) / EXACT ** 2
+        return on(self.places, ground), np.where(self.held, np.maximum(self.firm, 0.0), 0.0) / EXACT ** 2
 
     def found(self, points: np.ndarray, ground: np.ndarray, height: float) -> Soles:
         """After the frame was solved with them at points (4, 3), seen from ground. height: [m] at which they stand."""
