@@ -2,9 +2,9 @@
 
     python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER [--network FILE] [--out docs/reconstruction/trackers.md]
 
-LARGE, FOLDER: as for scripts/build/trackers.py, a database and the folder whose clips are measured on. Four courses: the test takes of
+LARGE, FOLDER: as for scripts/build/trackers.py, a database and the folder whose clips are measured on. Courses: the test takes of
 scripts/measure/reconstruction.py, with the half second before given, as there; the same from nothing; the performers' raw proportions,
-their own joints on skeletons of their own lengths, from nothing; subjects of CMU and another data set of whom nothing was learnt.
+their own joints on skeletons of their own lengths, from nothing; subjects of CMU and other data sets of whom nothing was learnt.
 All distances are centimetres in the world over 19 joints. A frame's time is the process's own, which others on the machine hardly change.
 """
 
@@ -36,7 +36,7 @@ WORN = {"6 points": ("6", False), "4 points": ("4", False), "6 that turn": ("6",
 HEAD = ("", "takes", "cm", "joint deg", "worst cm", "beyond 20 cm, %", "first frame cm (worst)", "first half second cm", "jitter",
         "slide cm/s (theirs)", "ms")
 FPS, MOST, HALF, FAR = 60.0, 600, 30, 20.0
-_BESIDE = 5  # more clips of a folder that its skeletons are calibrated by
+_BESIDE = 3  # more clips of a folder that its skeletons are calibrated by
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +135,24 @@ def row(name: str, network: Network, those: list[Performance], points: str, turn
             f"{found[:, 7].sum() / stands:.1f} ({found[:, 8].sum() / stands:.1f})", f"{mean[10]:.2f}"]
 
 
+COURSES = ("takes of seen subjects, the half second before given", "the same from nothing",
+           "raw proportions, on their own skeletons, from nothing", "subjects of CMU nothing was learnt from, from nothing",
+           "other data sets (SNU, NCSOFT), nothing learnt from, from nothing")
+
+
+def performances(number: int, large: Database, folder: Path, takes: tuple[Take, ...]) -> list[Performance]:
+    """What a course consists of."""
+    if number != 2:
+        return [recorded(large, take) for take in (takes, takes, (), strangers(large), foreign(large))[number]]
+    found = []
+    for take in takes:
+        try:
+            found.append(raw(folder, take))
+        except (MotionFileError, ValueError) as error:
+            print(f"left out: {take.clip}: {error}", file=sys.stderr)
+    return found
+
+
 def main() -> None:
     """Print the tables, and write them down if asked."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -142,6 +160,7 @@ def main() -> None:
     parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
     parser.add_argument("--network", type=Path, default=SHIPPED)
     parser.add_argument("--tuned", action="store_true", help="the takes that settings are chosen on, instead of the test's")
+    parser.add_argument("--only", type=int, nargs="+", default=list(range(len(COURSES))), help="numbers of courses, from 0 on: " + "; ".join(COURSES))
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
     try:
@@ -151,19 +170,10 @@ def main() -> None:
         sys.exit(str(error))
     core = trials.split(small.only([take for take in small.takes if not take.interpolated]))
     takes = core.validation if options.tuned else core.test
-    standard, raws = [recorded(large, take) for take in takes], []
-    for take in takes:
-        try:
-            raws.append(raw(options.small, take))
-        except (MotionFileError, ValueError) as error:
-            print(f"left out: {take.clip}: {error}", file=sys.stderr)
-    courses = [("takes of seen subjects, the half second before given", standard, True), ("the same from nothing", standard, False),
-               ("raw proportions, on their own skeletons, from nothing", raws, False)]
-    if not options.tuned:
-        courses += [("subjects of CMU nothing was learnt from", [recorded(large, take) for take in strangers(large)], False),
-                    ("another data set (SNU, NCSOFT), nothing learnt from", [recorded(large, take) for take in foreign(large)], False)]
+    followed(network, recorded(large, takes[0]), "6", True, False)  # what it compiles is no frame's time
     parts = [f"The network after {network.learnt:,} batches of 512; see scripts/measure/reconstruction_trackers.py."]
-    for name, those, given in courses:
+    for number in options.only:
+        name, those, given = COURSES[number], performances(number, large, options.small, takes), number == 0
         rows = [row(worn, network, those, points, turning, given) for worn, (points, turning) in WORN.items()]
         parts.append(f"## {name[0].upper()}{name[1:]}\n\n{table(HEAD, rows)}")
         print(f"\n{parts[-1]}", flush=True)

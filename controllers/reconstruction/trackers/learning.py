@@ -28,7 +28,7 @@ SIZE = 512
 """Samples in a batch."""
 RATE = 1.2e-3
 WARMING = 300
-"""Batches in which the rate comes up; then it falls along a cosine."""
+"""Batches in which the rate comes up, or a tenth of them all if they are few; then it falls along a cosine."""
 SAYING = 0.1
 """How much the four contacts weigh in the loss."""
 MEAN = 0.999
@@ -102,7 +102,7 @@ class Learner:
         out[:, :WIDTH] = out[:, :WIDTH] * self.outs[1] + self.outs[0]
         total, slopes = loss(out, batch)
         slopes[:, :WIDTH] *= self.outs[1]
-        rate = RATE * min(1.0, (self.batch + 1) / WARMING) * 0.5 * (1.0 + math.cos(math.pi * min(self.batch / self.batches, 1.0)))
+        rate = RATE * min(1.0, (self.batch + 1) / min(WARMING, 0.1 * self.batches)) * 0.5 * (1.0 + math.cos(math.pi * min(self.batch / self.batches, 1.0)))
         self.batch += 1
         share, scale = np.float32(rate / (1.0 - 0.9 ** self.batch)), np.float32(1.0 / (1.0 - 0.999 ** self.batch))
         slopes = backward(self.values[:self.count], found, slopes.astype(np.float32))

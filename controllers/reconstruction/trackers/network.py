@@ -74,17 +74,20 @@ class Network:
         """Read what `save` wrote. ValueError, naming the file and what is wrong with it, for anything else."""
         try:
             with np.load(path, allow_pickle=False) as file:
-                if "version" not in file or int(file["version"]) != VERSION or tuple(file["places"].tolist()) != PLACES:
-                    raise ValueError(f"{path}: is of another version of Gambol; `scripts/build/trackers.py` makes one")
-                count = sum(name.startswith("weights") for name in file)
-                weights = tuple(file[f"weights{i}"].astype(np.float32) for i in range(count))
-                biases = tuple(file[f"biases{i}"].astype(np.float32) for i in range(count))
-                outs, factors, rests, lower, upper = (file[name].astype(float) for name in ("outs", "factors", "rests", "lower", "upper"))
-                made = Network(weights, biases, outs, file["kinds"], factors, rests, lower, upper, int(file["learnt"]))
+                arrays = {name: file[name] for name in file.files}
         except OSError as error:
             raise ValueError(f"{path}: can't be read: {reason(error)}") from None
-        except (KeyError, EOFError, BadZipFile) as error:
-            raise ValueError(f"{path}: is no network of trackers, or damaged: {error}") from None
+        except (ValueError, AttributeError, EOFError, BadZipFile):
+            raise ValueError(f"{path}: is no network of trackers, or damaged") from None
+        if int(arrays.get("version", 0)) != VERSION or tuple(arrays.get("places", np.empty(0)).tolist()) != PLACES:
+            raise ValueError(f"{path}: is of another version of Gambol; scripts/build/trackers.py makes one")
+        count = sum(name.startswith("weights") for name in arrays)
+        try:
+            weights, biases = (tuple(arrays[f"{kind}{i}"].astype(np.float32) for i in range(count)) for kind in ("weights", "biases"))
+            outs, factors, rests, lower, upper = (arrays[name].astype(float) for name in ("outs", "factors", "rests", "lower", "upper"))
+            made = Network(weights, biases, outs, arrays["kinds"], factors, rests, lower, upper, int(arrays["learnt"]))
+        except KeyError as error:
+            raise ValueError(f"{path}: lacks {error}") from None
         made.check(path)
         return made
 
