@@ -35,6 +35,11 @@ from reconstruction_figures import table
 WORN = {"6 points": ("6", False), "4 points": ("4", False), "6 that turn": ("6", True), "3 that turn": ("head,lwrist,rwrist", True)}
 HEAD = ("", "takes", "cm", "joint deg", "worst cm", "beyond 20 cm, %", "first frame cm (worst)", "first half second cm", "jitter",
         "slide cm/s (theirs)", "ms")
+TITLE = """# The network for trackers, measured
+
+    python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --out docs/reconstruction/trackers.md
+
+"""
 FPS, MOST, HALF, FAR = 60.0, 600, 30, 20.0
 _BESIDE = 3  # more clips of a folder that its skeletons are calibrated by
 
@@ -178,7 +183,7 @@ def main() -> None:
         parts.append(f"## {name[0].upper()}{name[1:]}\n\n{table(HEAD, rows)}")
         print(f"\n{parts[-1]}", flush=True)
     if options.out:
-        options.out.write_text("# The network for trackers, measured\n\n" + "\n\n".join(parts) + "\n", encoding="utf-8")
+        options.out.write_text(TITLE + "\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
