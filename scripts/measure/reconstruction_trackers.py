@@ -24,10 +24,9 @@ import numpy as np
 
 from gambol.controllers.body import Skeleton, contact_height, contact_points, detect_contacts, forward_kinematics, point_speeds
 from gambol.controllers.mocap import MotionFileError, calibrate, load, retarget
-from gambol.controllers.reconstruction import SKELETON, parse
+from gambol.controllers.reconstruction import SKELETON, encode, parse
 from gambol.controllers.reconstruction.database import Database, DatabaseError, Take
 from gambol.controllers.reconstruction.evaluation import foreign, metrics, small_of, strangers, trials
-from gambol.controllers.reconstruction.pose_vector import encode
 from gambol.controllers.reconstruction.regression import SPAN
 from gambol.controllers.reconstruction.trackers import SHIPPED, Network, Trackers
 from reconstruction_figures import table
@@ -60,9 +59,9 @@ class Performance:
 def recorded(database: Database, take: Take) -> Performance:
     """A take of a database, on the standard body."""
     trial = trials.trial(database, take, parse("4", SKELETON), MOST)
-    joints = forward_kinematics(SKELETON, trial.positions[:, 0], trial.rotations)
+    positions, orientations = forward_kinematics(SKELETON, trial.positions[:, 0], trial.rotations)
     known = np.array([not name.endswith("Toe") for name in SKELETON.names])
-    return Performance(SKELETON, trial.positions[:, 0], trial.rotations, *joints, known)
+    return Performance(SKELETON, trial.positions[:, 0], trial.rotations, positions, orientations, known)
 
 
 def raw(folder: Path, take: Take) -> Performance:
