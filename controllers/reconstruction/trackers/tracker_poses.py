@@ -22,7 +22,7 @@ from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
 from .solver import fit_kernel
-from .standing import Soles
+from .held_soles import Soles
 
 FADING = 0.9
 """What is left of the network's error a frame later."""
