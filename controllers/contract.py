@@ -97,7 +97,8 @@ class Intent:
     above] and lateral speed v_l [m/s, positive to the left]. leap: a jump, as long as it is wanted.
     around: what stands about, anything with a box's centre, size and heading or a pillar's foot,
     radius and height (`gambol.game.scene.scene` has both). points: (n, 3) [m] in the world, where the points on
-    the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish.
+    the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish. turns: (n, 3, 3) how the joints
+    at those points should be turned in the world, NaN where that is not known; None where none is.
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
     goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way. aside: (3,) what is added to
     the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
@@ -116,6 +117,7 @@ class Intent:
     held: bool = False
     sighting: Sighting | None = None
     aim: Leap | None = None
+    turns: np.ndarray | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

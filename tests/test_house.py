@@ -131,6 +131,8 @@ PLAN = {
         "reconstruction.following": "contract body reconstruction.database reconstruction.regression",
         "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
                                 "reconstruction.baselines"),
+        "reconstruction.trackers": ("compiled files body reconstruction.database reconstruction.regression reconstruction.baselines "
+                                    "reconstruction.ours"),
         "reconstruction.evaluation": ("body reconstruction.database reconstruction.regression reconstruction.baselines "
                                       "reconstruction.ours"),
     },

@@ -13,22 +13,18 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..body import STATURE, Pose, human, settle
+from ..body import STATURE, Pose, Skeleton, human, settle
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
-from .following import Gate, Starts, above, difference, guessed_past, joints_of, moved, spread
+from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
+                        spread)
 from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
 """How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""
 LOST = 1.0
 """Without a point for so long [s] it gives up."""
-FAR = 1.5
-"""Points that are farther from the body than this on the average [m] can't be taken hold of; a body that is farther from where
-it begins anew is there at once."""
-APART = 2.5
-"""No two points of a standard body are farther apart [m]."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 LEAP = 0.2
@@ -39,7 +35,7 @@ _CALMED = 0.5
 
 
 class Reconstructor(Protocol):
-    """What makes the poses: a `method.Method`, or anything that is used like one."""
+    """What makes the poses: a `method.Method`, or anything that is used like one. One with `hears_turns` is given turns, too."""
 
     def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Any:
         """See `Method`."""
@@ -86,9 +82,10 @@ class Reconstruction(Controller):
     """
 
     def __init__(self, method: Reconstructor, controls: ControlPoints, height: float = STATURE, dt: float = 1 / 60,
-                 starts: Starts | None = None):
+                 starts: Beginning | None = None, skeleton: Skeleton | None = None):
         self.method, self.controls, self.starts, self.dt = method, controls, starts, dt
-        self.factor, self.skeleton = height / STATURE, human(height)
+        self.factor, self.skeleton = (height / STATURE, human(height)) if skeleton is None else (1.0, skeleton)
+        self.body = SKELETON if skeleton is None else skeleton
 
     @property
     def kind(self) -> str:
@@ -110,35 +107,38 @@ class Reconstruction(Controller):
         level = float(sound_level(state.floor))
         seen = self._seen(intent, level)
         pose = self._shrunk(state.pose, level)
-        away = self._possible(seen, self._points(pose))
+        away = reached(seen, self._points(pose), self.factor)
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, level)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
         if away <= ANEW or self.starts is None:
             frames, tracks = guessed_past(pose, past, state.elapsed, self.dt)
         else:
-            frames, tracks = self.starts.find(seen)
-        begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen)
+            frames, tracks = self.starts.find(seen, None, self._turns(intent))
+        begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen, self._turns(intent))
         # what the body would do next by itself is where the fading begins
         offset = difference(moved(pose, rate * self.dt), begun.pose)
         return replace(state, memory=replace(begun, ahead=self.dt, offset=offset, level=level))
 
-    def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0) -> CharacterState:
-        """A body out of nothing, in a pose that has these points (n, 3) [m], which move at velocities (n, 3) [m/s].
+    def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0,
+              turns: np.ndarray | None = None) -> CharacterState:
+        """A body out of nothing, in a pose that has these points (n, 3) [m], which move at velocities (n, 3) [m/s] and are turned by
+        turns (n, 3, 3).
 
-        Both NaN where not known. Unable if no point is seen, or none of this body's; it needs `starts`.
+        All NaN where not known. Unable if no point is seen, or none of this body's; it needs `starts`.
         """
         sound_level(floor)
         nobody = CharacterState(np.zeros(3), np.zeros(3), Pose(np.zeros(3), np.eye(3)), np.zeros(4, bool), floor=floor)
-        seen = self._seen(Intent(points=points), floor)
-        self._possible(seen, seen)
+        wanted = Intent(points=points, turns=turns)
+        seen = self._seen(wanted, floor)
+        reached(seen, seen, self.factor)
         if self.starts is None:
             raise Unable("it knows no poses to begin from: enter it from a body, or give it `starts`")
-        frames, tracks = self.starts.find(seen, None if velocities is None else velocities / self.factor)
+        frames, tracks = self.starts.find(seen, None if velocities is None else velocities / self.factor, self._turns(wanted))
         following = self._begun(frames, tracks, seen)
         pose = self._grown(following.pose, floor)
         ground = np.array([pose.root[0], pose.root[2], tracks[-1, 2]])
         following = replace(following, ahead=self.dt, level=float(floor))
-        state, _ = self.step(replace(nobody, ground=ground, pose=pose, memory=following), Intent(points=points), self.dt)
+        state, _ = self.step(replace(nobody, ground=ground, pose=pose, memory=following), wanted, self.dt)
         return state
 
     def _begun(self, frames: np.ndarray, tracks: np.ndarray, seen: np.ndarray, late: float = 0.0) -> Following:
@@ -161,9 +161,9 @@ class Reconstruction(Controller):
             raise ValueError("this state's memory is not of a reconstruction: enter it first")
         following = state.memory
         try:
-            seen = self._seen(intent, following.level)
+            seen, turns = self._seen(intent, following.level), self._turns(intent)
         except Unable as reason:  # the body coasts, and the next step is somebody else's
-            seen, following = np.full((len(self.controls), 3), np.nan), replace(following, fault=str(reason))
+            seen, turns, following = np.full((len(self.controls), 3), np.nan), None, replace(following, fault=str(reason))
         due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
         ahead = following.ahead - dt + due * self.dt
         start = following.seen
@@ -172,7 +172,7 @@ class Reconstruction(Controller):
             following = replace(following, gate=gate)
         for k in range(1, due + 1):
             points = seen if k == due else start + (seen - start) * (k / due)
-            following = self._frame(following, points)
+            following = self._frame(following, points, turns)
         if due:
             following = replace(following, seen=seen)
         offset, rate = settle(following.offset, following.rate, FADE, dt)
@@ -182,7 +182,7 @@ class Reconstruction(Controller):
             shown = moved(shown, difference(following.before, shown) * (following.ahead / self.dt))
         shown = moved(shown, offset)
         floor = (float(state.floor) - following.level) / self.factor
-        pose = self._grown(above(SKELETON, shown, *joints_of(shown), floor), following.level)
+        pose = self._grown(above(self.body, shown, *joints_of(shown, self.body), floor), following.level)
         return driven(state, self.skeleton, pose, following, dt), pose
 
     def status(self, state: CharacterState) -> Status:
@@ -192,20 +192,24 @@ class Reconstruction(Controller):
             return Status("failed", following.fault)
         return Status("done", "the points are lost") if following.lost >= LOST else Status("running")
 
-    def _frame(self, following: Following, points: np.ndarray) -> Following:
+    def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray | None = None) -> Following:
         """One frame of the method on."""
-        now, earlier = joints_of(following.pose), joints_of(following.before)
+        now, earlier = joints_of(following.pose, self.body), joints_of(following.before, self.body)
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
         if self.starts is not None and gate.at_odds(self.dt) and spread(points) <= APART:
-            return self._anew(following, points, self.starts.find(points, gate.smooth))
-        memory, pose = self.method.step(following.memory, goals)
+            return self._anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
+        if turns is None or not getattr(self.method, "hears_turns", False):
+            memory, pose = self.method.step(following.memory, goals)
+        else:  # of points that are refused nothing is believed; inertial trackers know turns alone
+            believed = gate.trusted | ~np.isfinite(points).all(-1)
+            memory, pose = self.method.step(following.memory, goals, np.where(believed[:, None, None], turns[gate.order], np.nan))  # type: ignore[call-arg]
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
-        if np.linalg.norm(joints_of(pose)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
+        if np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
             return after
         # the body goes on as it did, and what it would have leapt fades; less fast each time, or leaps upon leaps
         # would carry it away
@@ -213,9 +217,9 @@ class Reconstruction(Controller):
         ahead = moved(following.pose, step)
         return replace(after, before=moved(pose, -step), offset=difference(moved(ahead, following.offset), pose))
 
-    def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray]) -> Following:
+    def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray | None) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
-        begun = self._frame(self._begun(*past, points, self.dt), points)
+        begun = self._frame(self._begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
         offset = np.zeros_like(following.offset) if far else difference(ahead, begun.pose)
@@ -232,22 +236,17 @@ class Reconstruction(Controller):
             raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
         return (points - [0.0, level, 0.0]) / self.factor
 
-    def _possible(self, seen: np.ndarray, body: np.ndarray) -> float:
-        """How far they are from the body's on the average [m]. Unable unless these points can be of this body."""
-        there = np.isfinite(seen).all(-1)
-        if not there.any():
-            raise Unable("no point is seen")
-        away = float(np.linalg.norm(seen - body, axis=-1)[there].mean())
-        if away > FAR:
-            raise Unable(f"the points are {away * self.factor:.1f} m away from the body")
-        apart = spread(seen[there])
-        if apart > APART:
-            raise Unable(f"two points are {apart * self.factor:.1f} m apart, which no body is")
-        return away
+    def _turns(self, intent: Intent) -> np.ndarray | None:
+        """How the points are turned (n, 3, 3). Unable for another number of turns."""
+        count = len(self.controls)
+        turns = None if intent.turns is None else np.asarray(intent.turns, float)
+        if turns is not None and turns.shape != (count, 3, 3):
+            raise Unable(f"turns of shape {turns.shape}: {count} are followed, {', '.join(self.controls.names)}")
+        return turns
 
     def _points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""
-        return self.controls.on(*joints_of(pose))
+        return self.controls.on(*joints_of(pose, self.body))
 
     def _shrunk(self, pose: Pose, level: float) -> Pose:
         return Pose((np.asarray(pose.root, float) - [0.0, level, 0.0]) / self.factor, np.asarray(pose.rotations, float))

@@ -105,7 +105,8 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
 
     points = next((name for name, some in SETS.items() if points == ",".join(some)), points)
     pixels = pixels_of(size)
-    wanted = tuple(dict.fromkeys([method, *(() if stream is not None else ("lpcr", "lpca"))]))
+    # beside what ships nobody waits for others to be learnt
+    wanted = tuple(dict.fromkeys([method, *(() if stream is not None or method == "trackers" else ("lpcr", "lpca"))]))
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 

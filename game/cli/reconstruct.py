@@ -19,7 +19,7 @@ from .play import watch
 def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC file whose points are taken, or the packets of trackers that --keep kept.")] = None,
                 points: Annotated[str | None, typer.Option(help="Points on the body, with commas: lwrist,rwrist,lankle,rankle, or a set of the paper, 2 … 6. 4 by default.")] = None,
                 out: Annotated[Path | None, typer.Option("-o", "--out", help="A .bvh file of the motion, or a .glb file of the body in motion; a window shows it by default.")] = None,
-                method: Annotated[str, typer.Option(help="ours, or one that it is measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = "ours",
+                method: Annotated[str | None, typer.Option(help="trackers, the network that ships, by default; ours, learnt from --database; or one that these are measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = None,
                 database: Annotated[Path | None, typer.Option(help="A motion database to learn from; Gambol's own motion by default.")] = None,
                 noise: Annotated[float, typer.Option(min=0.0, max=100.0, help="Blur the clip's points by so many centimetres.")] = 0.0,
                 seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
@@ -58,13 +58,15 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         from ..output import checked
 
         checked(out)
-    method = _known(method)
+    if method is not None:
+        _known(method)
     if database is not None:  # what is wrong with it is best said before anything is learnt
         from gambol.controllers.reconstruction.database import Database
 
         Database.open(database)
     if clip is not None and not heard_again:
         names = _named("4" if points is None else points)
+        method = method or _usual(names, database)
         if out is None:
             watch(method, names, database, clip=clip)
         else:
@@ -74,6 +76,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
 
     worn_on = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn_on.values())
+    method = method or _usual(names, database)
     with live.heard(worn_on, clip, port, host, keep) as source:
         if out is None and (send is None or window):
             source.placement = live.placement(source, height)
@@ -83,12 +86,17 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 live.record(source, _controller(method, database, names), out, height, seconds, sender)
 
 
-def _known(method: str) -> str:
+def _known(method: str) -> None:
     from ..world import METHODS
 
     if method not in METHODS:
         raise Mistake(f"--method {method!r}: there is no such method; choose from {', '.join(METHODS)}")
-    return method
+
+
+def _usual(points: str, database: Path | None) -> str:
+    from ..world import usual
+
+    return usual(points, database)
 
 
 def _named(text: str) -> str:
@@ -110,7 +118,7 @@ def _controller(method: str, file: Path | None, points: str) -> Any:
     learn([(method, points)], file)
     known = methods(file)
     learnt, controls = known(method, points)
-    return Reconstruction(learnt, controls, dt=1 / known.database().fps, starts=known.starts(points))
+    return Reconstruction(learnt, controls, dt=known.frame_time(method), starts=known.starts(method, points))
 
 
 def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, noise: float, seed: int) -> None:

@@ -7,7 +7,7 @@ from .courtesy import avoiding
 from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
-from .learnt_methods import METHODS, NAMES, TINTS, Learning, Methods, methods
+from .learnt_methods import METHODS, NAMES, TINTS, Learning, Methods, methods, usual
 from .primitive import nearest, posed
 from .recorded import Recorded
 from .tracked_footage import Filmed
@@ -19,5 +19,5 @@ __all__ = [
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
     "figures", "follower_of",
     "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "switched",
-    "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "watches_of",
+    "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "watches_of",
 ]

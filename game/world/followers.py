@@ -161,7 +161,7 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
     walker = someone.parts.get("locomotion", someone)
     height = STATURE * float(performer.skeleton.offsets[0, 1] / SKELETON.offsets[0, 1])
     controllers = {"locomotion": walker, "reconstruction": Reconstruction(
-        method, controls, height, starts=methods.starts(points))}
+        method, controls, height, starts=methods.starts(name, points))}
     if isinstance(performer, Embodied):
         return Embodied(controllers, performer.body, performer.factor)
     return Supervisor(controllers)

@@ -20,18 +20,20 @@ import numpy as np
 if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
     from gambol.controllers.reconstruction import ControlPoints
     from gambol.controllers.reconstruction.database import Database
-    from gambol.controllers.reconstruction.following import Starts
+    from gambol.controllers.reconstruction.following import Beginning, Starts
 
-METHODS = ("ours", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
-"""Ours; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
+METHODS = ("trackers", "ours", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
+"""The network that ships, for any trackers; ours, learnt from a database; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
 ridge regression; SGPLVM (Grochow 2004)."""
-TINTS = {"ours": (0.03, 0.36, 0.33), "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02),
+TINTS = {"trackers": (0.12, 0.42, 0.10), "ours": (0.03, 0.36, 0.33), "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02),
          "mousas": (0.28, 0.20, 0.70), "nearest": (0.40, 0.42, 0.08), "network": (0.06, 0.30, 0.72),
          "ridge": (0.60, 0.18, 0.10), "gplvm": (0.55, 0.36, 0.24)}
 """The colour of each, linear RGB: of its body, its ghost and its line in the legend."""
-NAMES = {"ours": "ours", "lpcr": "local PCR", "lpca": "local PCA", "mousas": "Mousas mended", "nearest": "nearest",
+NAMES = {"trackers": "trackers", "ours": "ours", "lpcr": "local PCR", "lpca": "local PCA", "mousas": "Mousas mended", "nearest": "nearest",
          "network": "network", "ridge": "ridge", "gplvm": "SGPLVM"}
 """What each is called in the picture."""
+SHIPPED = "trackers"
+"""The one that needs no database."""
 PROGRESS = re.compile(r"(.+): (\d+) of (\d+)")
 
 Progress = Callable[[str, int, int], None]
@@ -52,7 +54,7 @@ class Methods:
 
     def knows(self, name: str, points: str) -> bool:
         """Whether a method for some points is ready at once."""
-        return (name, points) in self._known
+        return name == SHIPPED or (name, points) in self._known
 
     def __call__(self, name: str, points: str, progress: Progress | None = None) -> tuple[Any, ControlPoints]:
         """A method of `METHODS` and the points that it follows, as `controls.parse` has them.
@@ -64,19 +66,28 @@ class Methods:
         from gambol.controllers.reconstruction import SKELETON, parse
 
         controls = parse(points, SKELETON)
-        if not self.knows(name, points):
-            self.starts(points)
-            self._known[name, points] = learnt(name, self.database(progress), controls, progress)
+        if (name, points) not in self._known:
+            if name == SHIPPED:
+                self._known[name, points] = shipped(controls)
+            else:
+                self.starts(name, points)
+                self._known[name, points] = learnt(name, self.database(progress), controls, progress)
         return self._known[name, points], controls
 
-    def starts(self, points: str) -> Starts:
-        """Where one begins from such points alone."""
+    def starts(self, name: str, points: str) -> Beginning:
+        """Where a method begins from such points alone."""
         from gambol.controllers.reconstruction import SKELETON, parse
         from gambol.controllers.reconstruction.following import Starts
 
+        if name == SHIPPED:
+            return self(name, points)[0]
         if points not in self._starts:
             self._starts[points] = Starts.of(self.database(), parse(points, SKELETON))
         return self._starts[points]
+
+    def frame_time(self, name: str) -> float:
+        """Seconds between a method's frames."""
+        return 1 / 60 if name == SHIPPED else 1 / self.database().fps
 
     def database(self, progress: Progress | None = None) -> Database:
         """What they learn from."""
@@ -104,6 +115,24 @@ def learnt(name: str, database: Database, controls: ControlPoints, progress: Pro
     method = ours(database, controls, progress=progress) if name == "ours" else baseline(name, database, controls)
     rehearse(method, controls)
     return method
+
+
+def shipped(controls: ControlPoints) -> Any:
+    """The method that ships, for some points, ready."""
+    from gambol.controllers.reconstruction.trackers import Network, Trackers
+
+    method = Trackers(Network.load(), controls)
+    rehearse(method, controls)
+    return method
+
+
+def usual(points: str, file: str | Path | None = None) -> str:
+    """The method that is taken where none is named: what ships where it knows all the points and no database is given, else ours."""
+    from gambol.controllers.reconstruction import SKELETON, parse
+    from gambol.controllers.reconstruction.trackers import SLOTS
+
+    controls = parse(points, SKELETON)
+    return SHIPPED if file is None and set(controls.joints) <= set(SLOTS) and not controls.offsets.any() else "ours"
 
 
 def _silent(what: str, done: int, total: int) -> None:

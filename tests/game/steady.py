@@ -36,7 +36,7 @@ def no_database(monkeypatch):
     monkeypatch.setattr(learning, "learnt", lambda name, database, controls, progress=None: Method(
         Steady(), Solver(controls, 1 / 60)))
     monkeypatch.setattr(learning.Methods, "database", lambda self, progress=None: None)
-    monkeypatch.setattr(learning.Methods, "starts", lambda self, points: NoStarts())
+    monkeypatch.setattr(learning.Methods, "starts", lambda self, name, points: NoStarts())
     learning.methods.cache_clear()
     yield
     learning.methods.cache_clear()

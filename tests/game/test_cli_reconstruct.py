@@ -72,7 +72,7 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["{clip}", "--points", "elbw", "-o", "o.bvh"], "no control point 'elbw'"),
     (["{clip}", "--points", "", "-o", "o.bvh"], "no control points"),
     (["{clip}", "--points", "lwrist,lwrist", "-o", "o.bvh"], "given twice"),
-    (["{clip}", "--method", "magic", "--database", "{database}", "-o", "o.bvh"], "no such method; choose from ours"),
+    (["{clip}", "--method", "magic", "--database", "{database}", "-o", "o.bvh"], "no such method; choose from trackers, ours"),
     (["{clip}", "-o", "o.fbx"], ".bvh or .glb"),
     (["none.bvh", "-o", "o.bvh"], "none.bvh"),
     (["{words}", "-o", "o.bvh"], "words.bvh"),

@@ -2,12 +2,13 @@
 of the floor, and taking a body over without a pop; the way to points that are far.
 """
 
-from .approach import spread, towards
+from .approach import APART, FAR, reached, spread, towards
 from .feet import above
 from .hand_over import difference, guessed_past, joints_of, moved
-from .initial_pose import Starts
+from .initial_pose import Beginning, Starts
 from .point_gate import Gate
 
 __all__ = [
-    "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved", "spread", "towards",
+    "APART", "FAR", "Beginning", "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved", "reached", "spread",
+    "towards",
 ]

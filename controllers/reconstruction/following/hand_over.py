@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...body import Pose, exp, forward_kinematics, log
+from ...body import Pose, Skeleton, exp, forward_kinematics, log
 from ..pose_vector import SKELETON, YAW_RATE, encode
 from ..regression import SPAN
 from .initial_pose import backed
@@ -12,9 +12,9 @@ from .initial_pose import backed
 _FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
 
 
-def joints_of(pose: Pose) -> tuple[np.ndarray, np.ndarray]:
-    """A standard body's joints: positions (J, 3) [m] and orientations (J, 3, 3)."""
-    return forward_kinematics(SKELETON, pose.root, pose.rotations)
+def joints_of(pose: Pose, skeleton: Skeleton = SKELETON) -> tuple[np.ndarray, np.ndarray]:
+    """A body's joints, the standard one's by default: positions (J, 3) [m] and orientations (J, 3, 3)."""
+    return forward_kinematics(skeleton, pose.root, pose.rotations)
 
 
 def difference(to: Pose, start: Pose) -> np.ndarray:

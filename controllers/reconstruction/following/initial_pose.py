@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -16,6 +17,16 @@ MOST = 20_000
 """So many moments of a database are looked at."""
 PACE = 0.1
 """A velocity that is wrong by 1 m/s counts as much as a place that is wrong by this [m]."""
+
+
+class Beginning(Protocol):
+    """What knows poses to begin from: `Starts`, or whatever is used like it."""
+
+    def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
+             ) -> tuple[np.ndarray, np.ndarray]:
+        """Frames (T, D) and ground tracks (T, 3) up to a moment with points (n, 3) [m], which move at velocities (n, 3) [m/s] and are
+        turned by turns (n, 3, 3), NaN where not known. ValueError if no point is known."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +57,11 @@ class Starts:
         return Starts(database, controls, frames, starts[np.searchsorted(starts, frames, "right") - 1],
                       now.astype(np.float32), rates.astype(np.float32))
 
-    def find(self, points: np.ndarray, velocities: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
+             ) -> tuple[np.ndarray, np.ndarray]:
         """Frames (≤ SPAN, D) and ground tracks (≤ SPAN, 3) up to the moment most like some points (n, 3) [m].
 
-        Points and velocities (n, 3) [m/s] are in the world, NaN where not known; the tracks end where the points are.
+        Points and velocities (n, 3) [m/s] are in the world, NaN where not known; the tracks end where the points are. Turns tell nothing.
         ValueError if no point is known.
         """
         there = np.isfinite(points).all(-1)

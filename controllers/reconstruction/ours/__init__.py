@@ -3,7 +3,9 @@ very likely are, and filters for noise.
 """
 
 from .combined import cells, ours
+from .filters import Motion, noise
+from .networks import ANGLE, DISTANCE, layer_kernel, misfit_kernel, placed, seen_from
 
 __all__ = [
-    "cells", "ours",
+    "ANGLE", "DISTANCE", "Motion", "cells", "layer_kernel", "misfit_kernel", "noise", "ours", "placed", "seen_from",
 ]

@@ -1,0 +1,171 @@
+"""Learning the network: batches that stream from a database, Adam, and a checkpoint now and then from which it goes on, the same.
+
+The loss is that of kinematics on each sample's own body (`ours.misfit_kernel`), and the cross-entropy of contacts. What is used
+in the end is the running mean of the weights (Polyak & Juditsky 1992), so that it can be taken at any time.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ...compiled import kernel
+from ..baselines import backward, forward, starting
+from ..ours import ANGLE, DISTANCE, misfit_kernel
+from ..pose_vector import ANGLES, JOINTS, REFERENCE, SKELETON, WIDTH
+from ..regression import EXACT
+from .network import OUTPUTS, Network
+from .samples import FIRST, Batch, Moments
+from .slots import INPUTS, PLACES
+from .wearing import exactly, members
+
+HIDDEN = (768, 768)
+SIZE = 512
+"""Samples in a batch."""
+RATE = 1.2e-3
+WARMING = 300
+"""Batches in which the rate comes up, or a tenth of them all if they are few; then it falls along a cosine."""
+SAYING = 0.1
+"""How much the four contacts weigh in the loss."""
+MEAN = 0.999
+"""What is left of the weights' mean a batch later."""
+RANK = 24
+"""Rows of the errors' factors; the rest of each number's variance is kept apart."""
+KINDS = ("Hips Head LeftHand RightHand LeftFoot RightFoot", "LeftHand RightHand LeftFoot RightFoot", "Head LeftHand RightHand",
+         "Hips LeftHand RightHand LeftFoot RightFoot", "LeftHand LeftFoot RightFoot", "RightHand LeftFoot RightFoot",
+         "LeftHand RightFoot", "RightHand LeftFoot", "Head LeftHand RightHand LeftFoot RightFoot",
+         "Hips Spine2 Head LeftHand RightHand LeftFoot RightFoot", " ".join(PLACES))
+"""Trackers for which errors are told, each without and with turns."""
+_JUDGED = 4096
+_STANDARD = 1_000_003  # number of the batch that inputs and outputs are scaled by
+_RARE = 5e-4  # of recorded rotation vectors that lie beyond the range on either side
+_WIDER = math.radians(1.0)
+
+
+def loss(found: np.ndarray, batch: Batch) -> tuple[float, np.ndarray]:
+    """The mean loss of outputs (B, OUTPUTS), poses in metres and radians and contacts' logits, and its derivatives (B, OUTPUTS)."""
+    poses = np.ascontiguousarray(found[:, :WIDTH], float)
+    slopes = np.empty(found.shape)
+    own = np.empty(poses.shape)
+    total = misfits_kernel(poses, batch.truth, SKELETON.parents, batch.bodies, REFERENCE, FIRST, JOINTS, DISTANCE, ANGLE, own)
+    slopes[:, :WIDTH] = own
+    logits, standing = np.asarray(found[:, WIDTH:], float), batch.contacts
+    total += SAYING * float(np.mean(np.logaddexp(0.0, np.where(standing, -logits, logits))))
+    slopes[:, WIDTH:] = SAYING / logits.size * (1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0))) - standing)
+    return total, slopes
+
+
+@kernel(fastmath=EXACT, error_model="numpy")
+def misfits_kernel(found, truth, parents, bodies, reference, first, joints, distance, angle, slopes):
+    """`ours.misfit_kernel` where each sample has a body (J, 3) of its own."""
+    total, count = 0.0, len(found)
+    for b in range(count):
+        total += misfit_kernel(found[b:b + 1], truth[b:b + 1], parents, bodies[b], reference, first, joints, distance, angle, slopes[b:b + 1])
+    slopes /= count
+    return total / count
+
+
+@kernel(fastmath=EXACT, error_model="numpy")
+def adam_kernel(value, slope, first, second, share, scale, left):
+    """Adam (Kingma & Ba 2015) on flat arrays, in one sweep; `left` the fourth, the running mean, is told apart."""
+    for i in range(len(value)):
+        first[i] += np.float32(0.1) * (slope[i] - first[i])
+        second[i] += np.float32(0.001) * (slope[i] * slope[i] - second[i])
+        value[i] -= share * first[i] / (math.sqrt(second[i] * scale) + np.float32(1e-8))
+        left[i] += np.float32(1.0 - MEAN) * (value[i] - left[i])
+
+
+class Learner:
+    """A network while it is learnt. moments: what from. batches: in all; the rate falls to nothing until then.
+
+    seed: of all that is drawn. hidden: the widths of the layers between.
+    """
+
+    def __init__(self, moments: Moments, batches: int, seed: int = 0, hidden: tuple[int, ...] = HIDDEN, size: int = SIZE):
+        self.moments, self.batches, self.seed, self.size, self.batch = moments, batches, seed, size, 0
+        self.count = len(hidden) + 1
+        self.values = starting((INPUTS, *hidden, OUTPUTS), np.random.default_rng([seed, 0, 1]))
+        self.first, self.second = ([np.zeros_like(value) for value in self.values] for _ in range(2))
+        self.means = [value.copy() for value in self.values]
+        truth = moments.draw(_JUDGED, seed, _STANDARD).truth
+        self.outs = np.stack([truth.mean(0), np.maximum(truth.std(0), 1e-3)])
+
+    def step(self) -> float:
+        """Learn from one batch more. Returns its loss."""
+        batch = self.moments.draw(self.size, self.seed, self.batch)
+        found = forward(self.values[:self.count], self.values[self.count:], batch.inputs)
+        out = np.asarray(found[-1], float)
+        out[:, :WIDTH] = out[:, :WIDTH] * self.outs[1] + self.outs[0]
+        total, slopes = loss(out, batch)
+        slopes[:, :WIDTH] *= self.outs[1]
+        rate = RATE * min(1.0, (self.batch + 1) / min(WARMING, 0.1 * self.batches)) * 0.5 * (1.0 + math.cos(math.pi * min(self.batch / self.batches, 1.0)))
+        self.batch += 1
+        share, scale = np.float32(rate / (1.0 - 0.9 ** self.batch)), np.float32(1.0 / (1.0 - 0.999 ** self.batch))
+        slopes = backward(self.values[:self.count], found, slopes.astype(np.float32))
+        for value, slope, first, second, mean in zip(self.values, slopes, self.first, self.second, self.means, strict=True):
+            adam_kernel(value.reshape(-1), np.ascontiguousarray(slope).reshape(-1), first.reshape(-1), second.reshape(-1), share, scale, mean.reshape(-1))
+        return total
+
+    def learn(self, path: Path, every: int, progress: Callable[[int, int, float], None] | None = None) -> None:
+        """Go on to the last batch, with a checkpoint at path after `every` batches and at the end.
+
+        progress: called with the batches done, how many there are, and the mean loss since the last call.
+        """
+        losses: list[float] = []
+        while self.batch < self.batches:
+            losses.append(self.step())
+            if self.batch % 50 == 0 and progress is not None:
+                progress(self.batch, self.batches, float(np.mean(losses)))
+                losses.clear()
+            if self.batch % every == 0 or self.batch == self.batches:
+                self.save(path)
+
+    def save(self, path: Path) -> None:
+        """Write a checkpoint; it is there whole or not at all."""
+        arrays = {f"{kind}{i}": value for kind in ("values", "first", "second", "means") for i, value in enumerate(getattr(self, kind))}
+        own = path.with_name(f"{path.name}.{os.getpid()}.part")
+        with own.open("wb") as file:
+            np.savez(file, batch=self.batch, seed=self.seed, size=self.size, outs=self.outs, **arrays)
+        os.replace(own, path)
+
+    def resume(self, path: Path) -> None:
+        """Go on from a checkpoint. ValueError if it is of another seed, batch or network."""
+        with np.load(path) as file:
+            there = [file[f"values{i}"].shape for i in range(sum(name.startswith("values") for name in file))]
+            if (int(file["seed"]), int(file["size"])) != (self.seed, self.size) or there != [value.shape for value in self.values]:
+                raise ValueError(f"{path}: is of another seed, batch size or width; give another folder to begin anew")
+            for kind in ("values", "first", "second", "means"):
+                setattr(self, kind, [file[f"{kind}{i}"] for i in range(len(there))])
+            self.batch, self.outs = int(file["batch"]), file["outs"]
+
+    def network(self) -> Network:
+        """The network as it is now: the weights' mean without its first steps, and how far off it is with some trackers."""
+        bare = Network(tuple(self.means[:self.count]), tuple(self.means[self.count:]), self.outs, np.empty(0), np.empty(0), np.empty(0),
+                       *self._range(), self.batch)
+        kinds, factors, rests = [], [], []
+        for text in KINDS:
+            placed = members(text)
+            for turned in (np.zeros_like(placed), placed):
+                batch = self.moments.draw(_JUDGED, self.seed, _STANDARD + 1, exactly(_JUDGED, placed, turned))
+                errors = bare.predict(batch.inputs)[0] - batch.truth
+                factor, rest = reduced(errors.T @ errors / len(errors))
+                kinds.append(np.concatenate([placed, turned]))
+                factors.append(factor)
+                rests.append(rest)
+        return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.batch)
+
+    def _range(self):
+        frames = self.moments.database.frames[np.sort(self.moments.which[::max(1, len(self.moments) // 200_000)])]
+        low, high = np.quantile(frames[:, :ANGLES].astype(float), (_RARE, 1.0 - _RARE), axis=0)
+        return low - _WIDER, high + _WIDER
+
+
+def reduced(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (RANK, D) and the rest (D,) of a covariance (D, D): what its strongest directions say, and each number's own variance beside."""
+    values, vectors = np.linalg.eigh(covariance)
+    rows = np.sqrt(np.maximum(values[-RANK:], 0.0))[:, None] * vectors[:, -RANK:].T
+    return rows, np.maximum(np.diagonal(covariance) - (rows ** 2).sum(0), 1e-10)

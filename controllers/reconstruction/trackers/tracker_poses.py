@@ -1,0 +1,249 @@
+"""The network as a method: frame by frame, what trackers say becomes the most probable pose on the performer's own skeleton.
+
+The network needs no past and is told what is missing, so a beginning and lost trackers are nothing special. What it was off by in the
+last frame, as the solve found, is expected again, fading (as in `ours`). Soles that it says stand are held where they came down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ...body import Pose, Skeleton, contact_height, forward_kinematics, heel_offset
+from ..control_points import ControlPoints
+from ..ours import Motion, noise, placed
+from ..pose_vector import REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
+from ..regression import FAR, FLOOR, SPAN, seen_kernel
+from .ground import GROUND, less, nothing, on, shown_as, turned_on
+from .network import Network
+from .samples import FIRST
+from .slots import INPUTS, LAGS, SLOTS, view_kernel
+from .solver import fit_kernel
+from .held_soles import Soles
+
+FADING = 0.9
+"""What is left of the network's error a frame later."""
+LOOSENING = 30.0
+"""How much larger the network's errors may be than on recordings: trackers are met."""
+EXACT_PLACE, EXACT_TURN = 0.01, np.radians(2.0)
+"""How exactly trackers' places [m] and turns [rad] are met, standard deviations."""
+RESTING = 0.95
+"""What is left of the body's velocity a frame later where no tracker is seen."""
+ACCELERATION = 10.0
+"""How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
+ROUGH = 0.003
+"""How unsteady poses are even where trackers are not [m, rad]."""
+STEPS, TOLERANCE = 6, 1e-4
+"""Of the solver: steps at most, and the share of the energy below which a gain ends them."""
+BEGINNINGS = 8
+"""From so many headings the first frame is tried where no tracker turns."""
+SURE = np.radians(10.0)
+"""A first frame that turns by more than this when it is seen from its own heading hardly agrees with itself."""
+_RECENT = 15  # frames that tell the noise
+_JUMP = 1.0  # rad or m, beyond which the chart has jumped: nothing to be smoothed
+_WORLD = np.zeros(3)
+
+
+@dataclass(frozen=True, eq=False)
+class Remembered:
+    """pose: (D,) placed in the world, as it was solved; before: (D,) the one before. off: (D,) what the network was off by.
+
+    places (SPAN, S, 3) [m], turns (SPAN, S, 3, 3): what slots said in the world, newest first; NaN where nothing. turning: (n,) bool,
+    which trackers have told a turn. recent: (T, n, 3) raw points. points, shown: filtered. soles: which stand, and where.
+    """
+
+    pose: np.ndarray
+    before: np.ndarray
+    off: np.ndarray
+    places: np.ndarray
+    turns: np.ndarray
+    turning: np.ndarray
+    recent: np.ndarray
+    points: Motion | None
+    shown: Motion
+    soles: Soles
+
+
+@dataclass(frozen=True, eq=False)
+class Trackers:
+    """The method for some trackers. controls: the joints that they were calibrated to; those that have no slot, and points beside a joint
+    that don't turn, still pull at the body. dt: [s] between frames. skeleton: the performer's, with the chart's joints.
+    steady: whether noise on points is filtered, and poses a little. ValueError for another skeleton.
+    """
+
+    network: Network
+    controls: ControlPoints
+    dt: float = 1 / 60
+    skeleton: Skeleton = SKELETON
+    steady: bool = True
+    hears_turns = True
+
+    def __post_init__(self):
+        if self.skeleton.names != SKELETON.names or not np.array_equal(self.skeleton.parents, SKELETON.parents):
+            raise ValueError("the performer's skeleton must have the chart's joints")
+
+    def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Remembered:
+        """The memory after known frames (T, D) of the chart with ground tracks (T, 3), the newest last; one alone is no past."""
+        frames = placed(np.asarray(frames, float)[-SPAN:], np.asarray(tracks, float)[-SPAN:])[::-1]
+        places, turns = nothing(len(SLOTS))
+        if len(frames) > 1:
+            for k, frame in enumerate(frames):
+                positions, orientations = self._joints(frame)
+                places[k], turns[k] = positions[SLOTS], orientations[SLOTS]
+            for absent in np.setdiff1d(np.arange(len(SLOTS)), self._slots[self._slots >= 0]):
+                places[:, absent], turns[:, absent] = np.nan, np.nan
+        pose, before = frames[0], frames[min(1, len(frames) - 1)]
+        return Remembered(pose, before, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
+                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before)), Soles.none())
+
+    def step(self, memory: Remembered, points: np.ndarray, turns: np.ndarray | None = None) -> tuple[Remembered, Pose]:
+        """The pose a frame later, for trackers at points (n, 3) [m] in the world with turns (n, 3, 3), NaN where not known."""
+        points = np.array(points, float)
+        points[~(np.abs(points) < FAR).all(-1)] = np.nan
+        count = len(self.controls)
+        turns = np.full((count, 3, 3), np.nan) if turns is None else np.asarray(turns, float)
+        recent, level, reach, filtered = np.concatenate([memory.recent[1:], points[None]]), 0.0, ACCELERATION * self.dt ** 2, memory.points
+        if self.steady:
+            if filtered is None:
+                filtered = Motion(np.where(np.isfinite(points), points, 0.0), np.zeros_like(points))
+            fresh = ~np.isfinite(memory.recent[-1]) & np.isfinite(points)
+            filtered = Motion(np.where(fresh, points - filtered.change, filtered.place), filtered.change)
+            level = noise(recent)
+            filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
+            points = np.where(np.isfinite(points), filtered.place, np.nan)
+        after = self._followed(memory, points, turns)
+        found = after.pose
+        if not self.steady:
+            return replace(after, recent=recent), shown_as(found)
+        if np.abs(less(found, memory.shown.place)).max() > _JUMP:
+            shown = Motion(found, np.zeros(WIDTH))
+        else:
+            near = memory.shown.place + less(found, memory.shown.place)
+            shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
+        return replace(after, recent=recent, points=filtered, shown=shown), shown_as(shown.place)
+
+    def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
+             ) -> tuple[np.ndarray, np.ndarray]:
+        """See `following.Starts.find`: one frame (1, D) and its ground track (1, 3) from points alone, or with turns (n, 3, 3).
+
+        Where none turns the body may face anywhere: it is tried facing `BEGINNINGS` ways, and what agrees best is taken.
+        """
+        if not np.isfinite(points).all(-1).any():
+            raise ValueError("no point is seen")
+        points, count = np.asarray(points, float), len(self.controls)
+        turns = np.full((count, 3, 3), np.nan) if turns is None else np.asarray(turns, float)
+        still = np.zeros(WIDTH)
+        best, least = still, np.inf
+        for heading in 2.0 * np.pi / BEGINNINGS * np.arange(BEGINNINGS):
+            pose = still.copy()
+            pose[YAW_RATE] = heading
+            cost = np.inf
+            for _ in range(2):
+                memory = self.begin(pose[None], pose[None, GROUND])
+                after, cost = self._solved(self._told(memory, points, turns), points, turns)
+                turned = less(after.pose, pose)[YAW_RATE]
+                pose = after.pose
+                cost += (turned / SURE) ** 2
+            if cost < least:
+                best, least = pose, cost
+        frame, track = best.copy(), best[GROUND]
+        frame[GROUND] = 0.0
+        return frame[None], track[None]
+
+    def _followed(self, memory, points, turns):
+        """The memory a frame later."""
+        if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
+            told = self._told(memory, points, turns)
+            change = RESTING * less(memory.pose, memory.before)
+            return replace(told, pose=memory.pose + change, before=memory.pose, soles=Soles.none())
+        return self._solved(self._told(memory, points, turns), points, turns)[0]
+
+    def _told(self, memory, points, turns):
+        """The memory with what trackers say now."""
+        place, turn = np.full((len(SLOTS), 3), np.nan), np.full((len(SLOTS), 3, 3), np.nan)
+        known = np.isfinite(turns).all((-1, -2))
+        last = None
+        for n, slot in enumerate(self._slots):
+            if slot < 0:
+                continue
+            beside = self.controls.offsets[n]
+            if beside.any():
+                if not known[n] and last is None:
+                    last = self._joints(memory.pose)[1]
+                held = turns[n] if known[n] or last is None else last[self.controls.joints[n]]
+                place[slot] = points[n] - held @ beside
+            else:
+                place[slot] = points[n]
+            if known[n]:
+                turn[slot] = turns[n]
+        return replace(memory, places=np.concatenate([place[None], memory.places[:-1]]),
+                       turns=np.concatenate([turn[None], memory.turns[:-1]]), turning=memory.turning | known)
+
+    def _solved(self, memory, points, turns):
+        """The memory with the pose of its newest places, and the energy of that."""
+        places, spun = np.ascontiguousarray(memory.places[LAGS]), np.ascontiguousarray(memory.turns[LAGS])
+        here = np.asarray(np.isfinite(places).all(-1))
+        turned = np.asarray(np.isfinite(spun).all((-1, -2)) & self._hearing(memory.turning))
+        inputs, ground = np.empty(INPUTS, np.float32), np.empty(3)
+        view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
+        expected, standing = self.network.predict(inputs)
+        mean = expected + FADING * memory.off
+        soles = memory.soles.told(standing)
+        goals, hold = soles.goals(ground)
+        goals, hold = np.concatenate([on(points, ground), goals]), np.concatenate([np.full(len(points), EXACT_PLACE ** -2.0), hold])
+        hold[:len(points)][~np.isfinite(points).all(-1)] = 0.0
+        keep = np.zeros(len(hold))
+        keep[:len(points)][np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
+        wanted = np.zeros((len(hold), 3, 3))
+        wanted[:len(points)] = turned_on(turns, ground)
+        frame, joints = np.empty(WIDTH), (np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
+        parents, offsets, first, at, beside = self._body
+        energy = fit_kernel(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), mean, self.network.lower, self.network.upper, parents,
+                            offsets, REFERENCE, first, at, beside, goals, hold, wanted, keep, STEPS, TOLERANCE, frame, *joints)
+        pose = np.empty(WIDTH)
+        seen_kernel(frame, ground, _WORLD, pose)
+        points_found = joints[0][at[-4:]] + np.einsum("nij,nj->ni", joints[1][at[-4:]], beside[-4:])
+        soles = soles.found(points_found, ground, contact_height(self.skeleton))
+        return replace(memory, pose=pose, before=memory.pose, off=less(frame, expected), soles=soles), energy
+
+    def _hearing(self, turning):
+        """Which slots (S,) have a tracker that turns."""
+        out = np.zeros(len(SLOTS), bool)
+        out[self._slots[(self._slots >= 0) & turning]] = True
+        return out
+
+    def _joints(self, pose):
+        """Positions (J, 3) and orientations (J, 3, 3) of a placed pose (D,)."""
+        return forward_kinematics(self.skeleton, *decode(pose, pose[GROUND]))
+
+    @cached_property
+    def _slots(self) -> np.ndarray:
+        """The slot of each tracker, -1 where it has none or another tracker has it."""
+        found = np.full(len(self.controls), -1)
+        for n, joint in enumerate(self.controls.joints):
+            slot = np.flatnonzero(SLOTS == joint)
+            if len(slot) and slot[0] not in found:
+                found[n] = slot[0]
+        return found
+
+    @cached_property
+    def _body(self):
+        """Parents, offsets, first columns; joints and offsets of trackers and of the four soles' points."""
+        feet = [self.skeleton.index(name) for name in ("LeftFoot", "LeftToe", "RightFoot", "RightToe")]
+        heel = heel_offset(self.skeleton)
+        beside = np.concatenate([self.controls.offsets, [heel, np.zeros(3), heel, np.zeros(3)]])
+        return (self.skeleton.parents, self.skeleton.offsets, FIRST, np.concatenate([self.controls.joints, feet]), beside)
+
+    @cached_property
+    def _precision(self) -> Callable[[bytes, bytes], np.ndarray]:
+        """The precision (D, D) of what is believed, by which slots are placed and turned."""
+        @lru_cache(256)
+        def made(placed, turned):
+            covariance = self.network.spread(np.frombuffer(placed, bool), np.frombuffer(turned, bool))
+            floor = FLOOR.copy()
+            floor[GROUND] = 0.002, 0.002, np.radians(0.3)
+            return np.linalg.inv(LOOSENING * (covariance + np.diag(floor ** 2)))
+        return made

@@ -1,0 +1,189 @@
+"""Measure the network for trackers on motion that it was never learnt from.
+
+    python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER [--network FILE] [--out docs/reconstruction/trackers.md]
+
+LARGE, FOLDER: as for scripts/build/trackers.py, a database and the folder whose clips are measured on. Courses: the test takes of
+scripts/measure/reconstruction.py, with the half second before given, as there; the same from nothing; the performers' raw proportions,
+their own joints on skeletons of their own lengths, from nothing; subjects of CMU and other data sets of whom nothing was learnt.
+All distances are centimetres in the world over 19 joints. A frame's time is the process's own, which others on the machine hardly change.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+import numpy as np
+
+from gambol.controllers.body import Skeleton, contact_height, contact_points, detect_contacts, forward_kinematics, point_speeds
+from gambol.controllers.mocap import MotionFileError, calibrate, load, retarget
+from gambol.controllers.reconstruction import SKELETON, encode, parse
+from gambol.controllers.reconstruction.database import Database, DatabaseError, Take
+from gambol.controllers.reconstruction.evaluation import foreign, metrics, small_of, strangers, trials
+from gambol.controllers.reconstruction.regression import SPAN
+from gambol.controllers.reconstruction.trackers import SHIPPED, Network, Trackers
+from reconstruction_figures import table
+
+WORN = {"6 points": ("6", False), "4 points": ("4", False), "6 that turn": ("6", True), "3 that turn": ("head,lwrist,rwrist", True)}
+HEAD = ("", "takes", "cm", "joint deg", "worst cm", "beyond 20 cm, %", "first frame cm (worst)", "first half second cm", "jitter",
+        "slide cm/s (theirs)", "ms")
+TITLE = """# The network for trackers, measured
+
+    python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --out docs/reconstruction/trackers.md
+
+"""
+FPS, MOST, HALF, FAR = 60.0, 600, 30, 20.0
+_BESIDE = 3  # more clips of a folder that its skeletons are calibrated by
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """What somebody did. root: (T, 3), rotations: (T, J, 3, 3) on a skeleton. positions: (T, J, 3) [m] their joints; they may be off
+    the skeleton's, of those that `known` (J,) bool tells. orientations: (T, J, 3, 3)."""
+
+    skeleton: Skeleton
+    root: np.ndarray
+    rotations: np.ndarray
+    positions: np.ndarray
+    orientations: np.ndarray
+    known: np.ndarray
+
+
+def recorded(database: Database, take: Take) -> Performance:
+    """A take of a database, on the standard body."""
+    trial = trials.trial(database, take, parse("4", SKELETON), MOST)
+    positions, orientations = forward_kinematics(SKELETON, trial.positions[:, 0], trial.rotations)
+    known = np.array([not name.endswith("Toe") for name in SKELETON.names])
+    return Performance(SKELETON, trial.positions[:, 0], trial.rotations, positions, orientations, known)
+
+
+def raw(folder: Path, take: Take) -> Performance:
+    """A take as it was captured, in metres, on a skeleton of the performer's own lengths. MotionFileError or ValueError if it can't be used."""
+    path = next(path for path in (folder / f"{take.clip}{end}" for end in (".amc", ".bvh")) if path.is_file())
+    paths = [path, *[other for other in sorted(path.parent.glob(f"*{path.suffix}")) if other != path][:_BESIDE]]
+    clips = [clip.resample(FPS) if clip.frame_time < 0.99 / FPS else clip for clip in map(load, paths)]
+    known = calibrate(clips)
+    ours = retarget(clips[0], calibration=known)
+    theirs, _ = clips[0].kinematics()
+    rotations = ours.rotations
+    _, turned = ours.kinematics()
+    sources = dict(known.roles.limbs)
+    for share, name in ((1, "Spine"), (2, "Spine1"), (3, "Spine2")):
+        if known.roles.trunk:
+            sources[name] = known.roles.trunk[round(share / 3 * (len(known.roles.trunk) - 1))]
+    if known.roles.neck:
+        sources.setdefault("Neck", known.roles.neck[0])
+    offsets, there = SKELETON.offsets / known.scale, np.zeros(len(SKELETON), bool)
+    places = np.full((len(theirs), len(SKELETON), 3), np.nan)
+    for j, name in enumerate(SKELETON.names):
+        if name in sources and not name.endswith("Toe"):
+            places[:, j], there[j] = theirs[:, sources[name]], True
+    for j in range(1, len(SKELETON)):
+        p = SKELETON.parents[j]
+        if there[j] and there[p]:
+            offsets[j] = np.einsum("tji,tj->ti", turned[:, p], places[:, j] - places[:, p]).mean(0)
+    body = Skeleton(SKELETON.names, SKELETON.parents, offsets, SKELETON.end_parents, SKELETON.end_offsets / known.scale)
+    start = places[:, 0]
+    joints, _ = forward_kinematics(body, start, rotations)
+    soles = contact_points(body, joints, turned)[..., 1]
+    up = contact_height(body) - np.percentile(soles.min(-1), 20)
+    places[..., 1] += up
+    return Performance(body, start + [0.0, up, 0.0], rotations, places[:MOST + SPAN], turned[:MOST + SPAN], there)
+
+
+def followed(network: Network, on: Performance, points: str, turning: bool, given: bool) -> list[float]:
+    """A row's numbers of one performance; see HEAD. given: whether the half second before is known."""
+    controls = parse(points, SKELETON)
+    method = Trackers(network, controls, 1 / FPS, on.skeleton)
+    seen, turns = on.positions[:, controls.joints], on.orientations[:, controls.joints]
+    begin = SPAN if given else 0
+    if given:
+        memory = method.begin(*encode(on.root[:SPAN], on.rotations[:SPAN], 1 / FPS))
+    else:
+        memory = method.begin(*method.find(seen[0], None, turns[0] if turning else None))
+    root, rotations, began = [], [], time.process_time()
+    for now in range(begin, len(seen)):
+        memory, pose = method.step(memory, seen[now], turns[now] if turning else None)
+        root.append(pose.root)
+        rotations.append(pose.rotations)
+    spent = (time.process_time() - began) / len(root)
+    found, turned = forward_kinematics(on.skeleton, np.array(root), np.array(rotations))
+    truth, judged = on.positions[begin:], on.known.copy()
+    judged[0] = False
+    errors = 100 * np.linalg.norm(found[:, judged] - truth[:, judged], axis=-1).mean(-1)
+    angles = np.degrees(metrics.angle_error(np.array(rotations), on.rotations[begin:begin + len(root)]))
+    own = forward_kinematics(on.skeleton, on.root, on.rotations)
+    soles = contact_points(on.skeleton, own[0][begin:begin + len(root)], own[1][begin:begin + len(root)])
+    stands = detect_contacts(soles[..., 1], point_speeds(soles, 1 / FPS))
+    stands = stands[1:] & stands[:-1]
+    slide, theirs = (100 * FPS * np.linalg.norm(np.diff(some[..., [0, 2]], axis=0), axis=-1)[stands] for some in
+                     (contact_points(on.skeleton, found, turned), soles))
+    shake = metrics.jitter(found, 1 / FPS) / max(metrics.jitter(own[0][begin:begin + len(root)], 1 / FPS), 1e-9)
+    return [errors.mean(), angles.mean(), errors.max(), 100 * float((errors > FAR).mean()), errors[0], errors[:HALF].mean(), shake,
+            float(slide.sum()), float(theirs.sum()), float(stands.sum()), 1e3 * spent]
+
+
+def row(name: str, network: Network, those: list[Performance], points: str, turning: bool, given: bool) -> list[str]:
+    """A line of the table."""
+    found = np.array([followed(network, on, points, turning, given) for on in those])
+    mean, worst, stands = found.mean(0), found.max(0), max(found[:, 9].sum(), 1.0)
+    return [name, str(len(those)), f"{mean[0]:.2f}", f"{mean[1]:.1f}", f"{worst[2]:.0f}", f"{mean[3]:.1f}",
+            "" if given else f"{mean[4]:.2f} ({worst[4]:.0f})", "" if given else f"{mean[5]:.2f}", f"{np.median(found[:, 6]):.2f}",
+            f"{found[:, 7].sum() / stands:.1f} ({found[:, 8].sum() / stands:.1f})", f"{mean[10]:.2f}"]
+
+
+COURSES = ("takes of seen subjects, the half second before given", "the same from nothing",
+           "raw proportions, on their own skeletons, from nothing", "subjects of CMU nothing was learnt from, from nothing",
+           "other data sets (SNU, NCSOFT), nothing learnt from, from nothing")
+
+
+def performances(number: int, large: Database, folder: Path, takes: tuple[Take, ...]) -> list[Performance]:
+    """What a course consists of."""
+    if number != 2:
+        return [recorded(large, take) for take in (takes, takes, (), strangers(large), foreign(large))[number]]
+    found = []
+    for take in takes:
+        try:
+            found.append(raw(folder, take))
+        except (MotionFileError, ValueError) as error:
+            print(f"left out: {take.clip}: {error}", file=sys.stderr)
+    return found
+
+
+def main() -> None:
+    """Print the tables, and write them down if asked."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("large", type=Path, metavar="LARGE")
+    parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
+    parser.add_argument("--network", type=Path, default=SHIPPED)
+    parser.add_argument("--tuned", action="store_true", help="the takes that settings are chosen on, instead of the test's")
+    parser.add_argument("--only", type=int, nargs="+", default=list(range(len(COURSES))), help="numbers of courses, from 0 on: " + "; ".join(COURSES))
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args()
+    try:
+        network, large = Network.load(options.network), Database.open(options.large)
+        small = small_of(large, options.small)
+    except (DatabaseError, ValueError) as error:
+        sys.exit(str(error))
+    core = trials.split(small.only([take for take in small.takes if not take.interpolated]))
+    takes = core.validation if options.tuned else core.test
+    followed(network, recorded(large, takes[0]), "6", True, False)  # what it compiles is no frame's time
+    parts = [f"The network after {network.learnt:,} batches of 512; see scripts/measure/reconstruction_trackers.py."]
+    for number in options.only:
+        name, those, given = COURSES[number], performances(number, large, options.small, takes), number == 0
+        rows = [row(worn, network, those, points, turning, given) for worn, (points, turning) in WORN.items()]
+        parts.append(f"## {name[0].upper()}{name[1:]}\n\n{table(HEAD, rows)}")
+        print(f"\n{parts[-1]}", flush=True)
+    if options.out:
+        options.out.write_text(TITLE + "\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
