@@ -56,7 +56,8 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     for n in range(memory.shape[0]):
         m = memory[n]
         leave_rest(m, wish[n])
-        shape_command(m, wish[n], leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt)), dt, settings, walk, run, p, q)
+        lean = leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt))
+        shape_command(m, wish[n], lean, dt, settings, table, walk, run, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
         advance_phase(m, table, settings.agility, dt)
         start_kernel(m, start, wish[n], dt)
