@@ -10,6 +10,7 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
 from .kernel import HIPS_AT, clamp_kernel, inner_kernel
+from .last_stride import come_over, plan_stop, time_to_stop
 from .memory import RUN, WALK
 from .root_motion import advance, cadence_kernel
 
@@ -27,10 +28,10 @@ PIECES = 2
 
 
 @kernel
-def shape_command(m, wish, lean, dt, settings, table, walk, run, p, inner):
+def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inner):
     """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
     no faster than legs can push, and as hard only as they bear, so that feet need not slip. lean: the share of its
-    strength with which a body pushes."""
+    strength with which a body pushes. stance: where heels and balls are at rest (4, 2) [m]."""
     m.wanted = RUN if wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
     for i in range(3):
         p[i] = wish[i] / SCALE[i]
@@ -44,12 +45,19 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, p, inner):
     for i in range(3):
         m.asked[i] = p[i]
     push = 1.0 if m.settled else min(max(_load(m, table, dt) + SPARE, 0.0), 1.0)
-    _take_up(m.command, m.rate, p, settings, lean, lean * push, dt)
+    plan_stop(m, most, stance)
+    if m.waits:
+        come_over(m, stance, dt)
+        push = 0.0
+    _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m), m.steep, dt)
 
 
 @kernel
-def _take_up(command, rate, asked, settings, turning, push, dt):
-    """Lead a command (3,) and its rate (3,) towards what is asked (3,): shoulders turn in half the time, and in the air, too."""
+def _take_up(command, rate, asked, settings, turning, push, left, steep, dt):
+    """Lead a command (3,) and its rate (3,) towards what is asked (3,): shoulders turn in half the time, and in the air, too.
+
+    left: how long somebody who stops is still on the way [s], 0 for others; steep: with which power of that he slows down.
+    """
     most, halflife = settings.acceleration * settings.agility, settings.command_halflife / settings.agility
     before = command[1]
     command[1], rate[1] = spring_kernel(before, rate[1], asked[1], 0.5 * halflife, turning * dt)
@@ -63,6 +71,10 @@ def _take_up(command, rate, asked, settings, turning, push, dt):
     forward, forward_rate = spring_kernel(command[0], rate[0], asked[0], halflife, push * dt)
     lateral, lateral_rate = spring_kernel(command[2], rate[2], asked[2], halflife, push * dt)
     forward, lateral = forward - command[0], lateral - command[2]
+    if left > 0.0:
+        share = 1.0 - max(1.0 - dt / left, 0.0) ** steep
+        forward, lateral = -share * command[0], -share * command[2]
+        forward_rate, lateral_rate = forward / dt, lateral / dt
     over = math.hypot(forward, lateral) / (most * push * dt)
     if over > 1.0:
         forward, lateral = forward / over, lateral / over
@@ -101,10 +113,12 @@ def look_ahead(m, settings, later, ground, command):
     # the moment whose command a low-pass that starts now has come to, if commands change evenly
     lag = settings.weight_halflife / math.log(2.0)
     moment = later / (1.0 - math.exp(-later / lag)) - lag
+    left = time_to_stop(m)
     for k in range(2 * PIECES):
         dt = (moment if k < PIECES else later - moment) / PIECES
         v_f, omega, v_l = now[0], now[1], now[2]
-        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], dt)
+        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], left, m.steep, dt)
+        left = max(left - dt, 0.0)
         advance(ground, 0.5 * (v_f + now[0]), 0.5 * (omega + now[1]), 0.5 * (v_l + now[2]), dt)
         if k == PIECES - 1:
             for i in range(3):
