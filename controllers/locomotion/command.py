@@ -44,10 +44,13 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     p[1] = min(max(p[1], -round_curve), round_curve)
     for i in range(3):
         m.asked[i] = p[i]
-    push = 1.0 if m.settled else min(max(_load(m, table, dt) + SPARE, 0.0), 1.0)
+    push = 1.0
+    if not m.settled:  # and not at all while no foot stands
+        stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
+        push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) if stands else 0.0
     plan_stop(m, most, stance)
     if m.waits:
-        come_over(m, stance, dt)
+        come_over(m, stance, most, dt)
         push = 0.0
     _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m), m.steep, dt)
 

@@ -21,7 +21,7 @@ from .root_motion import cadence_kernel
 STRIKE = float(EVENTS["walk"][1])
 """The phase in which the left foot comes down; the right one does half a cycle later."""
 LEAST, MOST = 0.35, 1.4
-"""Who is slower than the first [m/s] just stops; who is faster than the second pushes against it before."""
+"""Who is slower than the first [m/s] just stops; who is faster than the second pushes against it as hard as he can."""
 HARD = 1.0
 """The share of their strength with which legs brake at most, if there is a strike for it."""
 SOONEST = 0.42
@@ -32,7 +32,7 @@ EVEN, STEEPEST = 1.0, 3.0
 """Speed goes with these powers of the time that is left, while the foot is still on its way that the body will stand on, and at most."""
 HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
-OVER = 0.22
+OVER = 0.18
 """It comes over its feet with this half-life [s]."""
 BESIDE, DECIDED = 0.08, 0.9
 """Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second."""
@@ -45,16 +45,18 @@ def plan_stop(m, most, stance):
     """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, and
     how steeply he slows down: so that he comes to rest over the foot that stands. most: what legs push [m/s²]. stance:
     where heels and balls are at rest (4, 2) [m]."""
-    if m.settled or m.family != WALK or abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
+    if m.settled or abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
         m.stop, m.waits = 0.0, 0
         return
     speed = math.hypot(m.command[0], m.command[2])
-    if m.waits:
+    if m.waits or m.stop < 0.0:
         return
     if m.stop > 0.0:
         m.steep = _steepness(m, speed, stance)
         return
-    if not LEAST < speed < MOST:
+    if m.family != WALK or speed > MOST:
+        m.stop = -1.0
+    if m.stop < 0.0 or speed < LEAST:
         return
     left, pace = (STRIKE - m.phase) % 0.5, cadence_kernel(m)
     while left < SOONEST or left / pace + GLIDE < speed / (HARD * most):
@@ -101,17 +103,19 @@ def time_to_stop(m):
 
 
 @kernel
-def come_over(m, stance, dt):
-    """Lead the command of a body whose feet wait: it glides on until it is over them."""
+def come_over(m, stance, most, dt):
+    """Lead the command of a body whose feet wait: it glides on until it is over them. most: what legs push [m/s²]."""
     x, z, point = 0.0, 0.0, np.empty(2)
     for k in range(4):
         shown_kernel(m, k, point)
         x += 0.25 * (stance[k, 0] - point[0])
         z += 0.25 * (stance[k, 1] - point[1])
-    for i, far in ((0, z), (2, x)):
-        before = m.command[i]
-        m.command[i] = spring_kernel(far, before, 0.0, OVER, dt)[1]
-        m.rate[i] = (m.command[i] - before) / dt
+    m.rate[0] = (spring_kernel(z, m.command[0], 0.0, OVER, dt)[1] - m.command[0]) / dt
+    m.rate[2] = (spring_kernel(x, m.command[2], 0.0, OVER, dt)[1] - m.command[2]) / dt
+    share = min(most / max(math.hypot(m.rate[0], m.rate[2]), 1e-9), 1.0)
+    for i in (0, 2):
+        m.rate[i] *= share
+        m.command[i] += m.rate[i] * dt
 
 
 @kernel
