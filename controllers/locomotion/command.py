@@ -9,24 +9,29 @@ import numpy as np
 from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
-from .kernel import clamp_kernel, inner_kernel
+from .kernel import HIPS_AT, clamp_kernel, inner_kernel
+from .last_stride import come_over, plan_stop, time_to_stop
 from .memory import RUN, WALK
-from .root_motion import advance
+from .root_motion import advance, cadence_kernel
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
 half by its strides, so that walks and runs meet between them."""
-PUSHES = (1.0, 0.6)
-"""The share of the time in which a foot stands to push on, walking and running."""
+PUSHES = (1.0, 0.7)
+"""The share of their push that legs have on average, since they bear more and less, walking and running."""
+LEFT_OVER = 0.4
+"""Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
+GRAVITY, SPARE = 9.81, 0.15
+"""Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
 PIECES = 2
 """The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
 
 
 @kernel
-def shape_command(m, wish, lean, dt, settings, walk, run, p, inner):
+def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inner):
     """The wish, brought to what the library holds and smoothed: an exact critically damped spring,
-    no faster than legs can push, and only while a foot stands to push on. lean: the share of its strength with which a
-    body pushes."""
+    no faster than legs can push, and as hard only as they bear, so that feet need not slip. lean: the share of its
+    strength with which a body pushes. stance: where heels and balls are at rest (4, 2) [m]."""
     m.wanted = RUN if wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
     for i in range(3):
         p[i] = wish[i] / SCALE[i]
@@ -39,13 +44,23 @@ def shape_command(m, wish, lean, dt, settings, walk, run, p, inner):
     p[1] = min(max(p[1], -round_curve), round_curve)
     for i in range(3):
         m.asked[i] = p[i]
-    push = 1.0 if m.settled else min(m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3], 1.0)
-    _take_up(m.command, m.rate, p, settings, lean, lean * push, dt)
+    push = 1.0
+    if not m.settled:  # and not at all while no foot stands
+        stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
+        push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) if stands else 0.0
+    plan_stop(m, most, stance)
+    if m.waits:
+        come_over(m, stance, most, dt)
+        push = 0.0
+    _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m), m.steep, dt)
 
 
 @kernel
-def _take_up(command, rate, asked, settings, turning, push, dt):
-    """Lead a command (3,) and its rate (3,) towards what is asked (3,): shoulders turn in half the time, and in the air, too."""
+def _take_up(command, rate, asked, settings, turning, push, left, steep, dt):
+    """Lead a command (3,) and its rate (3,) towards what is asked (3,): shoulders turn in half the time, and in the air, too.
+
+    left: how long somebody who stops is still on the way [s], 0 for others; steep: with which power of that he slows down.
+    """
     most, halflife = settings.acceleration * settings.agility, settings.command_halflife / settings.agility
     before = command[1]
     command[1], rate[1] = spring_kernel(before, rate[1], asked[1], 0.5 * halflife, turning * dt)
@@ -54,9 +69,15 @@ def _take_up(command, rate, asked, settings, turning, push, dt):
         command[1], rate[1] = before + math.copysign(4.0 * most * dt, turn), math.copysign(4.0 * most, turn)
     if push <= 0.0:
         return
+    round_curve = 0.5 * (abs(before) + abs(command[1])) * math.hypot(command[0], command[2])
+    most = math.sqrt(max(most * most - round_curve * round_curve, (LEFT_OVER * most) ** 2))
     forward, forward_rate = spring_kernel(command[0], rate[0], asked[0], halflife, push * dt)
     lateral, lateral_rate = spring_kernel(command[2], rate[2], asked[2], halflife, push * dt)
     forward, lateral = forward - command[0], lateral - command[2]
+    if left > 0.0:
+        share = 1.0 - max(1.0 - dt / left, 0.0) ** steep
+        forward, lateral = -share * command[0], -share * command[2]
+        forward_rate, lateral_rate = forward / dt, lateral / dt
     over = math.hypot(forward, lateral) / (most * push * dt)
     if over > 1.0:
         forward, lateral = forward / over, lateral / over
@@ -64,6 +85,25 @@ def _take_up(command, rate, asked, settings, turning, push, dt):
     command[0] += forward
     command[2] += lateral
     rate[0], rate[2] = forward_rate, lateral_rate
+
+
+@kernel
+def _load(m, table, dt):
+    """What legs bear halfway through a step, in body weights: from how the blend's hips rise and fall."""
+    pace = cadence_kernel(m)
+    angle = 2.0 * math.pi * (m.phase + 0.5 * dt * pace)
+    c1, s1 = math.cos(angle), math.sin(angle)
+    total = 0.0
+    for p in range(table.shape[0]):
+        w = m.weights[p]
+        if w <= 0.0:
+            continue
+        c, s = c1, s1
+        for k in range(1, table.shape[1] - 1, 2):
+            order = 0.5 * (k + 1)
+            total -= w * order * order * (c * table[p, k, HIPS_AT + 1] + s * table[p, k + 1, HIPS_AT + 1])
+            c, s = c * c1 - s * s1, s * c1 + c * s1
+    return 1.0 + total * (2.0 * math.pi * pace) ** 2 / GRAVITY
 
 
 @kernel
@@ -76,10 +116,12 @@ def look_ahead(m, settings, later, ground, command):
     # the moment whose command a low-pass that starts now has come to, if commands change evenly
     lag = settings.weight_halflife / math.log(2.0)
     moment = later / (1.0 - math.exp(-later / lag)) - lag
+    left = time_to_stop(m)
     for k in range(2 * PIECES):
         dt = (moment if k < PIECES else later - moment) / PIECES
         v_f, omega, v_l = now[0], now[1], now[2]
-        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], dt)
+        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], left, m.steep, dt)
+        left = max(left - dt, 0.0)
         advance(ground, 0.5 * (v_f + now[0]), 0.5 * (omega + now[1]), 0.5 * (v_l + now[2]), dt)
         if k == PIECES - 1:
             for i in range(3):

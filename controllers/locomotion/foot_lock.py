@@ -22,6 +22,7 @@ from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
 from .foothold import SWING, swing_progress
 from .kernel import LABELS_AT
+from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, localise_kernel, tilt_kernel, toe_kernel
 from .root_motion import cadence_kernel
 from .short_leg import give_way
@@ -110,9 +111,9 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
 
 @kernel
 def _take_hold(m, k, height, dt):
-    """How firmly point k grips: fully at rest and until a start leaves it, else by its blended label, and only once it is low."""
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low."""
     wanted = 1.0
-    if not (m.settled or shift_left(m) > 0.0):
+    if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
         strain = min(max((m.rise[k // 2] - STRAINED[0]) / (STRAINED[1] - STRAINED[0]), 0.0), 1.0) if k % 2 else 0.0
@@ -121,8 +122,8 @@ def _take_hold(m, k, height, dt):
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
-        if wanted > m.grip[k] and m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE:
-            wanted = m.grip[k]
+    if wanted > m.grip[k] and not m.settled and m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE:
+        wanted = m.grip[k]
     step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
@@ -268,7 +269,7 @@ def at_rest(m, legs):
         return False
     for foot in range(2):
         x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 2]
-        if x * x + z * z > CLOSE * CLOSE or m.lift[foot] > 0.003:
+        if math.hypot(x, z) > (BESIDE + 0.01 if m.waits else CLOSE) or m.lift[foot] > 0.003:
             return False
     return True
 

@@ -20,6 +20,7 @@ from .cycles import EVENTS
 from .foot_clearance import FADE, away_kernel, need_of_room, outline_kernel, with_toe
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
+from .last_stride import bring_together
 from .root_motion import SHORTEST, cadence_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
@@ -71,6 +72,7 @@ def plan_footholds(m, settings, space, table, body, legs, ahead):
         later = (1.0 - progress) * SWING[m.family] / cadence_kernel(m) * _slower(m, table, (1.0 - progress) * SWING[m.family])
         _foresee(m, foot, max(later, SOONEST), settings, space, table, body, legs, ahead)
         _beside(m, body, foot, ahead)
+        bring_together(m, foot, legs.stance)
 
 
 @kernel

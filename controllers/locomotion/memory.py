@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..body import compose, contact_height, relative
+from ..body import compose, contact_height, contact_points, exp, forward_kinematics, relative
 from .kernel import COLUMNS
-from .library import Library
+from .library import HIPS, Library
 
 WALK, RUN = 0, 1
 """Gait families, as memory and kernels number them."""
@@ -55,7 +55,8 @@ def plain(settings: Settings) -> Settings:
 
 class Legs(NamedTuple):
     """What the step must know of body and library: joint numbers (hip: (2,), left and right;
-    head: (2,), neck and head; shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive."""
+    head: (2,), neck and head; shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive, and
+    where its contact points are along the floor (4, 2), x, z in the ground frame [m]."""
 
     hip: np.ndarray
     chest: int
@@ -63,13 +64,22 @@ class Legs(NamedTuple):
     shoulder: np.ndarray
     height: float
     rest: int
+    stance: np.ndarray
 
 
 def legs_of(library: Library) -> Legs:
     """What the step must know of a library."""
     at = library.skeleton.index
     return Legs(np.array([at("LeftUpLeg"), at("RightUpLeg")]), at("Spine2"), at("Neck"),
-                np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest)
+                np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest, _stance(library))
+
+
+def _stance(library: Library) -> np.ndarray:
+    """Where heels and balls are at rest (4, 2): x, z in the ground frame [m]."""
+    row = library.coefficients[library.rest, 0]
+    local = library.reference @ exp(row[:HIPS].reshape(-1, 3))
+    points = contact_points(library.skeleton, *forward_kinematics(library.skeleton, row[HIPS:HIPS + 3], local))
+    return np.ascontiguousarray(points[:, [0, 2]], float)
 
 
 def walks(memory: Any) -> bool:
@@ -117,6 +127,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
         ("fade", "f4"),  # its half-life [s]
         ("breath", "f4"),  # phase of breathing
+        ("stop", "f4"), ("steep", "f4"), ("waits", "i4"),  # how much phase is left until the strike that ends a walk (−1: he just stops), how it slows down until then; whether both feet wait after it
         ("onset", "f4"), ("first", "i4"), ("shares", "f4", 2),  # how much phase of a start is left, its first foot, how far it shows
         ("rested", "f4"), ("presence", "f4"), ("presence_rate", "f4"),  # how long it has stood [s], how far its idling shows
         ("moment", "f4"), ("luck", "u4"), ("alert", "i4"),  # where in the recorded idling it is, and what comes next

@@ -16,6 +16,7 @@ from .foothold import plan_footholds, room_to_plan, stride
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
 from .idle import add_idle, idle_kernel
+from .last_stride import until_together
 from .foot_points import foot_points, on_floor
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel,
                      query_kernel, series_kernel)
@@ -56,9 +57,10 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     for n in range(memory.shape[0]):
         m = memory[n]
         leave_rest(m, wish[n])
-        shape_command(m, wish[n], leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt)), dt, settings, walk, run, p, q)
+        lean = leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt))
+        shape_command(m, wish[n], lean, dt, settings, table, walk, run, legs.stance, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
-        advance_phase(m, table, settings.agility, dt)
+        advance_phase(m, table, settings.agility, legs.rest, dt)
         start_kernel(m, start, wish[n], dt)
         idle_kernel(m, idle, settings.idle, dt)
         blend_series(m, settings, table, fresh, legs, dt)
@@ -92,7 +94,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     keep = 2.0 ** (-dt / settings.weight_halflife)
     space = walk if m.family == WALK else run
     for i in range(3):
-        c[i] = m.command[i]
+        c[i] = 0.0 if m.waits else m.command[i]
     c[0] = reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
     stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
@@ -148,11 +150,11 @@ def _one_of(i, vertices):
 
 
 @kernel
-def advance_phase(m, table, agility, dt):
+def advance_phase(m, table, agility, rest, dt):
     """Run the phase on; at rest it waits."""
     if m.settled:
         return
-    step = _share_of_cycle(m, table, agility, dt)
+    step = until_together(m, _share_of_cycle(m, table, agility, dt), rest)
     m.onset = max(m.onset - step, 0.0)
     m.phase = (m.phase + step) % 1.0
 

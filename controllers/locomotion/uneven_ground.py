@@ -25,7 +25,7 @@ STEP = 0.24
 """A foot comes down no more than this higher or deeper than the other stands [m] …"""
 SEEN = 0.5
 """… and what is higher than this over the body's level is no ground [m]."""
-SHIFTS = np.array([0.0, -0.05, 0.05, -0.1, 0.1, -0.15, 0.15, -0.2, -0.25, -0.3, -0.35, -0.4, -0.45, -0.5])
+SHIFTS = np.concatenate([[0.0], np.outer(np.arange(0.025, 0.16, 0.025), [-1.0, 1.0]).ravel(), -np.arange(0.175, 0.51, 0.025)])
 """How much farther or nearer a foot comes down where it would not stand well, in the order in which it is tried [m]."""
 CERTAIN = 0.35
 """After this share of its swing a foot keeps to the place where it will come down …"""
@@ -83,7 +83,7 @@ LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
-FOOT, TOE = 0.14, 0.09
+FOOT, TOE = 0.175, 0.095
 """From heel to ball and on to the toes' end [m]: a foot comes down on the higher of what lies under heel and ball."""
 SAME = 0.02
 """Grounds nearer to each other than this are the same one [m]."""

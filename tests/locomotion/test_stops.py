@@ -1,0 +1,45 @@
+"""Stopping: one last step, feet together, the body over them; legs too short lift their heels."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from gambol.controllers.locomotion import short_leg
+from playing import FPS, hold, play
+
+
+@pytest.mark.parametrize("speed", (0.75, 1.3))
+def test_a_walk_ends_with_one_last_step_beside_the_other_foot(locomotion, speed):
+    for seconds in np.linspace(2.0, 3.0, 8):
+        motion = play(locomotion, np.concatenate([hold(seconds, (speed, 0, 0)), hold(2.5, (0, 0, 0))]))
+        let_go = round(seconds * FPS)
+        standing = np.array([s.contacts[0].reshape(2, 2).any(-1) for s in motion.states])[let_go:]
+        strikes = (np.diff(standing.astype(int), axis=0) > 0).sum()
+        assert 1 <= strikes <= 2
+        last = motion.states[-1].memory
+        middle = last["points"][0].reshape(2, 2, 3).mean(1)
+        assert abs(middle[0, 2] - middle[1, 2]) < 0.1 and last["settled"][0]
+        speeds = np.linalg.norm(np.diff(motion.ground[let_go:, 0, :2], axis=0), axis=-1) * FPS
+        assert (np.diff(speeds) < 0.06).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-0.5, 0.3), st.floats(0.55, 0.95), st.floats(0.3, 1.0))
+def test_a_heel_rises_until_its_leg_reaches_and_no_farther(behind, high, share):
+    """By closed form: the ankle, turned about the ball, is as far from the hip as the leg is long, or as near as a heel may bring it."""
+    hip, ball, axis = np.array([0.0, high, 0.0]), np.array([0.0, 0.02, -behind]), np.array([1.0, 0.0, 0.0])
+    ankle = ball + [0.0, 0.048, -0.125]
+    reach = share * np.linalg.norm(ankle - hip)
+    angle = short_leg.heel_rise_kernel(hip, ball, ankle, axis, reach)
+    assert 0.0 <= angle <= short_leg.HEEL_RISE
+
+    def far(angle):
+        c, s = np.cos(angle), np.sin(angle)
+        x, y, z = ankle - ball
+        return np.linalg.norm(ball + [x, c * y - s * z, s * y + c * z] - hip)
+
+    sweep = np.array([far(a) for a in np.linspace(0.0, short_leg.HEEL_RISE, 400)])
+    if angle == 0.0:
+        assert share >= 1.0 - 1e-9 or sweep[1] >= sweep[0] - 1e-6
+    elif angle < short_leg.HEEL_RISE and sweep.min() < reach:
+        assert far(angle) == pytest.approx(reach, abs=1e-6)
