@@ -155,7 +155,7 @@ class HeldPoints:
             return []
         if self.stream is not None:
             seen = self.stream.at(time) + np.array(now.comparison.beside)
-            return ["pins=" + ";".join(written(place) for place in seen)]
+            return ["pins=" + ";".join(written(place, turn) for place, turn in zip(seen, self.stream.turns))]
         if self.grip is None or not self.holds(now) or self.camera is None:
             return []
         place = written(self.grip.place(self.camera, self.aspect, *self.pointer))

@@ -81,8 +81,8 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
                 if state is None:
                     if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
                         continue
-                    state = someone.enter(controller.begin(seen), Intent())
-                intent = Intent(towards(state, seen), points=seen)
+                    state = someone.enter(controller.begin(seen, turns=source.turns), Intent())
+                intent = Intent(towards(state, seen), points=seen, turns=source.turns)
                 state, pose = someone.step(state, intent, 1 / FPS)
                 lost += someone.active(state)[0] != "reconstruction"
                 if sender is not None:
@@ -134,10 +134,10 @@ def placement(source: Any, height: float | None) -> Any:
     standing, told = Standing(), -_TELL / 2
     for now in _times(source, None, False):
         seen = source.at(now)
-        standing = standing.watch(now, seen)
+        standing = standing.watch(now, seen, source.turns)
         if standing.place is not None:
             try:
-                return placed(standing.place, source.controls, height)
+                return placed(standing.place, source.controls, height, standing.turn)
             except ValueError as error:
                 say(str(error))
                 standing, told = Standing(), now

@@ -23,6 +23,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 database: Annotated[Path | None, typer.Option(help="A motion database to learn from; Gambol's own motion by default.")] = None,
                 noise: Annotated[float, typer.Option(min=0.0, max=100.0, help="Blur the clip's points by so many centimetres.")] = 0.0,
                 seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
+                turns: Annotated[bool, typer.Option("--turns", help="Tell how the clip's points are turned, too, as trackers of 6 degrees of freedom do.")] = False,
                 stream: Annotated[str | None, typer.Option(help="Listen to live trackers instead of reading a clip: osc (VMC protocol, VRChat's trackers).")] = None,
                 port: Annotated[int | None, typer.Option(min=1, max=65535, help="Where to listen; 39539 by default.")] = None,
                 host: Annotated[str | None, typer.Option(help="Whom to listen to: 127.0.0.1, programs on this machine, by default; 0.0.0.0, trackers on other machines, too.")] = None,
@@ -40,7 +41,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     heard_again = clip is not None and clip.suffix.lower() == SUFFIX
     listening = (("--port", port), ("--host", host), ("--keep", keep))
     worn = (("--map", trackers), ("--seconds", seconds), ("--height", height), ("--send", send))
-    recorded = (("--noise", noise or None), ("--seed", seed or None))
+    recorded = (("--noise", noise or None), ("--seed", seed or None), ("--turns", turns or None))
     for option, given in recorded if stream is not None else listening + (recorded if heard_again else worn):
         if given is not None:
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
@@ -70,7 +71,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         if out is None:
             watch(method, names, database, clip=clip)
         else:
-            _clip(clip, names, out, method, database, noise / 100.0, seed)
+            _clip(clip, names, out, method, database, noise / 100.0, seed, turns)
         return
     from gambol.controllers.reconstruction.live import read_map, usual_map
 
@@ -121,8 +122,8 @@ def _controller(method: str, file: Path | None, points: str) -> Any:
     return Reconstruction(learnt, controls, dt=known.frame_time(method), starts=known.starts(method, points))
 
 
-def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, noise: float, seed: int) -> None:
-    """Reconstruct a recorded clip from its points, and tell how good that is."""
+def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, noise: float, seed: int, turning: bool) -> None:
+    """Reconstruct a recorded clip from its points, and from how they are turned, and tell how good that is."""
     import numpy as np
 
     from gambol.controllers.contract import Intent
@@ -130,14 +131,17 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
 
     clip = _performance(path)
     controller = _controller(method, file, points)
-    source = Recorded.of(clip, controller.controls)
+    if turning and not getattr(controller.method, "hears_turns", False):
+        raise Mistake(f"--turns goes with a method that hears them, --method trackers; {method} has points alone")
+    source = Recorded.of(clip, controller.controls, turning)
     if noise:
         source = source.noisy(noise, np.random.default_rng(seed))
-    state = controller.begin(source.points[0], (source.points[1] - source.points[0]) / source.frame_time)
+    state = controller.begin(source.points[0], (source.points[1] - source.points[0]) / source.frame_time, turns=source.turned_at(0.0))
     poses, contacts, spent = [state.pose], [state.contacts], 0.0
     with progress_bar() as bar:
         for number in bar.track(range(1, len(clip)), description=path.name):
-            intent = Intent(points=source.at(number * clip.frame_time))
+            now = number * clip.frame_time
+            intent = Intent(points=source.at(now), turns=source.turned_at(now))
             began = time.perf_counter()
             state, pose = controller.step(state, intent, clip.frame_time)
             spent += time.perf_counter() - began

@@ -42,6 +42,7 @@ class FollowsTable(Table):
 
     points: the paper's sets "2" … "6", or names with commas. method: who makes a body of them. beside: x, y, z [m]
     from the performer to the actor. hidden: what is not seen, and when. noise: of the points [m]; seed: of that.
+    turns: whether how the points are turned is seen, too.
     """
 
     actor: str | None = None
@@ -52,6 +53,7 @@ class FollowsTable(Table):
     hidden: tuple[HiddenTable, ...] = ()
     noise: Annotated[float, Field(ge=0, le=0.5, allow_inf_nan=False)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 0
+    turns: bool = False
 
     @model_validator(mode="after")
     def _one_performer(self):
@@ -77,4 +79,4 @@ class FollowsTable(Table):
         controls = parse(self.points, SKELETON)
         hidden = tuple(Hidden(np.isin(controls.names, parse(table.points, SKELETON).names), table.start, table.end)
                        for table in self.hidden)
-        return Follows(self.method, controls, self.performer, np.array(self.beside), hidden, self.noise, self.seed)
+        return Follows(self.method, controls, self.performer, np.array(self.beside), hidden, self.noise, self.seed, self.turns)

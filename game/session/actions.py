@@ -88,7 +88,7 @@ def _reset(moment: SessionState) -> SessionState:
         players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim(), goal=None))
     passers = tuple(Script(script.moves) for script in moment.passers)
     return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0, passers=passers),
-                     None if moment.comparison is None else replace(moment.comparison, pins=None))
+                     None if moment.comparison is None else replace(moment.comparison, pins=None, turned=()))
 
 
 def _compared(moment: SessionState, action: str) -> SessionState:
@@ -96,7 +96,9 @@ def _compared(moment: SessionState, action: str) -> SessionState:
     if action.startswith("study="):
         wanted, now = comparison.opened(action), moment.comparison
         if wanted is not None and now is not None:
-            wanted = replace(wanted, beside=now.beside, pins=now.pins if wanted.points == now.points else None)
+            wanted = replace(wanted, beside=now.beside)
+            if wanted.points == now.points:
+                wanted = replace(wanted, pins=now.pins, turned=now.turned)
         return _comparing(moment, wanted, {one.name: one for one in moment.after.characters if one.follows is not None})
     if moment.comparison is None:
         raise settings.SettingError(f"{action}: no comparison is open")

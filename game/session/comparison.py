@@ -2,7 +2,8 @@
 
 Or hands hold the points: each is pinned to a place, or is not seen. What hands and streams do comes as actions of a
 wish, so that a log has all of it: "study=ours lpcr@4" opens, "study=" closes; "pins=hold" takes hold of the points,
-"pins=" gives them back; "pin=2:x/y/z" pins one, "pin=2:" hides it, "pins=x/y/z;;x/y/z" does so with all of them.
+"pins=" gives them back; "pin=2:x/y/z" pins one, "pin=2:" hides it, "pins=x/y/z;;x/y/z" does so with all of them. Where
+a point is turned, too, as trackers are, a unit quaternion follows its place: x/y/z/i/j/k/w.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ..input import Wish
 from ..world import METHODS, NAMES, TINTS, Character, Follows, Methods, World, beginning, follower_of
@@ -31,6 +33,7 @@ ACTIONS = frozenset(("study", "pins", "pin"))
 FAR = 1e3
 
 Place = tuple[float, float, float]
+Turn = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -38,13 +41,14 @@ class Comparison:
     """methods: by name; the first one's is the body, the others' are ghosts. points: as `controls.parse` has them.
 
     beside: from the performer [m]. pins: where hands hold each of the n points [m], None where it is not seen; None
-    altogether while the performer has them.
+    altogether while the performer has them. turned: how each is turned, None where that is not known; empty where none is.
     """
 
     methods: tuple[str, ...] = ("ours", "lpcr", "lpca")
     points: str = "4"
     beside: Place = (0.0, 0.0, 0.0)
     pins: tuple[Place | None, ...] | None = None
+    turned: tuple[Turn | None, ...] = ()
 
     @property
     def action(self) -> str:
@@ -63,10 +67,17 @@ class Comparison:
         """The pins as points (n, 3) [m], NaN where one is not seen."""
         return None if self.pins is None else np.array([(math.nan,) * 3 if pin is None else pin for pin in self.pins])
 
+    @property
+    def turns(self) -> np.ndarray | None:
+        """How the points are turned (n, 3, 3), NaN where that is not known; None where none is."""
+        if not any(self.turned):
+            return None
+        return np.array([np.full((3, 3), math.nan) if turn is None else Rotation.from_quat(turn).as_matrix() for turn in self.turned])
+
     def more_points(self) -> Comparison:
         """With the next set of points."""
         at = SETS.index(self.points) if self.points in SETS else -1
-        return replace(self, points=SETS[(at + 1) % len(SETS)], pins=None)
+        return replace(self, points=SETS[(at + 1) % len(SETS)], pins=None, turned=())
 
     def other_ghosts(self) -> Comparison:
         """With the next ghosts."""
@@ -132,22 +143,24 @@ def pinned(comparison: Comparison, action: str, world: World) -> tuple[Compariso
     if name == "pins" and not text:
         return _given_back(comparison, world, body)
     if name == "pins" and text == "hold":
-        pins = tuple(_place(*at) for at in follows.controls.on(*body.joints))
+        pins, turned = tuple(_place(*at) for at in follows.controls.on(*body.joints)), ()
     elif name == "pins":
         places = text.split(";")
         if len(places) != count:
             raise SettingError(f"{action}: needs {count} places with semicolons, one for each point")
-        pins = tuple(_read(action, place) for place in places)
+        pins, turned = zip(*(_read(action, place) for place in places), strict=True)
     else:
         number, colon, place = text.partition(":")
         if comparison.pins is None or not colon or not (number.isascii() and number.isdecimal()) or len(number) > 9 or int(number) >= count:
             raise SettingError(f"{action}: needs a point's number below {count}, a colon and its place, once points are held")
-        pins = tuple(_read(action, place) if n == int(number) else pin for n, pin in enumerate(comparison.pins))
+        one = _read(action, place)
+        pins = tuple(one[0] if n == int(number) else pin for n, pin in enumerate(comparison.pins))
+        turned = tuple(one[1] if n == int(number) else turn for n, turn in enumerate(comparison.turned or (None,) * count))
     if comparison.pins is None:
         world = replace(world, characters=tuple(
             one if one.follows is None else replace(one, follows=replace(one.follows, performer=""), told=one.told[:0])
             for one in world.characters))
-    return replace(comparison, pins=pins), world
+    return replace(comparison, pins=pins, turned=turned if any(turned) else ()), world
 
 
 def _given_back(comparison: Comparison, world: World, body: Character) -> tuple[Comparison, World]:
@@ -157,27 +170,35 @@ def _given_back(comparison: Comparison, world: World, body: Character) -> tuple[
     performer = world.characters[0]
     x, _, z = np.asarray(body.state.pose.root, float) - performer.state.pose.root
     beside = (float(x), 0.0, float(z))
-    return replace(comparison, pins=None, beside=beside), replace(world, characters=tuple(
+    return replace(comparison, pins=None, turned=(), beside=beside), replace(world, characters=tuple(
         one if one.follows is None else
         replace(one, follows=replace(one.follows, performer=performer.name, beside=np.array(beside)), told=one.told[:0])
         for one in world.characters))
 
 
-def written(place: np.ndarray) -> str:
-    """A place (3,) [m] as actions have it, to a tenth of a millimetre; empty for one that is not seen."""
-    return "/".join(f"{v:.4f}" for v in place) if np.isfinite(place).all() else ""
+def written(place: np.ndarray, turn: np.ndarray | None = None) -> str:
+    """A place (3,) [m] as actions have it, to a tenth of a millimetre, and a turn (3, 3) where it is known; empty for one that is not seen."""
+    if not np.isfinite(place).all():
+        return ""
+    quaternion = () if turn is None or not np.isfinite(turn).all() else Rotation.from_matrix(turn).as_quat()
+    return "/".join(f"{v:.4f}" for v in (*place, *quaternion))
 
 
-def _read(action: str, text: str) -> Place | None:
+def _read(action: str, text: str) -> tuple[Place | None, Turn | None]:
     if not text:
-        return None
+        return None, None
     try:
-        place = _place(*(float(v) for v in text.split("/")))
-    except (ValueError, TypeError):
-        place = math.nan, math.nan, math.nan
-    if not all(abs(v) < FAR for v in place):
+        x, y, z, *quaternion = (float(v) for v in text.split("/"))
+    except ValueError:
+        x, y, z, quaternion = math.nan, math.nan, math.nan, []
+    if not all(abs(v) < FAR for v in (x, y, z)):
         raise SettingError(f"{action}: needs places as x/y/z in metres")
-    return place
+    if not quaternion:
+        return _place(x, y, z), None
+    if len(quaternion) != 4 or not 0.9 < math.hypot(*quaternion) < 1.1:
+        raise SettingError(f"{action}: needs turns as unit quaternions i/j/k/w after the place")
+    i, j, k, w = quaternion
+    return _place(x, y, z), (i, j, k, w)
 
 
 def _place(x: float, y: float, z: float) -> Place:

@@ -83,8 +83,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal))
     passers, theirs = asked(moment)
     intents += theirs
-    held = None if moment.comparison is None else moment.comparison.goals
-    intents += [Intent() if one.follows is None else Intent(points=held) for one in moment.after.characters[len(intents):]]
+    held, turns = (None, None) if moment.comparison is None else (moment.comparison.goals, moment.comparison.turns)
+    intents += [Intent() if one.follows is None else Intent(points=held, turns=turns) for one in moment.after.characters[len(intents):]]
     return replace(moment, before=moment.after, after=moment.after.step(polite(moment, intents)), players=tuple(players), phase=0, passers=passers)
 
 

@@ -47,7 +47,8 @@ class Follows:
 
     method: whose reconstruction it is, by name. controls: n points. performer: the character who has them; "" where
     somebody else, hands or a stream, says where they are, in `Intent.points`. beside: (3,) [m] from the performer's
-    points to those that are followed. noise: standard deviation [m]. seed: of the noise.
+    points to those that are followed. noise: standard deviation [m]. seed: of the noise. turning: whether how they are turned
+    is seen, too.
     """
 
     method: str
@@ -57,6 +58,7 @@ class Follows:
     hidden: tuple[Hidden, ...] = ()
     noise: float = 0.0
     seed: int = 0
+    turning: bool = False
 
     def there(self, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
         """Where the points (n, 3) [m] of a performer's body are, had none been lost, as they are followed."""
@@ -70,6 +72,14 @@ class Follows:
             points = points + rng.normal(scale=self.noise, size=points.shape)
         points[self.unseen(time)] = np.nan
         return points
+
+    def turns(self, orientations: np.ndarray, time: float) -> np.ndarray | None:
+        """How the joints of a performer's points are turned (n, 3, 3) at a time [s], NaN where one is hidden; None where that is not seen."""
+        if not self.turning:
+            return None
+        turns = np.array(orientations[self.controls.joints], float)
+        turns[self.unseen(time)] = np.nan
+        return turns
 
     def unseen(self, time: float) -> np.ndarray:
         """Which points (n,) are hidden at a time [s]."""

@@ -127,12 +127,12 @@ def shipped(controls: ControlPoints) -> Any:
 
 
 def usual(points: str, file: str | Path | None = None) -> str:
-    """The method that is taken where none is named: what ships where it knows all the points and no database is given, else ours."""
+    """The method that is taken where none is named: what ships where all the points are on or beside joints that it knows and no
+    database is given, else ours."""
     from gambol.controllers.reconstruction import SKELETON, parse
     from gambol.controllers.reconstruction.trackers import SLOTS
 
-    controls = parse(points, SKELETON)
-    return SHIPPED if file is None and set(controls.joints) <= set(SLOTS) and not controls.offsets.any() else "ours"
+    return SHIPPED if file is None and set(parse(points, SKELETON).joints) <= set(SLOTS) else "ours"
 
 
 def _silent(what: str, done: int, total: int) -> None:

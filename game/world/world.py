@@ -110,16 +110,16 @@ class Character:
         """One step on of a follower. performers: who has made that step, by name."""
         from gambol.controllers.reconstruction import towards  # a game without a study starts without
 
-        old, seen, truth, follows = self, intent.points, None, self.follows
+        old, seen, turns, truth, follows = self, intent.points, intent.turns, None, self.follows
         assert follows is not None  # all others have made their step
         performer = performers.get(follows.performer)
         if performer is not None:
             there = performer.joints
-            seen, truth = follows.seen(*there, number / RATE), there[0]
+            seen, turns, truth = follows.seen(*there, number / RATE), follows.turns(there[1], number / RATE), there[0]
             old = replace(self, state=carried(follows, self.state, truth, intent.around))
         if seen is None:
             return self.step(intent, number)
-        made = old.step(replace(intent, velocity=towards(self.state, seen), points=seen), number)
+        made = old.step(replace(intent, velocity=towards(self.state, seen), points=seen, turns=turns), number)
         told = errors(follows, made.joints, truth, seen)
         return replace(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
 

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "reconstruction"))
 import walks  # noqa: E402
+from scipy.spatial.transform import Rotation  # noqa: E402
 
 from gambol.controllers.mocap import load, write_bvh  # noqa: E402
 from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
@@ -22,7 +23,7 @@ from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
 from gambol.controllers.reconstruction.live.placing import stances  # noqa: E402
 from gambol.game import cli  # noqa: E402
 from gambol.game.cli import live  # noqa: E402
-from test_stream import bundle, tracker  # noqa: E402
+from test_stream import bundle, message, tracker  # noqa: E402
 
 WORN = "lwrist", "rwrist", "lankle", "rankle"
 
@@ -82,6 +83,8 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["{clip}", "--host", "0.0.0.0", "-o", "o.bvh"], "--host goes with --stream"),
     (["--stream", "osc", "--host", "", "-o", "o.bvh", "--database", "{database}", "--method", "nearest"], "host '' is no address of this machine"),
     (["--stream", "osc", "--noise", "1", "-o", "o.bvh"], "--noise goes with a motion file"),
+    (["--stream", "osc", "--turns", "-o", "o.bvh"], "--turns goes with a motion file"), (["{clip}", "--turns"], "--turns goes with -o"),
+    (["{clip}", "--turns", "--method", "nearest", "--database", "{database}", "-o", "o.bvh"], "--turns goes with a method that hears them"),
     (["--stream", "osc", "--map", "none.toml", "-o", "o.bvh"], "none.toml: can't be read"),
     (["--stream", "osc", "--map", "m.toml", "--points", "4", "-o", "o.bvh"], "give one of them"),
     (["--stream", "osc", "--points", "nose", "-o", "o.bvh"], "no control point 'nose'")])
@@ -111,7 +114,7 @@ class Performer:
 
     def __init__(self, clip, port, heard, then=lambda seconds: True):
         controls = parse("4", SKELETON)
-        self.standing, self.walk, self.to = stances(controls)[1], controls.extract(clip), ("127.0.0.1", port)
+        self.standing, self.walk, self.to = stances(controls)[0][1], controls.extract(clip), ("127.0.0.1", port)
         self.heard, self.then, self.began, self.now = heard, then, None, 1000.0
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 
@@ -244,6 +247,65 @@ def test_packets_that_were_kept_are_heard_again_into_a_motion_and_for_another_pr
         listener.setblocking(False)
         frames = [listener.recv(65535) for _ in range(25)]
     assert all(b"/VMC/Ext/Bone/Pos" in frame and b"LeftUpperLeg" in frame for frame in frames)
+
+
+class Turning(Performer):
+    """… whose trackers, on head and hands, sit anyhow on the joints, and tell how they are turned."""
+
+    def __init__(self, clip, port, heard, turning):
+        super().__init__(clip, port, heard)
+        self.names, self.turning = ("head", "lwrist", "rwrist"), turning
+        controls = parse(",".join(self.names), SKELETON)
+        positions, self.turned = clip.kinematics()
+        self.walk, self.turned = controls.on(positions, self.turned), self.turned[:, controls.joints]
+        self.standing, self.upright = (some[1] for some in stances(controls))
+        self.mounts = Rotation.random(3, random_state=5).as_matrix()
+
+    def send(self, since):
+        number = -1 if since < 0.3 else min(int((since - 0.3) * 60), len(self.walk) - 1)
+        points, turns = (self.standing, self.upright) if number < 0 else (self.walk[number], self.turned[number])
+        quaternions = Rotation.from_matrix(turns @ self.mounts).as_quat() * [1.0, -1.0, -1.0, 1.0] if self.turning else np.tile([0.0, 0.0, 0.0, 1.0], (3, 1))
+        self.socket.sendto(bundle(*(message("/VMC/Ext/Tra/Pos", name, *map(float, place * [-1.0, 1.0, 1.0]), *map(float, turn))
+                                    for name, place, turn in zip(self.names, points, quaternions))), self.to)
+
+
+def test_how_trackers_are_turned_is_heard_by_the_method_that_ships_and_again_from_their_packets(motion, tmp_path, monkeypatch):
+    """Hands and head are turned as the performer's, however trackers sit on them; without turns they can't be."""
+    clip, off = motion[2], {}
+    joints = parse("head,lwrist,rwrist", SKELETON).joints
+    truth = clip.kinematics()[1][:, joints]
+
+    def away(made):
+        """How far head and hands are turned from the performer's on the average [°], a few frames apart at most."""
+        found = made.kinematics()[1][:, joints]
+        return min(np.degrees(Rotation.from_matrix((np.swapaxes(truth[20:80], -1, -2) @ found[20 + lag:80 + lag]).reshape(-1, 3, 3)).magnitude().mean())
+                   for lag in range(10, 30))
+
+    for turning in (True, False):
+        told, port, out = [], free_port(), tmp_path / f"{turning}.bvh"
+        performer = Turning(clip, port, lambda told=told: any("recording" in line for line in told), turning)
+        with performer.socket, monkeypatch.context() as patched:
+            for name, value in (("time", performer), ("_clock", lambda: None), ("say", told.append)):
+                patched.setattr(live, name, value)
+            done = gambol("reconstruct", "--stream", "osc", "--port", port, "--points", "head,lwrist,rwrist", "-o", out, "--seconds", 2,
+                          "--keep", tmp_path / f"{turning}.packets")
+        assert done.exit_code == 0, done.output
+        off[turning] = away(load(out))
+    assert off[True] < 8.0 and off[False] > 1.5 * off[True], off
+    done = gambol("reconstruct", tmp_path / "True.packets", "--points", "head,lwrist,rwrist", "-o", tmp_path / "again.bvh")
+    assert done.exit_code == 0, done.output
+    assert away(load(tmp_path / "again.bvh")) < 8.0
+
+
+def test_a_clip_tells_how_its_points_are_turned(motion, tmp_path):
+    joints, found = parse("6", SKELETON).joints, []
+    for more in ([], ["--turns"]):
+        done = gambol("reconstruct", motion[1], "--points", "6", "-o", tmp_path / "o.bvh", *more)
+        assert done.exit_code == 0, done.output
+        turned = [clip.kinematics()[1][30:, joints] for clip in (motion[2], load(tmp_path / "o.bvh"))]
+        away = Rotation.from_matrix((np.swapaxes(turned[0], -1, -2) @ turned[1]).reshape(-1, 3, 3)).magnitude()
+        found.append(float(np.degrees(away.mean())))
+    assert found[1] < 0.5 * found[0], found
 
 
 @pytest.mark.parametrize("arguments, why", [

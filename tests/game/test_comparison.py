@@ -130,7 +130,20 @@ def test_actions_that_say_nothing_sound_are_refused(walker, action):
         Timeline(opening(walker)).advance((Wish(pressed=(action,)),))
 
 
-@pytest.mark.parametrize("action", ["pin=9:1/2/3", "pin=0:1/2", "pin=0:nan/1/1", "pin=0:1e9/0/0", "pins=1/2/3", "pin=x:1/2/3"])
+def test_points_that_streams_turn_are_turned_for_whoever_follows(walker):
+    timeline = Timeline(opening(walker))
+    turn = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    here = written(np.array([0.3, 1.0, 0.2]), turn)
+    for action in ("study=ours@2", f"pins={here};0.1/0.1/0.1"):
+        timeline.advance((Wish(pressed=(action,)).rounded(),))
+    turns = timeline.now.comparison.turns
+    assert np.allclose(turns[0], turn, atol=1e-3) and np.isnan(turns[1]).all()
+    assert np.array_equal(timeline.now.after.characters[1].intent.turns, turns, equal_nan=True)
+    timeline.advance((Wish(pressed=("pins=0.1/0.9/0;0.1/0.1/0.1",)).rounded(),))
+    assert timeline.now.comparison.turns is None
+
+
+@pytest.mark.parametrize("action", ["pin=0:1/2/3/4", "pin=0:1/2/3/1/1/1/1", "pin=9:1/2/3", "pin=0:1/2", "pin=0:nan/1/1", "pin=0:1e9/0/0", "pins=1/2/3", "pin=x:1/2/3"])
 def test_pins_that_can_not_be_are_refused(walker, action):
     timeline, _ = played(walker, HANDS[:45])
     with pytest.raises(SettingError, match=action):

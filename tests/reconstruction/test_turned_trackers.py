@@ -9,8 +9,11 @@ from scipy.spatial.transform import Rotation
 from gambol.controllers.body.rotations import yaw
 from gambol.controllers.reconstruction.live.osc_packets import understood
 from gambol.controllers.reconstruction.live.osc_stream import Trackers
-from gambol.controllers.reconstruction.live.placing import Placement
+from gambol.controllers.reconstruction.control_points import parse
+from gambol.controllers.reconstruction.live.placing import Placement, Standing, placed, stances
+from gambol.controllers.reconstruction.live.sources import Recorded
 from gambol.controllers.reconstruction.live.timeline import Timeline
+from gambol.controllers.reconstruction.pose_vector import SKELETON
 from test_stream import bundle, message
 
 UNITY = np.array([-1.0, 1.0, 1.0])
@@ -102,3 +105,35 @@ def test_turns_are_placed_as_points_are():
     trackers.told(0.0)
     assert np.allclose(trackers.turns, yaw(0.7))
     assert np.isnan(trackers.told(9.0)).all() and np.isnan(trackers.turns).all()
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(0, 1))
+def test_however_trackers_sit_joints_are_turned_as_they_stand_and_go_on_from_there(seed, arms):
+    rng = np.random.default_rng(seed)
+    controls, heading = parse("6", SKELETON), rng.uniform(-3.0, 3.0)
+    points, joints = (some[arms] for some in stances(controls))
+    mounts = Rotation.random(len(controls), random_state=rng).as_matrix()
+    placement = placed(points @ yaw(heading).T + [0.3, 0.1, -2.0], controls, turns=yaw(heading) @ joints @ mounts)
+    later = Rotation.random(len(controls), random_state=rng).as_matrix()
+    assert np.allclose(placement.turned(yaw(heading) @ joints @ mounts), joints, atol=1e-6)
+    assert np.allclose(placement.turned(yaw(heading) @ later @ mounts), later, atol=1e-6)
+
+
+def test_what_stands_still_without_a_turn_has_none_later():
+    """NaN, and the bit-exact identity that programs send for a tracker that knows no turn; others are told on the average."""
+    controls, standing = parse("3", SKELETON), Standing()
+    assert standing.turn is None
+    for k in range(70):
+        turns = np.stack([yaw(0.5 + 0.01 * (-1) ** k), np.eye(3), np.full((3, 3), np.nan)])
+        standing = standing.watch(k / 60, stances(controls)[0][0], turns)
+    assert np.allclose(standing.turn[0], yaw(0.5), atol=1e-3) and np.isnan(standing.turn[1:]).all()
+    told = placed(standing.place, controls, turns=standing.turn).turned(np.tile(yaw(0.5), (3, 1, 1)))
+    assert np.allclose(told[0], np.eye(3), atol=1e-3) and np.isnan(told[1:]).all()
+
+
+def test_a_recorded_performance_tells_turns_between_its_frames():
+    turns = np.stack([yaw(0.0), yaw(1.0)])[:, None]
+    recorded = Recorded(parse("head", SKELETON), np.zeros((2, 1, 3)), 0.1, turns)
+    assert np.allclose(recorded.turned_at(0.025)[0], yaw(0.25)) and np.allclose(recorded.turned_at(0.1)[0], yaw(1.0))
+    assert np.isnan(recorded.turned_at(0.2)).all()
+    assert Recorded(recorded.controls, recorded.points, 0.1).turned_at(0.0) is None

@@ -43,7 +43,8 @@ class Trackers:
     A tracker that is called like one of these points is on it, too. stale: [s] see STALE. placement: into the world; `placing`
     finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
     many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
-    turns: (n, 3, 3) how the trackers are turned as of when the points were told last, placed as they are; NaN where not known.
+    turns: (n, 3, 3) how the joints below the trackers are turned, as of when the points were told last; NaN where not known; the
+    trackers' own turns until a placement knows how they are mounted.
     """
 
     def __init__(self, points: Mapping[str, str], stale: float = STALE):

@@ -6,9 +6,10 @@ with the arms down, says all of it at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...body import STATURE, exp, forward_kinematics, yaw
 from ..control_points import ControlPoints
@@ -26,65 +27,93 @@ LIKE = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Carries points of a tracker's room into the body's world: turned by heading [rad], scaled, moved by shift (3,) [m]."""
+    """Carries points of a tracker's room into the body's world: turned by heading [rad], scaled, moved by shift (3,) [m].
+
+    mounts: (n, 3, 3) how the joints are turned in their trackers' frames, NaN of a tracker that told no turn while its wearer stood;
+    None where turns are the joints' own.
+    """
 
     heading: float = 0.0
     scale: float = 1.0
     shift: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    mounts: np.ndarray | None = None
 
     def __call__(self, points: np.ndarray) -> np.ndarray:
         """The points (..., 3) placed."""
         return self.scale * points @ yaw(self.heading).T + self.shift
 
     def turned(self, turns: np.ndarray) -> np.ndarray:
-        """The turns (..., 3, 3) placed."""
-        return yaw(self.heading) @ turns
+        """How the joints are turned (n, 3, 3) below trackers with turns (n, 3, 3) of the room."""
+        placed = yaw(self.heading) @ turns
+        return placed if self.mounts is None else placed @ self.mounts
 
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """Watches for somebody who stands still. frames: tuple of (time [s], points (n, 3) [m]) of the last second."""
+    """Watches for somebody who stands still. frames: tuple of (time [s], points (n, 3) [m], turns (n, 3, 3)) of the last second."""
 
-    frames: tuple[tuple[float, np.ndarray], ...] = ()
+    frames: tuple[tuple[float, np.ndarray, np.ndarray], ...] = ()
 
-    def watch(self, time: float, points: np.ndarray) -> Standing:
-        """With one frame more. A point that is lost or moves begins the second anew."""
+    def watch(self, time: float, points: np.ndarray, turns: np.ndarray | None = None) -> Standing:
+        """With one frame more, turns NaN where not known. A point that is lost or moves begins the second anew."""
         if not np.isfinite(points).all():
             return Standing()
-        kept = [(t, p) for t, p in self.frames if t >= time - SECONDS - 1e-6]
-        if kept and np.linalg.norm(points - np.mean([p for _, p in kept], 0), axis=-1).max() > STILL:
+        kept = [frame for frame in self.frames if frame[0] >= time - SECONDS - 1e-6]
+        if kept and np.linalg.norm(points - np.mean([p for _, p, _ in kept], 0), axis=-1).max() > STILL:
             kept = []
-        return Standing((*kept, (time, points)))
+        return Standing((*kept, (time, points, np.full((len(points), 3, 3), np.nan) if turns is None else turns)))
 
     @property
     def place(self) -> np.ndarray | None:
         """Where the points are (n, 3) [m] on the average of a second; None until somebody stood still so long."""
         if not self.frames or self.frames[-1][0] - self.frames[0][0] < 0.9 * SECONDS:
             return None
-        return np.mean([points for _, points in self.frames], 0)
+        return np.mean([points for _, points, _ in self.frames], 0)
+
+    @property
+    def turn(self) -> np.ndarray | None:
+        """How the trackers are turned (n, 3, 3) on the average of a second, NaN of one that told none; None before `place` is known.
+
+        The identity, to the bit, is what programs send for a tracker that knows no turn.
+        """
+        if (place := self.place) is None:
+            return None
+        turns = np.full((len(place), 3, 3), np.nan)
+        for n in range(len(place)):
+            known = [one for one in (frame[2][n] for frame in self.frames) if np.isfinite(one).all() and not np.array_equal(one, np.eye(3))]
+            if known:
+                turns[n] = Rotation.from_matrix(known).mean().as_matrix()
+        return turns
 
 
-def stances(controls: ControlPoints) -> np.ndarray:
-    """Where a standard body has its points (2, n, 3) [m] that stands at the origin facing +Z: T-pose, arms down."""
+def stances(controls: ControlPoints) -> tuple[np.ndarray, np.ndarray]:
+    """Where a standard body has its points (2, n, 3) [m] that stands at the origin facing +Z: T-pose, arms down; and how their
+    joints are turned (2, n, 3, 3)."""
     turns = np.tile(np.eye(3), (2, len(SKELETON), 1, 1))
     for side, down in (("Left", -1.3), ("Right", 1.3)):
         turns[1, SKELETON.index(side + "Arm")] = exp(np.array([0.0, 0.0, down]))
-    return controls.on(*forward_kinematics(SKELETON, np.tile(SKELETON.offsets[0], (2, 1)), turns))
+    positions, orientations = forward_kinematics(SKELETON, np.tile(SKELETON.offsets[0], (2, 1)), turns)
+    return controls.on(positions, orientations), orientations[:, controls.joints]
 
 
-def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = None) -> Placement:
+def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = None, turns: np.ndarray | None = None) -> Placement:
     """What carries a standing performer's points (n, 3) [m] onto a standard body that stands at the origin.
 
-    height: the performer's [m]; by default it is told from the points, and needs two of them apart.
+    height: the performer's [m]; by default it is told from the points, and needs two of them apart. turns: (n, 3, 3) of the trackers,
+    NaN where not known: however they sit on the joints, joints are turned like the standing body's now.
     ValueError if they are no standing body's.
     """
-    found = [_align(seen, stance, None if height is None else STATURE / height) for stance in stances(controls)]
-    away, placement = min(found, key=lambda one: one[0])
+    points, orientations = stances(controls)
+    found = [_align(seen, stance, None if height is None else STATURE / height) for stance in points]
+    nearest = min(range(len(found)), key=lambda one: found[one][0])
+    away, placement = found[nearest]
     size = STATURE / placement.scale
     if not SIZES[0] <= size / STATURE <= SIZES[1] or away > LIKE:
         raise ValueError(f"these points are no standing body's: at best of one {size:.2f} m tall, {100 * away:.0f} cm away; "
                          "stand upright, in T-pose or with the arms down; is each tracker on the point that it is said to be?")
-    return placement
+    if turns is None:
+        return placement
+    return replace(placement, mounts=np.swapaxes(placement.turned(turns), -1, -2) @ orientations[nearest])
 
 
 def _align(seen, target, scale):
