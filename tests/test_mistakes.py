@@ -14,7 +14,7 @@ from gambol.controllers.locomotion import Library, LibraryError, Locomotion
 from gambol.controllers.locomotion.library_build import read_recipe
 from gambol.controllers.mocap import MotionFileError, load
 from gambol.controllers.reconstruction.database.database import Database, DatabaseError, Writer
-from gambol.controllers.reconstruction.live.osc_stream import StreamError, read_map
+from gambol.controllers.reconstruction.live import StreamError, read_map
 from gambol.controllers.reconstruction.pose_vector import WIDTH
 from gambol.controllers.scaled import Scaled
 from gambol.controllers.tracking.cameras import CalibrationError, read_cameras

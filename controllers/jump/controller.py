@@ -263,7 +263,7 @@ class Jump(Reach, Controller):
         x, z = x + s * ahead + c * left, z + c * ahead - s * left
         if np.ndim(state.ground) != 1 or floor_at(x, z, intent.around) > float(state.floor) - 0.2 * self.physique.size:
             return False
-        return over_nothing(self.skeleton, state.pose, state.contacts, intent.around, self.physique.size)
+        return over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), self.physique.size)
 
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""

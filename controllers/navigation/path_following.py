@@ -43,7 +43,7 @@ class Path:
         return np.stack([np.interp(along, self.start, self.points[:, i]) for i in range(2)], -1)
 
 
-def follow(path: Path, ground, progress, speed, ahead: float = 0.6, brake: float = 0.5
+def follow(path: Path, ground, progress, speed, ahead: float = 0.6, brake: float = 0.7
            ) -> tuple[np.ndarray, np.ndarray]:
     """The wished world velocity (..., 2) [m/s] along a path, and the progress (...) [m] made.
 

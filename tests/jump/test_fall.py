@@ -136,7 +136,7 @@ def test_only_what_it_moves_into_is_struck(jump, standing, x, z):
         np.testing.assert_allclose(hit.normal, [0.0, 0.0, -1.0], atol=1e-6)
 
 
-@pytest.mark.parametrize(("high", "speed"), [(0.5, 1.2), (1.0, 0.8), (0.5, 2.8)])
+@pytest.mark.parametrize(("high", "speed"), [(0.5, 1.2), (1.0, 0.8), (0.5, 2.8), (0.5, 2.5)])
 def test_who_walks_over_an_edge_falls_and_walks_on(jump, locomotion, high, speed):
     """Its mass centre falls as everything does, it lands on the floor below, and it says why."""
     person = Supervisor({"locomotion": locomotion, "jump": jump})

@@ -87,12 +87,12 @@ def _out(place: np.ndarray, thing) -> np.ndarray:
     return slope / max(float(np.linalg.norm(slope)), 1e-12)
 
 
-def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: Sequence[Any], size: float = 1.0) -> bool:
-    """Whether a foot that stands, heel or ball (4,), has no floor within a step under either. size: of the body, over a
-    standard one's."""
+def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: Sequence[Any], floor: float, size: float = 1.0) -> bool:
+    """Whether a foot that stands, heel or ball (4,), has no floor within a step under either, or under the floor [m] that the body was on:
+    feet reach for what lies lower. size: of the body, over a standard one's."""
     points = contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
     stands = np.asarray(contacts, bool).reshape(2, 2).any(1)
-    return any(all(y - floor_at(x, z, around, y + 0.1 * size) > VOID * size for x, y, z in foot)
+    return any(all(max(y, floor) - floor_at(x, z, around, y + 0.1 * size) > VOID * size for x, y, z in foot)
                for foot in points.reshape(2, 2, 3)[stands])
 
 
