@@ -218,6 +218,8 @@ def test_keys_open_hold_and_leave(walker):
 
 def test_a_stream_holds_the_points(walker):
     class Somebody:
+        turns = np.full((4, 3, 3), np.nan)
+
         def at(self, time):
             return np.array([[0.4, 1.0, 0.3], [np.nan] * 3, [0.1, 0.07, 0.0], [-0.1, 0.07, 0.0]])
     play = game(walker, stream=Somebody())

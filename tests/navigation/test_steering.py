@@ -117,7 +117,7 @@ def test_a_path_is_walked_to_its_end_even_where_it_crosses_itself():
 @given(st.floats(-1, 5), st.floats(-1, 1), st.floats(0, 4))
 def test_progress_lies_in_its_window_and_is_nearest_there(x, z, since):
     path = Path(np.array([[0, 0], [1.5, 0.2], [4, 0]]))
-    wish, found = follow(path, np.array([x, z, 0.3]), since, 1.2, ahead=0.5)
+    wish, found = follow(path, np.array([x, z, 0.3]), since, 1.2, ahead=0.5, brake=0.5)
     until = min(since + 1.0, path.length)
     since = min(since, path.length)
     assert since - 1e-9 <= found <= until + 1e-9
