@@ -8,6 +8,7 @@ import pytest
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump.controller import Jump
 from gambol.controllers.locomotion import Locomotion, Settings
+from gambol.controllers.supervisor import Supervisor
 
 FPS = 60
 
@@ -20,6 +21,12 @@ def locomotion():
 @pytest.fixture(scope="session")
 def jump():
     return Jump()
+
+
+@pytest.fixture(scope="session")
+def person(locomotion, jump):
+    """Who walks, runs and jumps."""
+    return Supervisor({"locomotion": locomotion, "jump": jump})
 
 
 @pytest.fixture(scope="session")

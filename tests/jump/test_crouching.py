@@ -15,11 +15,6 @@ from conftest import ahead
 FPS = 60
 
 
-@pytest.fixture(scope="module")
-def person(locomotion, jump):
-    return Supervisor({"locomotion": locomotion, "jump": jump})
-
-
 def led(person, intents, state=None):
     """The states of somebody who is told so, one for each intent."""
     state, states = person.start() if state is None else state, []

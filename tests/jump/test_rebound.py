@@ -8,16 +8,10 @@ import pytest
 from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Crouching, Jumping
-from gambol.controllers.supervisor import Supervisor
 
 from conftest import ahead
 
 FPS = 60
-
-
-@pytest.fixture(scope="module")
-def person(locomotion, jump):
-    return Supervisor({"locomotion": locomotion, "jump": jump})
 
 
 @pytest.fixture(scope="module")

@@ -6,18 +6,12 @@ import pytest
 from gambol.controllers.body import contact_points, forward_kinematics, sole_corners
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jumping
-from gambol.controllers.supervisor import Supervisor
 
 FPS = 60
 PACE = 3.0
 RING, SLACK = 2.19, 0.3
 """So far ahead [m] who plays lets go of it at that pace, and so much beyond it may be landed."""
 WISH = np.array([PACE, 0.0, 0.0])
-
-
-@pytest.fixture(scope="module")
-def person(locomotion, jump):
-    return Supervisor({"locomotion": locomotion, "jump": jump})
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .ground import on
+from ..regression import in_world, on_ground
 
 TAKES, LEAVES = 0.6, 0.4
 """A point takes hold where the network is surer than this that it stands, and lets go where it is less sure than that."""
@@ -47,12 +47,11 @@ class Soles:
 
     def goals(self, ground: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Places (4, 3) [m] seen from ground (3,), and 1/σ² (4,) of each, 0 where it is not held."""
-        return on(self.places, ground), np.where(self.held, np.maximum(self.firm, 0.0), 0.0) / EXACT ** 2
+        return on_ground(self.places, ground), np.where(self.held, np.maximum(self.firm, 0.0), 0.0) / EXACT ** 2
 
     def found(self, points: np.ndarray, ground: np.ndarray, height: float) -> Soles:
         """After the frame was solved with them at points (4, 3), seen from ground. height: [m] at which they stand."""
-        c, s = np.cos(ground[2]), np.sin(ground[2])
-        world = np.stack([c * points[:, 0] + s * points[:, 2] + ground[0], points[:, 1], c * points[:, 2] - s * points[:, 0] + ground[1]], -1)
+        world = in_world(points, ground)
         takes = self.firm < 0.0
         places = self.places + FOLLOWS * (world - self.places)
         places[:, 1] += FOLLOWS * (height - places[:, 1])

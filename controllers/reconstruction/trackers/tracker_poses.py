@@ -16,8 +16,8 @@ from ...body import Pose, Skeleton, contact_height, forward_kinematics, heel_off
 from ..control_points import ControlPoints
 from ..ours import Motion, noise, placed
 from ..pose_vector import REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
-from ..regression import FAR, FLOOR, SPAN, seen_kernel
-from .ground import GROUND, less, nothing, on, shown_as, turned_on
+from ..regression import FAR, FLOOR, SPAN, on_ground, seen_kernel
+from .ground import GROUND, less, nothing, shown_as, turned_on
 from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
@@ -193,7 +193,7 @@ class Trackers:
         mean = expected + FADING * memory.off
         soles = memory.soles.told(standing)
         goals, hold = soles.goals(ground)
-        goals, hold = np.concatenate([on(points, ground), goals]), np.concatenate([np.full(len(points), EXACT_PLACE ** -2.0), hold])
+        goals, hold = np.concatenate([on_ground(points, ground), goals]), np.concatenate([np.full(len(points), EXACT_PLACE ** -2.0), hold])
         hold[:len(points)][~np.isfinite(points).all(-1)] = 0.0
         keep = np.zeros(len(hold))
         keep[:len(points)][np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
