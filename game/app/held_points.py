@@ -12,7 +12,7 @@ import numpy as np
 from ..explain import RADIUS, Row
 from ..scene import Camera, Dot, Figure, Ink
 from ..session import SessionState, Comparison, written
-from ..world import Learning, Methods
+from ..world import SHIPPED, Learning, Methods
 from .point_picking import Grip, nearest
 
 HELD = (0.95, 0.95, 0.92)
@@ -36,6 +36,7 @@ class HeldPoints:
         self.learning: Learning | None = None
         self.reading: threading.Thread | None = None
         self.wanted: Comparison | None = None
+        self.usual = Comparison()
         self.panel: Any = None
         self._fault = ""
 
@@ -47,7 +48,7 @@ class HeldPoints:
         if self.wanted is not None:
             return "", "one thing after the other: it is still learning"
         if action == "study":
-            return self.open(Comparison()) if open_ is None else ("study=", "")
+            return self.open(self.usual) if open_ is None else ("study=", "")
         if open_ is None:
             return "", "nothing is reconstructed yet"
         if self.stream is not None and action != "study_ghosts":
@@ -66,12 +67,21 @@ class HeldPoints:
         return f"pin={number}:{written(place)}", ""
 
     def open(self, wanted: Comparison) -> tuple[str, str]:
-        """The action that opens a comparison, if all of it is ready; else it is learnt first."""
+        """The action that opens a comparison, if all of it is ready; else another program learns it, or compiles what ships, first."""
+        if self.stream is not None:  # whose points they are, whenever it is opened again
+            self.usual = wanted
         missing = [(name, wanted.points) for name in wanted.methods if not self.methods.knows(name, wanted.points)]
         if not missing:
             return wanted.action, ""
         self.wanted, self.learning = wanted, Learning(missing, self.methods.file)
-        return "", f"learning, once, for {wanted.count} points"
+        return "", self._meanwhile
+
+    @property
+    def _meanwhile(self) -> str:
+        """What one waits for."""
+        assert self.wanted is not None
+        ships = set(self.wanted.methods) <= {SHIPPED}
+        return f"{'getting ready' if ships else 'learning, once,'} for {self.wanted.count} points"
 
     def learnt(self) -> str:
         """The action that opens what has been learnt by now, or "!" and why it can't be; empty otherwise."""
@@ -101,7 +111,7 @@ class HeldPoints:
         lines = []
         if self.wanted is not None:
             said = self.learning.said if self.learning is not None else ""
-            lines.append(f"learning for {self.wanted.count} points" + (f": {said}" if said else ""))
+            lines.append(self._meanwhile + (f": {said}" if said else ""))
         if moment.comparison is not None:
             if moment.comparison.pins is None:
                 lines.append(f"from {moment.comparison.count} points: {key('study_points')} others, "

@@ -119,7 +119,7 @@ def worded(name: str, bindings: Bindings, pad: bool, where: str = "ahead") -> tu
         buttons = [button_label(button) for button in row.buttons]
         caps = ((buttons or keys) if pad else (keys or buttons))[:1]
     before, after = {"walk": ("", "to walk"), "run": ("hold", "as you walk, to run"), "jump": ("hold", "to aim, let go to jump"),
-                     "study": ("", "puts a body beside you that knows four points on yours")}[name]
+                     "study": ("", "puts a body beside you that knows six points on yours")}[name]
     words = (((before, False),) if before else ()) + tuple((cap, True) for cap in caps) + ((after, False),)
     return words if caps else ()
 

@@ -137,10 +137,10 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     """Have methods, (name, points) each, learnt by another program where they were not yet, told of as it goes; and read them."""
     if not wanted:
         return
-    from ..world import Learning, methods
+    from ..world import SHIPPED, Learning, methods
 
     known = methods(database)
-    wanted = [one for one in wanted if not known.knows(*one)]
+    wanted = [one for one in wanted if one[0] != SHIPPED and not known.knows(*one)]
     if not wanted:
         return
     with progress_bar() as bar:

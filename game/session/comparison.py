@@ -17,13 +17,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ..input import Wish
-from ..world import METHODS, NAMES, TINTS, Character, Follows, Methods, World, beginning, follower_of
+from ..world import METHODS, NAMES, SHIPPED, TINTS, Character, Follows, Methods, World, beginning, follower_of
 from .settings import SettingError
 
 SETS = ("2", "3", "4", "5", "6")
 """The points that one goes through."""
-GHOSTS = ((), ("lpcr", "lpca"), ("lpcr",), ("lpca",), ("nearest",))
-"""The ghosts that one goes through."""
+GHOSTS = ((), ("ours",), ("lpcr", "lpca"), ("lpcr",), ("lpca",), ("nearest",))
+"""The ghosts that one goes through, but for one that has the body itself."""
 ASIDE = 1.4
 """How far to the right of the performer the others are [m]."""
 GHOST = 0.34
@@ -44,8 +44,8 @@ class Comparison:
     altogether while the performer has them. turned: how each is turned, None where that is not known; empty where none is.
     """
 
-    methods: tuple[str, ...] = ("ours", "lpcr", "lpca")
-    points: str = "4"
+    methods: tuple[str, ...] = (SHIPPED,)
+    points: str = "6"
     beside: Place = (0.0, 0.0, 0.0)
     pins: tuple[Place | None, ...] | None = None
     turned: tuple[Turn | None, ...] = ()
@@ -81,8 +81,9 @@ class Comparison:
 
     def other_ghosts(self) -> Comparison:
         """With the next ghosts."""
-        at = GHOSTS.index(self.methods[1:]) if self.methods[1:] in GHOSTS else -1
-        return replace(self, methods=(self.methods[0], *GHOSTS[(at + 1) % len(GHOSTS)]))
+        others = [ghosts for ghosts in GHOSTS if self.methods[0] not in ghosts]
+        at = others.index(self.methods[1:]) if self.methods[1:] in others else -1
+        return replace(self, methods=(self.methods[0], *others[(at + 1) % len(others)]))
 
 
 def opened(action: str) -> Comparison | None:

@@ -54,7 +54,7 @@ class Methods:
 
     def knows(self, name: str, points: str) -> bool:
         """Whether a method for some points is ready at once."""
-        return name == SHIPPED or (name, points) in self._known
+        return (name, points) in self._known
 
     def __call__(self, name: str, points: str, progress: Progress | None = None) -> tuple[Any, ControlPoints]:
         """A method of `METHODS` and the points that it follows, as `controls.parse` has them.

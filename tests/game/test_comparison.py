@@ -151,7 +151,7 @@ def test_pins_that_can_not_be_are_refused(walker, action):
 
 
 def test_a_study_reads_as_it_writes():
-    for comparison, count in ((Comparison(), 4), (Comparison(("nearest",), "lwrist,head+0/0.1/0"), 2), (Comparison().more_points(), 5), (Comparison().other_ghosts(), 4)):
+    for comparison, count in ((Comparison(), 6), (Comparison(("nearest",), "lwrist,head+0/0.1/0"), 2), (Comparison().more_points(), 2), (Comparison().other_ghosts(), 6)):
         assert opened(comparison.action) == comparison and comparison.count == count
     assert opened("study=") is None
     cycle, seen = Comparison(points="2"), []
@@ -163,8 +163,8 @@ def test_a_study_reads_as_it_writes():
 
 def game(walker, **options):
     play = Play(walker, **options)
-    for name in ("ours", "lpcr", "lpca"):
-        play.held_points.methods(name, "4")
+    for name in ("trackers", "ours"):
+        play.held_points.methods(name, "6")
     return play
 
 
@@ -178,9 +178,12 @@ def test_keys_open_hold_and_leave(walker):
     play = game(walker)
     play.handle(KeyEvent("X", True))
     ticks(play, 3)
-    assert play.now.comparison is not None and [one.name for one in play.now.after.characters[1:]] == ["ours", "local PCR", "local PCA"]
+    assert play.now.comparison is not None and [one.name for one in play.now.after.characters[1:]] == ["trackers"], "what ships"
+    play.do("study_ghosts")
+    ticks(play, 2)
+    assert [one.name for one in play.now.after.characters[1:]] == ["trackers", "ours"]
     scene = play.scene((1280, 720))
-    assert scene.ink is not None and len(scene.figures) == 4
+    assert scene.ink is not None and len(scene.figures) == 3
     play.do("study_hands")
     ticks(play, 2)
     pins = play.now.comparison.pins
@@ -223,7 +226,13 @@ def test_a_stream_holds_the_points(walker):
         def at(self, time):
             return np.array([[0.4, 1.0, 0.3], [np.nan] * 3, [0.1, 0.07, 0.0], [-0.1, 0.07, 0.0]])
     play = game(walker, stream=Somebody())
+    play.held_points.methods("trackers", "4")
+    play.open(Comparison(points="4"))
+    ticks(play, 5)
     play.do("study")
+    ticks(play, 2)
+    assert play.now.comparison is None
+    play.do("study")  # the same points again
     ticks(play, 5)
     assert play.now.comparison.pins[1] is None
     assert play.now.comparison.pins[0] == pytest.approx(np.array([0.4, 1.0, 0.3]) + play.now.comparison.beside, abs=1e-4)
