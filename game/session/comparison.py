@@ -22,7 +22,7 @@ from .settings import SettingError
 
 SETS = ("2", "3", "4", "5", "6")
 """The points that one goes through."""
-GHOSTS = ((), ("ours",), ("lpcr", "lpca"), ("lpcr",), ("lpca",), ("nearest",))
+GHOSTS: tuple[tuple[str, ...], ...] = ((), ("ours",), ("lpcr", "lpca"), ("lpcr",), ("lpca",), ("nearest",))
 """The ghosts that one goes through, but for one that has the body itself."""
 ASIDE = 1.4
 """How far to the right of the performer the others are [m]."""
