@@ -26,7 +26,7 @@ def window(memory: Memory, seen: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Frames to learn from. points: (N, n, 3) [m] in the world. tracks: (N, 3). frames: (N, D).
+    """Frames to learn from. points: (N, n, 3) [m] in the world. tracks: (N, 3). frames: (N, D), the database's own, mapped.
 
     which: (S,) numbers of frames that have one before them. first: (S,) the first frame of each one's take, and
     recording: (S,) what it is of. dt: seconds between frames.
@@ -43,17 +43,18 @@ class Samples:
     @staticmethod
     def of(database: Database, solver: Solver) -> Samples:
         """All sound frames of a database's takes; the control points are the solver's."""
-        parts = [_of_take(database.frames[take.start:take.stop].astype(float), solver) for take in database.takes]
-        which, first, recording, begin = [], [], [], 0
+        count = len(database.frames)
+        points, tracks = np.empty((count, len(solver.controls), 3)), np.empty((count, 3))
+        which, first, recording = [], [], []
         for take in database.takes:
-            sound = database.sound[take.start:take.stop]
-            good = 1 + np.flatnonzero(sound[1:] & sound[:-1])
-            which.append(begin + good)
-            first.append(np.full(len(good), begin))
+            there = slice(take.start, take.stop)
+            points[there], tracks[there] = _of_take(database.frames[there].astype(float), solver)
+            sound = database.sound[there]
+            good = take.start + 1 + np.flatnonzero(sound[1:] & sound[:-1])
+            which.append(good)
+            first.append(np.full(len(good), take.start))
             recording.append(np.full(len(good), take.recording))
-            begin += len(sound)
-        points, tracks, frames = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-        return Samples(points, tracks, frames, np.concatenate(which), np.concatenate(first),
+        return Samples(points, tracks, database.frames, np.concatenate(which), np.concatenate(first),
                        np.concatenate(recording), solver.dt)
 
     def __len__(self) -> int:
@@ -65,7 +66,7 @@ class Samples:
         With an rng, half of them are astray.
         """
         at, first = self.which[chosen], self.first[chosen]
-        ground, goals = self.tracks[at - 1].copy(), self.frames[at].copy()
+        ground, goals = self.tracks[at - 1].copy(), self.frames[at].astype(float)
         if rng is not None:
             off = rng.uniform(-1.0, 1.0, (len(at), 3)) * [ASIDE, ASIDE, ASTRAY] * (rng.random((len(at), 1)) < 0.5)
             ground += off
@@ -78,7 +79,7 @@ class Samples:
 
 
 def _of_take(frames, solver):
-    """Points, tracks and frames of one take, which begins at the origin."""
+    """Points and tracks of one take, which begins at the origin."""
     rates = frames * solver.dt
     heading = np.concatenate([[0.0], np.cumsum(rates[1:, YAW_RATE])])
     c, s = np.cos(heading[:-1]), np.sin(heading[:-1])
@@ -86,4 +87,4 @@ def _of_take(frames, solver):
     way = np.stack([s * forward + c * left, c * forward - s * left], -1)
     tracks = np.concatenate([np.concatenate([np.zeros((1, 2)), np.cumsum(way, 0)]), heading[:, None]], -1)
     points = solver.controls.on(*forward_kinematics(solver.skeleton, *decode(frames, tracks)))
-    return points, tracks, frames
+    return points, tracks

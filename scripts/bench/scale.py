@@ -1,0 +1,136 @@
+"""How the search and learning scale: a database, and copies of it with motion of their own, up to ten million poses.
+
+    python scripts/bench/scale.py DATABASE [--copies 9] [--folder FOLDER]
+
+Each copy moves every joint by up to 3 degrees, smoothly and otherwise in every take. Printed are for both sizes: the time to build the
+index, of a query by it and by looking at everything, and how many of the hundred nearest it finds; the time to ready what `ours` and the
+network for trackers learn from, and of a batch of either; and memory of the process's own, without what is mapped of the file.
+Times are the process's own, on one thread.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+import numpy as np
+
+from gambol.controllers.reconstruction import SKELETON, parse
+from gambol.controllers.reconstruction.baselines import Samples
+from gambol.controllers.reconstruction.database import Database
+from gambol.controllers.reconstruction.database.database import Writer
+from gambol.controllers.reconstruction.neighbours import Cells, Exact, Segments
+from gambol.controllers.reconstruction.ours import learn
+from gambol.controllers.reconstruction.pose_vector import ANGLES
+from gambol.controllers.reconstruction.regression import Solver
+from gambol.controllers.reconstruction.trackers.samples import Moments
+
+OFF, KNOTS, K, QUERIES, BATCHES = np.radians(3.0), 30, 100, 40, 60
+
+
+def copied(database: Database, copies: int, path: Path) -> Database:
+    """The database and so many copies of it, in a file of their own."""
+    rng = np.random.default_rng(0)
+    with Writer(path, database.fps, mirrors=False) as writer:
+        for copy in range(1 + copies):
+            for take in database.takes:
+                frames = np.array(database.frames[take.start:take.stop])
+                if copy:
+                    knots = rng.uniform(-OFF, OFF, (2 + len(frames) // KNOTS, ANGLES)).astype(np.float32)
+                    at = np.arange(len(frames)) / KNOTS
+                    low, share = at.astype(int), (at % 1.0)[:, None].astype(np.float32)
+                    frames[:, :ANGLES] += (1 - share) * knots[low] + share * knots[low + 1]
+                writer.add(f"{copy}/{take.clip}", take.subject, take.action, frames, database.sound[take.start:take.stop], take.interpolated)
+    return Database.open(path)
+
+
+class Watched:
+    """What a block of code takes: the process's time [s], and the most memory of its own at any moment [GB]."""
+
+    def __enter__(self) -> Watched:
+        self._began, self.memory, self._over = time.process_time(), 0.0, threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+        return self
+
+    def _watch(self) -> None:
+        while not self._over.wait(0.05):
+            self.memory = max(self.memory, own_memory())
+
+    def __exit__(self, *_) -> None:
+        self.time, self.memory = time.process_time() - self._began, max(self.memory, own_memory())
+        self._over.set()
+        self._thread.join()
+
+
+def own_memory() -> float:
+    """Memory [GB] that is no file's, as Linux tells it; 0 elsewhere."""
+    try:
+        lines = Path("/proc/self/status").read_text().splitlines()
+    except OSError:
+        return 0.0
+    return sum(int(line.split()[1]) for line in lines if line.startswith("RssAnon")) / 1e6
+
+
+def measured(database: Database) -> None:
+    """Print the figures of a database."""
+    print(f"{len(database):,} poses of {len(database.takes):,} takes, {database.path.stat().st_size / 1e9:.2f} GB; {own_memory():.1f} GB before")
+    controls = parse("4", SKELETON)
+    with Watched() as watched:
+        segments = Segments.of(database, 3, 4, controls.joints)
+        cells = Cells(segments)
+    print(f"  index: {watched.time:.0f} s, {watched.memory:.1f} GB at most, {own_memory():.1f} kept")
+    rng, exact, found, times, hint = np.random.default_rng(1), Exact(segments), [], [], None
+    start = int(rng.integers(len(segments) - QUERIES))
+    for which in range(start, start + QUERIES):
+        feature = segments.features(np.array([which]))[0]
+        feature = feature + rng.normal(0.0, 0.02, feature.shape).astype(np.float32)
+        own = int(segments.recordings[which])
+        began = time.process_time()
+        near, _, hint = cells.query(feature, K, hint, own)
+        then = time.process_time()
+        true, _, _ = exact.query(feature, K, None, own)
+        times.append((then - began, time.process_time() - then))
+        found.append(len(np.intersect1d(near, true)) / K)
+    ours, every = 1e3 * np.median(times[1:], axis=0)
+    print(f"  a query: {ours:.2f} ms; looking at everything {every:.0f}; it finds {100 * np.mean(found):.0f} % of the {K} nearest")
+    del cells, exact, segments
+    solver = Solver(controls, 1 / database.fps)
+    with Watched() as watched:
+        samples = Samples.of(database, solver)
+    print(f"  ours: samples {watched.time:.0f} s, {watched.memory:.1f} GB at most", end="")
+    with Watched() as watched:
+        learn(samples, seeds=1, batches=BATCHES)
+    print(f"; {1e3 * watched.time / BATCHES:.0f} ms a batch, {watched.memory:.1f} GB")
+    del samples
+    with Watched() as watched:
+        moments = Moments.of(database)
+    print(f"  trackers: moments {watched.time:.0f} s, {watched.memory:.1f} GB at most", end="")
+    with Watched() as watched:
+        for number in range(BATCHES):
+            moments.draw(512, 0, number)
+    print(f"; {1e3 * watched.time / BATCHES:.0f} ms to draw a batch, {watched.memory:.1f} GB", flush=True)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("database", type=Path)
+    parser.add_argument("--copies", type=int, default=9)
+    parser.add_argument("--folder", type=Path, help="where the copies are written for as long as they are measured")
+    options = parser.parse_args()
+    database = Database.open(options.database)
+    measured(database)
+    with tempfile.TemporaryDirectory(dir=options.folder) as folder:
+        measured(copied(database, options.copies, Path(folder) / "copies.gambolmotion"))
+
+
+if __name__ == "__main__":
+    main()
