@@ -27,7 +27,7 @@ from gambol.controllers.reconstruction.baselines import Samples
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.neighbours import Cells, Exact, Segments
-from gambol.controllers.reconstruction.ours import learn
+from gambol.controllers.reconstruction.ours.networks import learn
 from gambol.controllers.reconstruction.pose_vector import ANGLES
 from gambol.controllers.reconstruction.regression import Solver
 from gambol.controllers.reconstruction.trackers.samples import Moments
