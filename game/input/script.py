@@ -91,6 +91,11 @@ class Script:
         """Whether every move is over."""
         return self.index >= len(self.moves)
 
+    @property
+    def leaps(self) -> bool:
+        """Whether its move ends with a jump: its run-up may go at what it leaps onto."""
+        return not self.done and self.moves[self.index].jump is not None
+
     def step(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         """The script `dt` seconds later, and what it asks of a character in `state` meanwhile."""
         script = self

@@ -17,6 +17,8 @@ MOST, HASTE = 1.4, 4.0
 """How far aside of the pelvis one looks at most [rad], and how fast one turns the head there [rad/s]."""
 SPOT = 0.3
 """A place that is nearer [m] is no other: one looks at once where one will face."""
+LEADS = 0.5 * math.pi
+"""Who turns so far [rad] has taken his eyes from the place as he leaves the floor, and turns the head before the body."""
 STAYS, BACK = 0.25, 0.4
 """How much of the look at the place is left at touch-down, and how long after that one looks ahead again [s]."""
 
@@ -37,11 +39,14 @@ class Look:
         leave = way.wind_up + (0.0 if way.push is None else way.push.duration)
         flat = (place - way.stance) * FLAT
         to = turn
-        if np.linalg.norm(flat) > SPOT:  # on the side to which one turns
-            to = turn + math.remainder(math.atan2(flat[0], flat[2]) - start.heading - turn, math.tau)
-        after = turn + STAYS * (to - turn)
+        if np.linalg.norm(flat) > SPOT:
+            to = math.remainder(math.atan2(flat[0], flat[2]) - start.heading, math.tau)
+            if to * turn < 0.0 and abs(to) > 0.5 * math.pi:  # behind: over the shoulder to which one turns
+                to += math.copysign(math.tau, turn)
+        ahead = to + min(abs(turn) / LEADS, 1.0) * (turn - to)
+        after = turn + STAYS * (ahead - turn)
         times = np.array([0.0, way.wind_up, leave, leave + 0.5 * way.airtime, leave + way.airtime, leave + way.airtime + BACK])
-        goals = np.array([0.0, to, to, 0.5 * (to + turn), after, turn]) - way.turned(times)
+        goals = np.array([0.0, to, ahead, 0.5 * (ahead + turn), after, turn]) - way.turned(times)
         most = np.minimum(HASTE * times, MOST)
         return Look(times, np.append(np.clip(goals, -most, most)[:-1], 0.0), np.array([skeleton.index(name) for name in SHARES]), np.array([*SHARES.values()]))
 
