@@ -36,16 +36,18 @@ class Leap:
     None for where it is now: straight up.
 
     airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
+    heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
     """
 
     place: np.ndarray | None
     airtime: float | None = None
     slack: float = 0.0
+    heading: float | None = None
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
-        return (other is not None and (self.airtime, self.slack) == (other.airtime, other.slack) and (self.place is None) == (other.place is None)
-                and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
+        return (other is not None and (self.airtime, self.slack, self.heading) == (other.airtime, other.slack, other.heading)
+                and (self.place is None) == (other.place is None) and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -14,11 +14,11 @@ from ..contract import CharacterState, Controller, Intent, Leap, Status, level, 
 from ..navigation import floor_at
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import PLANT, Plan, fall, over_nothing, struck
+from .motion import Plan, fall, over_nothing, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
-from .starting import landed, ready, rebounding, start_of
+from .starting import Jumping, landed, ready, rebounding, start_of, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -31,43 +31,10 @@ RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
 SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
-SPRINGS = 0.05
-"""So long after the lowest point of a landing [s] another leap may still go off from there."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
 MOST_HITS = 3
 """A body that still touches something after so many hits slips by."""
-
-
-@dataclass(frozen=True, eq=False)
-class Jumping:
-    """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
-    plan is a fall. hits: how often. shift: (2,) x, z [m] of the ground frame from under the centre of mass as the plan began. asked: what is
-    not to be asked again until it was let go; refused: why the leap that was to follow can't be made."""
-
-    plan: Plan
-    time: float = 0.0
-    fault: str = ""
-    hits: int = 0
-    shift: np.ndarray = field(default_factory=lambda: np.zeros(2))
-    asked: Leap | None = None
-    refused: str = ""
-
-    @staticmethod
-    def begun(made: Plan, state: CharacterState, asked: Leap | None = None, fault: str = "", hits: int = 0) -> Jumping:
-        """The memory of one who begins a plan in a state."""
-        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float)[:2] - made.centres[0, [0, 2]], asked)
-
-    @property
-    def rebounds(self) -> bool:
-        """Whether its legs give to a landing on both feet, so that another leap could go off from there."""
-        made = self.plan
-        return not self.fault and made.path.lands is None and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
-
-    @property
-    def landed(self) -> bool:
-        """Whether the feet have come down."""
-        return self.time >= self.plan.touch_down
 
 
 class Jump(Reach, Controller):
@@ -127,7 +94,9 @@ class Jump(Reach, Controller):
         leap = intent.leap
         if leap is None:
             raise Refused("nobody asked for a jump")
-        start, floor = self.start_of(state), float(level(state.floor))
+        if leap.heading is not None and not np.isfinite(leap.heading):
+            raise Refused(f"the heading must be a finite number of radians, or None, got {leap.heading!r}")
+        start, floor = self.start_of(state, leap), float(level(state.floor))
         here = self.middle(start, floor)
         place = here if leap.place is None else np.asarray(leap.place, float)
         if place.shape != (3,) or not np.isfinite(place).all():
@@ -151,9 +120,9 @@ class Jump(Reach, Controller):
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
         """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""
-        start, floor = self.start_of(state), float(level(state.floor))
         if intent.leap is None:
             return "nobody asked for a jump"
+        start, floor = self.start_of(state, intent.leap), float(level(state.floor))
         place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
         return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1]
 
@@ -169,10 +138,10 @@ class Jump(Reach, Controller):
         memory = state.memory
         return state if not isinstance(memory, Jumping) or memory.plan.path.lands is not None else landed(self.physique, state, memory.plan)
 
-    def start_of(self, state: CharacterState) -> Start:
-        """What a jump needs to know of a state."""
+    def start_of(self, state: CharacterState, leap: Leap | None = None) -> Start:
+        """What a jump needs to know of a state, and of how a leap shall land."""
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
-        return rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start
+        return turning(rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start, leap)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
@@ -191,9 +160,10 @@ class Jump(Reach, Controller):
         n = int(np.clip(np.searchsorted(made.times, time) , 0, len(made.times) - 1))
         landed = time >= made.touch_down
         floor = float(made.feet[0, 1] - self.physique.tables.sole) if landed else float(state.floor)
-        heading = float(state.ground[2])
         centre, (vx, _, vz) = made.moving(time)
-        ground = np.append(centre[[0, 2]] + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time), heading)
+        turned = made.path.heading + float(made.path.turned(time))
+        ground = np.array([*centre[[0, 2]], turned]) + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
+        heading = float(ground[2])
         c, s = np.cos(heading), np.sin(heading)
         velocity = np.array([s * vx + c * vz, 0.0, c * vx - s * vz])
         after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n].copy(),

@@ -17,6 +17,7 @@ from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, turns
 from .motion import FADE, faded, ground_kernel
 from .prior import BETWEEN, LEGS
 from .reach import Reach
+from .starting import turning
 
 RATE = 10.0
 """Rate of the springs of a standard adult on Earth [1/s]: down in half a second, and never pulled."""
@@ -73,7 +74,8 @@ def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float) -> C
         return memory
     goal = _upright(reach, memory.planted, floor)
     body = reach.physique.tables
-    still = replace(memory.start, centre=goal[:3], velocity=np.zeros(3), feet=memory.planted, feet_rates=np.zeros((2, 5)), ready=True, single=None)
+    still = turning(replace(memory.start, centre=goal[:3], velocity=np.zeros(3), feet=memory.planted, feet_rates=np.zeros((2, 5)), ready=True, single=None),
+                    leap)
     place = soles(memory.planted, body).mean(0) * FLAT + [0.0, floor, 0.0] if leap.place is None else np.asarray(leap.place, float)
     if place.shape != (3,) or not np.isfinite(place).all():
         return memory

@@ -43,8 +43,8 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
     Checks nothing: see `reach`.
     """
     place = np.asarray(place, float)
-    landing = (landing_feet(place, start.heading, physique.tables) if way.lands is None
-               else striding_feet(place, start.heading, physique.tables, way.lands))
+    landing = (landing_feet(place, start.lands, physique.tables) if way.lands is None
+               else striding_feet(place, start.lands, physique.tables, way.lands))
     planted = start.planted(floor, physique.tables)
     return _Draft(physique, start, way, planted, landing).plan()
 
@@ -99,7 +99,7 @@ class _Draft(Airborne):
         self._differ(self.angles[0])
         self.offsets = self._left_over(self.times)
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
-        self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0])
+        self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0], self.times)
         share = np.clip((self.times - self.off) / self.push.duration, 0.0, 1.0)
         rising = self._heels_rise(share)
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
@@ -152,7 +152,7 @@ class _Draft(Airborne):
         found by Broyden's method, in steps that turn it a little: none leads round by a somersault.
         """
         self.roots[-3:] = self.centres[-3:]  # a guess
-        wanted = self._upright(self.air_angles[-1:, 0])[0]
+        wanted = self._upright(self.air_angles[-1:, 0], self.down)[0]
         time = self.way.airtime
         spin, spun = np.zeros(3), np.zeros((3, 3))
         self._leave(spin)
@@ -162,6 +162,8 @@ class _Draft(Airborne):
             spun[:, k] = self.momentum - still
         gain = spun / time
         self.momentum[:] = 0.0
+        if self.way.turn:  # round once, and no other way
+            self.momentum[:] = gain @ [0.0, self.way.turned(self.down) - self.way.turned(self.leave), 0.0]
         change = before = np.zeros(3)
         for _ in range(ROUNDS):
             flown = self._flight(wanted, 1e-4, COARSE)

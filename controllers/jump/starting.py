@@ -1,22 +1,58 @@
-"""From where a jump starts: what it needs to know of a state, and whether it can start at this moment."""
+"""From where a jump starts: what it needs to know of a state, whether it can start at this moment, and what a jumper remembers of it."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
-from ..contract import CharacterState
+from ..contract import CharacterState, Leap
 from .body import FLAT, Physique, Start, soles, vectors
-from .motion import Plan
+from .motion import PLANT, Plan
 
 RUNNING = 1.2
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
 FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""
+HALF_TURN = 1e-3
+"""So little short of half a turn [rad] is one."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
+SPRINGS = 0.05
+"""So long after the lowest point of a landing [s] another leap may still go off from there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Jumping:
+    """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
+    plan is a fall. hits: how often. shift: (3,) x, z [m] of the ground frame from under the centre of mass, and its heading's [rad] from the plan's, as that began. asked: what is
+    not to be asked again until it was let go; refused: why the leap that was to follow can't be made."""
+
+    plan: Plan
+    time: float = 0.0
+    fault: str = ""
+    hits: int = 0
+    shift: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    asked: Leap | None = None
+    refused: str = ""
+
+    @staticmethod
+    def begun(made: Plan, state: CharacterState, asked: Leap | None = None, fault: str = "", hits: int = 0) -> Jumping:
+        """The memory of one who begins a plan in a state."""
+        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.path.heading], asked)
+
+    @property
+    def rebounds(self) -> bool:
+        """Whether its legs give to a landing on both feet, so that another leap could go off from there."""
+        made = self.plan
+        return not self.fault and made.path.lands is None and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
+
+    @property
+    def landed(self) -> bool:
+        """Whether the feet have come down."""
+        return self.time >= self.plan.touch_down
 
 
 def start_of(physique: Physique, state: CharacterState, crouched: bool = False) -> Start:
@@ -38,19 +74,27 @@ def start_of(physique: Physique, state: CharacterState, crouched: bool = False) 
     return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]), feet_rates, _single(state), crouched)
 
 
+def turning(start: Start, leap: Leap | None) -> Start:
+    """The same start of one who lands in the heading that a leap says, if it says one: the shorter way round, to the left where both are half a turn."""
+    if leap is None or leap.heading is None or not math.isfinite(leap.heading):
+        return start
+    turn = math.remainder(leap.heading - start.heading, math.tau)
+    return replace(start, turn=turn + math.tau if turn < -math.pi + HALF_TURN else turn)
+
+
 def rebounding(start: Start, made: Plan, time: float) -> Start:
     """The start of one who is `time` [s] into a plan and comes down: its landing is the crouch of the jump that follows."""
     n = int(np.clip(np.searchsorted(made.times, time), 1, len(made.times) - 1))
     gains = (made.velocities[n] - made.velocities[n - 1]) / (made.times[n] - made.times[n - 1])
     low = min(float(start.centre[1]), float(made.centres[n:, 1].min()))
-    return replace(start, velocity=made.moving(time)[1], acceleration=gains, ready=True, low=low, single=None)
+    return replace(start, heading=made.path.heading + made.path.turn, velocity=made.moving(time)[1], acceleration=gains, ready=True, low=low, single=None)
 
 
 def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterState:
     """The state of one who plays a plan that lands on both feet as it will stand there, at rest."""
     middle = soles(made.feet, physique.tables).mean(0)
     pose = made.at(made.duration if np.isinf(made.through) else made.lowest)
-    return replace(state, ground=np.array([middle[0], middle[2], made.path.heading]), velocity=np.zeros(3), pose=pose, contacts=np.ones(4, bool),
+    return replace(state, ground=np.array([middle[0], middle[2], made.path.heading + made.path.turn]), velocity=np.zeros(3), pose=pose, contacts=np.ones(4, bool),
                    memory=None, floor=float(made.feet[0, 1] - physique.tables.sole), previous=None, elapsed=0.0)
 
 

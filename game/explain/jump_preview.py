@@ -41,7 +41,7 @@ class Preview:
 
     stand, place: (3,) [m] the middle of the feet, and where it is to land. arc, beads: (N, 3), (M, 3) [m] where the centre
     of mass goes, and where it is on every beat. fault: why it can't be made; empty if it can. nearest: (3,) [m] the place
-    nearest to it that can be reached; None where there is none.
+    nearest to it that can be reached; None where there is none. heading: [rad] in which it is to land, None where nobody said so.
     """
 
     stand: np.ndarray
@@ -50,6 +50,7 @@ class Preview:
     beads: np.ndarray
     fault: str
     nearest: np.ndarray | None = None
+    heading: float | None = None
 
     @property
     def why(self) -> str:
@@ -85,17 +86,17 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
         return seen
     if before is not None and _same_way(before, seen):
         return replace(seen, nearest=before.nearest)
-    start = _pushing(jump, jump.start_of(state))
+    start = _pushing(jump, jump.start_of(state, leap))
     return replace(seen, nearest=jump.nearest(start, seen.place, float(state.floor), leap.airtime, solid))
 
 
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
     """A jump as it would be made from a state, among solid props."""
-    start, floor = _pushing(jump, jump.start_of(state)), float(state.floor)
+    start, floor = _pushing(jump, jump.start_of(state, leap)), float(state.floor)
     stand = jump.middle(start, floor)
     place = stand if leap.place is None else np.asarray(leap.place, float)
     way, why = jump.survey(start, place, floor, leap.airtime, solid)
-    return Preview(stand, place, *_flight(way), why)
+    return Preview(stand, place, *_flight(way), why, heading=leap.heading)
 
 
 def _pushing(jump: Jump, start: Start) -> Start:
@@ -137,6 +138,8 @@ def aimed(seen: Preview, props: Sequence[Prop]) -> list[Sketch]:
     neither."""
     tint = CANNOT if seen.fault else CAN
     drawn = [*ring(seen.place, tint), *_arc(seen.arc, seen.beads, tint, 1.0)]
+    if seen.heading is not None:
+        drawn += arrow(seen.place, seen.heading, tint)
     if seen.nearest is not None:
         drawn += ring(seen.nearest, CAN)
     return [*_shadow(seen, props, tint), *(replace(sketch, through=True) for sketch in drawn)]
@@ -167,6 +170,16 @@ def _arc(arc: np.ndarray, beads: np.ndarray, tint, opacity: float) -> list[Sketc
         return []
     return [Line("jump", arc, tint, 0.036, (0.8 * opacity, opacity)),
             *(Dot("jump", bead, PALE, 0.030 * opacity) for bead in beads)]
+
+
+def arrow(place: np.ndarray, heading: float, tint, radius: float = RING) -> list[Sketch]:
+    """An arrow out of a ring on the floor, to where somebody will face who lands there."""
+    c, s = math.cos(heading), math.sin(heading)
+    ahead, left = np.array([s, 0.0, c]), np.array([c, 0.0, -s])
+    middle, tip = place + [0.0, LIFT, 0.0], 2.2 * radius * ahead
+    head = np.stack([tip - 0.45 * radius * (ahead - side * left) for side in (1.0, -1.0)])
+    return [Line("jump", middle + np.stack([radius * ahead, tip]), tint, 0.045, flat=True),
+            Line("jump", middle + np.stack([head[0], tip, head[1]]), tint, 0.045, flat=True)]
 
 
 def ring(place: np.ndarray, tint, radius: float = RING) -> list[Sketch]:

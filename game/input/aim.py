@@ -2,7 +2,7 @@
 
 Standing, the stick pushes the ring away from the feet, and the body crouches as it will have to; walking or running, the ring lies ahead at the
 distance that the speed gives, and stays where it is let go. Without a push the jump goes straight up, the higher the
-longer it was held.
+longer it was held. Who stands and turns meanwhile, or keeps facing, says in which heading to land: the body then goes off as it stands.
 """
 
 from __future__ import annotations
@@ -17,12 +17,14 @@ import numpy as np
 from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.navigation import floor_at, in_world
 
-from .wish import Wish
+from .wish import Wish, in_view
 
 MOVING = 0.9
 """Faster than this [m/s] the jump goes on the way one goes."""
 PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
+SWINGS = 3.0
+"""How fast the heading turns in which to land [rad/s]."""
 FARTHEST = 2.6
 """How far from a standing body the ring may be [m]."""
 NEAR = 0.12
@@ -51,7 +53,7 @@ class Aim:
 
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
-    [m] in the world where somebody who moved let go of the ring.
+    [m] in the world where somebody who moved let go of the ring. heading: [rad] in which to land, None where nobody said so.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -60,6 +62,7 @@ class Aim:
     waiting: float = 0.0
     moving: bool = False
     place: tuple[float, float] | None = None
+    heading: float | None = None
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
@@ -74,23 +77,33 @@ class Aim:
             return Aim() if given_up else replace(self, waiting=self.waiting - dt * (not aloft))
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
-        moving = speed > MOVING
+        moving, heading = speed > MOVING, None
         if moving:
             far = AHEAD[0] + AHEAD[1] * speed
             offset = (far * float(velocity[0]) / speed, far * float(velocity[1]) / speed)
         else:
-            right, away = wish.move
-            c, s = math.cos(camera_yaw), math.sin(camera_yaw)
-            x = self.offset[0] + PUSH * dt * (away * s - right * c)
-            z = self.offset[1] + PUSH * dt * (away * c + right * s)
+            pushed = in_view(wish.move, camera_yaw)
+            x, z = (self.offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
             shrink = min(1.0, FARTHEST / max(math.hypot(x, z), 1e-9))
             offset = (x * shrink, z * shrink)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving)
+            heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, None, heading)
+
+    def _turned(self, wish: Wish, offset: tuple[float, float], camera_yaw: float, faces: float, dt: float) -> float | None:
+        """The heading [rad] in which to land `dt` seconds later; a body that faces so keeps facing, or begins to turn from there or from the ring."""
+        if math.hypot(*wish.look) > 0.0:
+            return math.atan2(*in_view(wish.look, camera_yaw))
+        heading = self.heading
+        if heading is None and wish.strafe:
+            heading = faces
+        if heading is None and wish.turn:
+            heading = faces if math.hypot(*offset) < NEAR else math.atan2(*offset)
+        return None if heading is None else math.remainder(heading + SWINGS * dt * wish.turn, math.tau)
 
     @property
     def facing(self) -> float | None:
         """The heading [rad] that a body about to jump from a stand turns to, if any."""
-        if self.moving or not (self.aiming or self.waiting) or math.hypot(*self.offset) < NEAR:
+        if self.moving or self.heading is not None or not (self.aiming or self.waiting) or math.hypot(*self.offset) < NEAR:
             return None
         return math.atan2(*self.offset)
 
@@ -114,9 +127,9 @@ class Aim:
         floor = float(state.floor)
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
-            return Leap(None, min(airtime, longest))
+            return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
-        return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]), slack=SLACK if self.moving else 0.0)
+        return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]), slack=SLACK if self.moving else 0.0, heading=self.heading)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""

@@ -10,7 +10,7 @@ import numpy as np
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import Steering, steer
 
-from .wish import Wish
+from .wish import Wish, in_view
 
 STEERING = Steering()
 
@@ -64,11 +64,11 @@ class Pilot:
         pace = self.pace
         throw = math.hypot(*wish.move)
         speed = pace.slow if wish.slow else pace.walk + (pace.run - pace.walk) * wish.run
-        x, z = _in_world(wish.move, camera_yaw)
+        x, z = in_view(wish.move, camera_yaw)
 
         facing = self.facing if self.locked or wish.strafe else None
         if math.hypot(*wish.look) > 0.0:
-            facing = math.atan2(*_in_world(wish.look, camera_yaw))
+            facing = math.atan2(*in_view(wish.look, camera_yaw))
         elif (self.locked or wish.strafe) and facing is None:
             facing = heading
         if facing is not None and wish.turn:
@@ -78,10 +78,3 @@ class Pilot:
         # a walker goes where the camera looks, so turning the walk means turning the camera
         swing = pace.turn * wish.turn if facing is None and throw > 0.0 else 0.0
         return replace(self, facing=facing), Command((speed * x, speed * z), facing, on_spot, swing)
-
-
-def _in_world(seen: tuple[float, float], camera_yaw: float) -> tuple[float, float]:
-    """A direction seen from the camera (right, away) as x, z in the world."""
-    cosine, sine = math.cos(camera_yaw), math.sin(camera_yaw)
-    right, away = seen
-    return away * sine - right * cosine, away * cosine + right * sine

@@ -31,7 +31,7 @@ class Jump:
     """A jump to `place`, x, y, z [m]; None: straight up. airtime: [s], None for the least effort.
 
     within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
-    take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming.
+    take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming. heading: [rad] in which it lands; None: as it went off.
     """
 
     place: tuple[float, float, float] | None = None
@@ -39,6 +39,7 @@ class Jump:
     within: float | None = None
     slow: float = 1.0
     aims: float = 0.0
+    heading: float | None = None
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,11 @@ class Script:
     def done(self) -> bool:
         """Whether every move is over."""
         return self.index >= len(self.moves)
+
+    @property
+    def leaps(self) -> bool:
+        """Whether its move ends with a jump: its run-up may go at what it leaps onto."""
+        return not self.done and self.moves[self.index].jump is not None
 
     def step(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         """The script `dt` seconds later, and what it asks of a character in `state` meanwhile."""
@@ -166,7 +172,7 @@ class Script:
         if move.runs:
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
             ready = far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
-        elif far > NEAR:
+        elif far > NEAR and jump.heading is None:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
             ready = abs(math.remainder(heading - float(state.ground[2]), math.tau)) < ASKEW
@@ -174,7 +180,7 @@ class Script:
             ready = True
         if not ready:
             return self, intent
-        leap = Leap(None if jump.place is None else place, jump.airtime)
+        leap = Leap(None if jump.place is None else place, jump.airtime, heading=jump.heading)
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         return replace(self, asked=self.asked + 1), replace(intent, leap=leap)

@@ -69,3 +69,10 @@ def unit_disc(x: float, y: float) -> tuple[float, float]:
     """(x, y), shortened to length 1 where it is longer: keyboard diagonals are no faster."""
     length = math.hypot(x, y)
     return (x / length, y / length) if length > 1.0 else (x, y)
+
+
+def in_view(seen: tuple[float, float], camera_yaw: float) -> tuple[float, float]:
+    """A direction seen from the camera (right, away) as x, z in the world."""
+    cosine, sine = math.cos(camera_yaw), math.sin(camera_yaw)
+    right, away = seen
+    return away * sine - right * cosine, away * cosine + right * sine

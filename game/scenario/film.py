@@ -23,7 +23,7 @@ from ..explain import broken, explained, led, pointed, rows, stepping, with_came
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
-from ..world import DT, RATE, Character, Recorded, World, avoiding, beginning, figures, follower_of, methods, tracked_of
+from ..world import DT, RATE, Character, Recorded, World, avoiding, beginning, figures, follower_of, methods, stopped, tracked_of
 from .actor_table import ActorTable
 from .camera_operator import Operator
 from .scenario import Scenario
@@ -129,7 +129,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
         moves = [script.step(character.state, DT) if character.there(world.number) else (script, Intent())
                  for script, character in zip(scripts, world.characters)]
         scripts = tuple(script for script, _ in moves)
-        intents = [intent for _, intent in moves]
+        intents = [intent if script.leaps else stopped(character.state, intent, props)
+                   for (script, intent), character in zip(moves, world.characters)]
         ways = [script.wished(character.state) for script, character in zip(scripts, world.characters)]
         world = world.step(avoiding(world, intents, ways, groups) if scenario.avoid else intents)
 

@@ -25,7 +25,8 @@ class MoveTable(Table):
     """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to and jump. Angles in degrees.
 
     walk_to: x, z [m], straight there. go_to: x, z [m] as people go there, round what stands about, to stand there with a `heading`, by
-    default as it comes; arrive: no later than this after the move began [s].
+    default as it comes; arrive: no later than this after the move began [s]. A jump may have a `heading` to land in, too: then nobody turns to
+    the place first, and turns in the air.
 
     jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
     velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
@@ -71,12 +72,13 @@ class MoveTable(Table):
         if self.facing is not None and kinds[0] == "velocity":
             raise ValueError("`facing` goes with walk_to, path or stop; velocity has its own ω")
         if self.facing is not None and jumps:
-            raise ValueError("`facing` goes with walk_to, path or stop; who jumps faces where it goes")
+            raise ValueError("`facing` goes with walk_to, path or stop; who jumps faces where it goes, or lands with a `heading`")
         if self.facing is not None and self.go_to is not None:
             raise ValueError("`facing` goes with walk_to, path or stop; who goes to a place turns as people do, and stands there with a `heading`")
-        for name in ("heading", "arrive"):
-            if getattr(self, name) is not None and self.go_to is None:
-                raise ValueError(f"`{name}` goes with go_to")
+        if self.heading is not None and self.go_to is None and not jumps:
+            raise ValueError("`heading` goes with go_to, jump_to or jump: how one stands there, or lands")
+        if self.arrive is not None and self.go_to is None:
+            raise ValueError("`arrive` goes with go_to")
         for name in ("velocity", "until"):
             value = getattr(self, name)
             if value is not None and abs(value[2]) > abs(value[0]) + 1e-9:
@@ -87,20 +89,20 @@ class MoveTable(Table):
     def move(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Move:
         """The same in SI units, for somebody who jumps among props."""
         points = self.path or ((self.walk_to,) if self.walk_to is not None else ())
-        leap = None
+        leap, heading = None, None if self.heading is None else math.radians(self.heading)
         if self.jump is not None:
-            leap = Jump(airtime=airtime_up(jumper.physique, self.jump, jumper.gravity), aims=self.aim or 0.0)
+            leap = Jump(airtime=airtime_up(jumper.physique, self.jump, jumper.gravity), aims=self.aim or 0.0, heading=heading)
         elif self.jump_to is not None:
             x, z = self.jump_to[0], self.jump_to[-1]
             y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
-            leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]), self.aim or 0.0)
+            leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]), self.aim or 0.0, heading)
             points = (*points, (x, z)) if points else ()
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
                     until=None if self.until is None else _forward(self.until),
                     points=points, speed=self.speed or 1.2,
                     facing=None if self.facing is None else math.radians(self.facing), jump=leap,
-                    goal=None if self.go_to is None else Goal(self.go_to, None if self.heading is None else math.radians(self.heading), self.arrive))
+                    goal=None if self.go_to is None else Goal(self.go_to, heading, self.arrive))
 
 
 def _forward(velocity) -> tuple[float, float, float]:

@@ -69,9 +69,10 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
             wish = Wish()
         jump = jump_of(character.controller)
         stands = state if jump is None else landing(jump, state)  # in the air one aims from where one will land
-        aim = player.aim.step(wish, player.camera.yaw, stands, leaving(state), DT, aloft(state)) if jump is not None else player.aim
+        held = replace(wish, strafe=wish.strafe or player.pilot.locked)
+        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state)) if jump is not None else player.aim
         if aim.stands:
-            wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0))
+            wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
         camera = player.camera.turned(command.swing * DT) if command.swing else player.camera
         goal = None if math.hypot(*wish.move) > 0.0 or wish.turn or aim.stands or wish.jump else player.goal  # hands take over at once

@@ -10,6 +10,7 @@ from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, la
 from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, Learning, Methods, methods, usual
 from .primitive import nearest, posed
 from .recorded import Recorded
+from .solid import stopped
 from .tracked_footage import Filmed
 from .watched import Watches, rig, switched, tracked_of, tracked_vertices, tracker_ready, tracking_of, watches_of
 from .world import DT, RATE, Character, FixedStep, World, figures, ground_between, pose_between
@@ -18,6 +19,6 @@ __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "SHIPPED", "STAGES", "TINTS", "Character", "Embodied", "Errors",
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
     "figures", "follower_of",
-    "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "switched",
+    "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "stopped", "switched",
     "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "watches_of",
 ]

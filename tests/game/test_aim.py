@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.contract import Duty
 from gambol.controllers.navigation import drift
-from gambol.game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, Aim
+from gambol.game.input.aim import AIRTIME, FARTHEST, LONGEST, PATIENCE, SWINGS, Aim
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box
 from gambol.game.world.world import DT
@@ -116,3 +116,26 @@ def test_a_runner_s_ring_stays_where_it_was_let_go():
         assert place is None or np.array_equal(target, place)
         place = target
     assert np.hypot(*(place[[0, 2]] - state.ground[:2])) < 1.3, "it has come nearer"
+
+
+def test_turning_while_one_aims_says_in_which_heading_to_land_and_nobody_turns_to_the_ring():
+    aim = aimed(Wish(jump=True, move=(0.0, 1.0)), 0.5, standing())
+    assert aim.heading is None and aim.facing == pytest.approx(0.0)
+    left = aimed(Wish(jump=True, turn=1.0), 0.4, standing(), aim)
+    assert left.heading == pytest.approx(0.4 * SWINGS) and left.facing is None
+    right = aimed(Wish(jump=True, turn=-1.0), 0.4, standing(), aim)
+    assert right.heading == pytest.approx(-0.4 * SWINGS)
+    asked = left.step(FREE, 0.0, standing(), False, DT).asked(standing(), (), 9.81)
+    assert asked.heading == left.heading and asked.place[2] > 2.5
+
+
+def test_who_keeps_facing_lands_as_he_stands_wherever_the_ring_is_pushed():
+    aim = aimed(Wish(jump=True, move=(1.0, 0.0), strafe=True), 0.5, standing(heading=0.3))
+    assert aim.heading == pytest.approx(0.3) and aim.asked(standing(), (), 9.81) is None
+    assert aim.readied(standing(heading=0.3), (), 9.81).heading == pytest.approx(0.3), "he crouches as he stands"
+
+
+def test_a_stick_that_looks_points_the_landing_as_the_camera_sees_it_and_who_walks_has_none():
+    aim = aimed(Wish(jump=True, look=(0.0, 1.0)), 0.1, standing(), yaw=1.0)
+    assert aim.heading == pytest.approx(1.0)
+    assert aimed(Wish(jump=True, turn=1.0), 0.1, standing((1.5, 0.0, 0.0))).heading is None

@@ -58,7 +58,7 @@ FAULTS = [
     ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump, or jump_to with a run-up; has none"),
     ("walk_to = [0, 0], speed = 1", "go_to = [0, 0], facing = 3", "actors[0].moves[1]: `facing` goes with walk_to, path or stop; who goes to a place"),
     ("walk_to = [0, 0], speed = 1", "go_to = [0, 0], speed = 1", "actors[0].moves[1]: `speed` goes with walk_to or path"),
-    ("walk_to = [0, 0], speed = 1", "walk_to = [0, 0], heading = 1", "actors[0].moves[1]: `heading` goes with go_to"),
+    ("walk_to = [0, 0], speed = 1", "walk_to = [0, 0], heading = 1", "actors[0].moves[1]: `heading` goes with go_to, jump_to or jump"),
     ("walk_to = [0, 0], speed = 1", "walk_to = [0, 0], arrive = 1", "actors[0].moves[1]: `arrive` goes with go_to"),
     ("walk_to = [0, 0], speed = 1", "go_to = [0], heading = 1", "actors[0].moves[1].go_to[1]: is missing, and needed"),
     ("walk_to = [0, 0], speed = 1", "go_to = [0, 0], jump_to = [0, 1]", "actors[0].moves[1]: needs exactly one of"),

@@ -28,14 +28,14 @@ def flown(seed, momentum, moving=1.0, count=40):
     return roots, local, arc, worst
 
 
-def angular_momenta(roots, local):
-    """The angular momentum (N − 1, 3) of each step about the centre of mass."""
+def angular_momenta(roots, local, step=STEP):
+    """The angular momentum (N − 1, 3) of each step [s] about the centre of mass."""
     anatomy = PHYSIQUE.anatomy
     positions, turned = forward_kinematics(PHYSIQUE.skeleton, roots, local)
     places = segment_centres(anatomy, positions, turned) - centre_of_mass(anatomy, positions, turned)[:, None]
     turned = turned[:, anatomy.joints]
-    rate, middle = np.diff(places, axis=0) / STEP, 0.5 * (turned[1:] + turned[:-1])
-    spin = log(turned[1:] @ np.swapaxes(turned[:-1], -1, -2)) / STEP
+    rate, middle = np.diff(places, axis=0) / step, 0.5 * (turned[1:] + turned[:-1])
+    spin = log(turned[1:] @ np.swapaxes(turned[:-1], -1, -2)) / step
     own = np.einsum("tsij,sjk,tslk,tsl->tsi", middle, anatomy.inertias, middle, spin)
     return (anatomy.masses[:, None] * np.cross(0.5 * (places[1:] + places[:-1]), rate) + own).sum(1)
 

@@ -30,6 +30,9 @@ NARROW = 0.015
 """How far to its side a foot comes down on which one runs on [m], at standard height."""
 TRAIL = (0.16, 0.30)
 """How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
+TURNED = 0.2, 0.92
+"""Which share of its turn a body has made as it leaves the floor and as it touches down."""
+
 
 @dataclass(frozen=True, eq=False)
 class Start:
@@ -40,6 +43,7 @@ class Start:
     (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
     or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told. low: it comes down from a
     jump, and its legs give until the centre of mass is so high [m]; None where it does not. acceleration: (3,) [m/s²] of the centre then.
+    turn: how far to the left it turns until it lands [rad], looking where it goes; None where nobody told.
     """
 
     root: np.ndarray
@@ -54,6 +58,17 @@ class Start:
     ready: bool = False
     low: float | None = None
     acceleration: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    turn: float | None = None
+
+    @property
+    def lands(self) -> float:
+        """The heading [rad] in which it lands."""
+        return self.heading + (self.turn or 0.0)
+
+    @property
+    def leaves(self) -> float:
+        """The heading [rad] in which it leaves the floor."""
+        return self.heading + TURNED[0] * (self.turn or 0.0)
 
     def planted(self, floor: float, body: BodyTables) -> np.ndarray:
         """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""

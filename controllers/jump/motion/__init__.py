@@ -6,11 +6,11 @@ from .airborne import FADE, FREE, GROUND_RATE, HEEL, PLANT, SAME, Airborne, fade
 from .descent import descent
 from .fall import fall, over_nothing, struck
 from .flight import flight_kernel
-from .path_estimate import Path, path
+from .path_estimate import SPINS, Path, path
 from .plan import Plan
 from .thrust import Push, push
 
 __all__ = [
-    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "SAME", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
+    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "SAME", "SPINS", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
     "flight_kernel", "ground_kernel", "over_nothing", "path", "push", "struck",
 ]

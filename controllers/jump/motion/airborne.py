@@ -12,6 +12,7 @@ from ..body import (FLEX, TOES_DOWN, Physique, Start, hermite, measures, monoton
                     carriage, turns, vectors)
 from ..prior import BETWEEN, EACH, LEGS
 from .landing import TIME, absorb
+from .looking import Look
 from .path_estimate import Path
 
 GROUND_RATE, AIR_RATE = 72.0, 90.0
@@ -71,6 +72,7 @@ class Airborne:
             free = self.legs[4 - 4 * way.lands:8 - 4 * way.lands]
             self.swings = slice(int(free[0]), int(free[-1]) + 1)
             self.swung = keyed_leg(np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
+        self.look = None if start.turn is None else Look.of(start, way, self.support.mean(0), physique.skeleton)
         rows = way.keys[3 * BETWEEN + 1:, :LEGS].copy()  # whoever comes down otherwise carried comes to them by and by
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
         sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
@@ -101,11 +103,12 @@ class Airborne:
         """What is left (N, J, 3) [rad] of the start's pose at times (N,) [s], pelvis and legs apart."""
         left = faded(self.offset, self.offset_rate, FADE, times)
         left[np.einsum("njk,njk->nj", left, left) < 1e-12] = 0.0
-        return left
+        return left if self.look is None else left + self.look.turns(times, self.count)
 
-    def _upright(self, lean: np.ndarray) -> np.ndarray:
-        """The pelvis' turns (N, 3, 3), facing where the jumper faces and leaning (N,) [rad]."""
-        return yaw(self.start.heading) @ turns(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
+    def _upright(self, lean: np.ndarray, time: np.ndarray | float = 0.0) -> np.ndarray:
+        """The pelvis' turns (N, 3, 3), facing where the jumper faces at times (N,) or one time [s], and leaning (N,) [rad]."""
+        facing = self.start.heading if not self.way.turn else self.start.heading + self.way.turned(time)
+        return yaw(facing) @ turns(np.asarray(lean)[:, None] * [1.0, 0.0, 0.0])
 
     def _prepare_air(self) -> None:
         """The flight's times, arc and carriage."""
@@ -167,9 +170,9 @@ class Airborne:
         feet[..., :5] = self.landing
         feet[..., 4] = self._toes_down(after)[:, None]
         self._free(feet)
-        upright = self._upright(angles[:, 0])
+        upright = self._upright(angles[:, 0], np.inf)
         rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
-        turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0])[0].T), rate, STEADY, after)) @ upright
+        turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0], np.inf)[0].T), rate, STEADY, after)) @ upright
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         if self.way.lands is not None:
             local[:, self.swings] = self.swung(after)

@@ -102,7 +102,8 @@ def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any
     time, land, place = _down(physique, start.centre, velocity, around, gravity)
     prior, falls = Prior.load(), max(-float(velocity[1] + gravity[1] * time), 0.0)
     features = prior.features(falls, 0.0, 0.0, physique.size, False)
-    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre, start.centre, keys=prior.keys(features, features))
+    way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre, start.centre, heading=start.heading,
+               keys=prior.keys(features, features))
     return _Fall(physique, start, way, landing_feet(place, start.heading, physique.tables)).plan()
 
 

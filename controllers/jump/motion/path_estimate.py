@@ -7,10 +7,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...body import yaw
-from ..body import (FLAT, TRAIL, Physique, Start, apex_airtime, carriage, carried, least_effort, measures, soles,
-                    take_off_velocity)
+from ..body import (FLAT, TRAIL, Physique, Start, apex_airtime, carriage, carried, hermite, least_effort, measures, monotone, soles,
+                    take_off_velocity, TURNED)
 from ..prior import BETWEEN, EACH, LEGS, Prior
 from .take_off import Running, Standing
 from .thrust import Push, push
@@ -22,6 +23,10 @@ SOFT = (0.02, 2.5, 0.05)
 bent legs give way without the knees flying. At standard height and what an adult falls."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
+TURN_SETTLES = 0.25
+"""So long after it touched down [s] a body has made all of its turn."""
+SPINS = 6.0, 8.0
+"""How fast a body turns in the air at most that chooses its airtime, and that was told one [rad/s]."""
 HIGHER = 0.14, 0.9
 """Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
 ahead, the sooner he is off."""
@@ -49,7 +54,7 @@ class Path:
     stance: (3,) [m] the middle of the soles that push; pressed: (3,) from where they begin to. dip: how long before the lowest point it starts to go down [s]. strong:
     whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
     foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down. lands: on which foot it lands to run
-    on, 0 left, 1 right; None on both.
+    on, 0 left, 1 right; None on both. turn: [rad] to the left from `heading` until it lands.
     """
 
     low: np.ndarray
@@ -72,6 +77,17 @@ class Path:
     low_arms: bool = False
     lands: int | None = None
     keys: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    turn: float = 0.0
+
+    def turned(self, time: ArrayLike) -> np.ndarray:
+        """How far (...) [rad] to the left it has turned at times (...) [s] after it began."""
+        if not self.turn or self.push is None:
+            return np.zeros(np.shape(time))
+        leave = self.wind_up + self.push.duration
+        down = leave + self.airtime
+        times = np.array([0.0, self.wind_up, leave, down, down + TURN_SETTLES])
+        made = self.turn * np.array([0.0, 0.0, *TURNED, 1.0])
+        return hermite(times, made, monotone(times, made), np.clip(time, 0.0, times[-1]))
 
     @property
     def falling(self) -> np.ndarray:
@@ -101,6 +117,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     squat = min(SQUAT * max(float(goal[1]) - floor, 0.0), DEEPEST_SQUAT * size)
     # where it leaves, how far behind its feet and how much lower it lands
     guess = np.array([middle[0], floor + upright.leave(0.0), middle[2], 0.0, 0.0])
+    turn = start.turn or 0.0
+    least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     heights, crouch = upright, 0.0
     for _ in range(ROUNDS):
@@ -109,7 +127,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(leave, land, start.velocity * FLAT if start.single is not None else np.zeros(3), gravity),
-            (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity))
+            (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.single is not None)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
@@ -140,7 +158,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
                 push(leave - low, passing, velocity, gravity) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, lands, keys)
+                start.heading, start.single is not None, low_arms, lands, keys, turn)
 
 
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:

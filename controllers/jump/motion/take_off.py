@@ -138,7 +138,7 @@ class Standing:
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
         ahead = self.balls * FLAT + lead + [0.0, leave[1], 0.0]
-        ahead[1] = stretched(self.physique, self.angles, self.feet, HEEL_UP, TAKE_OFF_REACH, start.heading, ahead)
+        ahead[1] = stretched(self.physique, self.angles, self.feet, HEEL_UP, TAKE_OFF_REACH, start.leaves, ahead)
         leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf

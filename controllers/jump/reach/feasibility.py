@@ -10,8 +10,8 @@ import numpy as np
 from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ...contract import Unable
 from ...navigation import gap
-from ..body import FLAT, Physique, along, measures, carriage, turns
-from ..motion import Path, Plan, Push
+from ..body import FLAT, TURNED, Physique, along, measures, carriage, turns
+from ..motion import SPINS, Path, Plan, Push
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
 
@@ -27,6 +27,8 @@ STOPS = 6.0, 0.5
 standard height."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
+RUNS_TURNED = 0.8
+"""So far at most turns in the air who pushes off a run [rad]."""
 TILT = 75.0
 """No body is tilted farther from upright in the air, or comes down half as far [°]."""
 
@@ -49,6 +51,11 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
         return "there is no such arc"
     if not way.strong:
         return _weak(physique, way, floor)
+    if way.running and abs(way.turn) > RUNS_TURNED:
+        return f"who runs turns by {np.degrees(RUNS_TURNED):.0f}° at most in the air, not by {np.degrees(abs(way.turn)):.0f}°"
+    least = (TURNED[1] - TURNED[0]) * abs(way.turn) / SPINS[1]
+    if way.airtime < least:
+        return f"too short to turn by {np.degrees(abs(way.turn)):.0f}°: that takes {least:.2f} s in the air"
     if way.push is None:
         return f"no push leaves the floor for {way.airtime:.2f} s in the air"
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
@@ -131,7 +138,8 @@ def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray,
     local = np.tile(np.eye(3), (len(time), len(skeleton), 1, 1))
     for one, posed in zip(angles, local):
         carriage.carry_kernel(one, carriage.joints_of(skeleton), posed)
-    local[:, 0] = yaw(way.heading) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    facing = way.heading if not way.turn else way.heading + way.turned(way.wind_up + (0.0 if way.push is None else way.push.duration) + time)
+    local[:, 0] = yaw(facing) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
     positions, turned = forward_kinematics(skeleton, np.zeros((len(time), 3)), local)
     positions -= centre_of_mass(physique.anatomy, positions, turned)[:, None]
     ends = end_positions(skeleton, positions, turned)

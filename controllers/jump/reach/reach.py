@@ -95,7 +95,7 @@ class Reach:
         if around and below < place[1] - FLUSH:
             return f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m"
         body = self.physique.tables
-        corners = soles(landing_feet(place, start.heading, body), body)
+        corners = soles(landing_feet(place, start.lands, body), body)
         if around and min(floor_at(x, z, around, place[1] + FLUSH) for x, _, z in corners) < place[1] - FLUSH:
             return "too near an edge: only part of its feet would find floor"
         return ""
@@ -159,5 +159,5 @@ class Reach:
         body = self.physique.tables
         feet = start.planted(floor, body)
         pushing = feet if start.single is None else feet[start.single:start.single + 1]
-        return path(self.physique, start, pushing, landing_feet(place, start.heading, body), floor,
+        return path(self.physique, start, pushing, landing_feet(place, start.lands, body), floor,
                     self.gravity, airtime, low_arms, self.prior, tucked)
