@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from gambol import assets
 
 from ..body import Pose, Skeleton
-from ..contract import CharacterState, Controller, Intent, Status, level, seconds
+from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, level, seconds
 from .control_space import ControlSpace
 from .entry import entered
 from .first_stride import readiness
@@ -28,6 +28,8 @@ from .uneven_ground import FLAT, tops
 from .velocity_correction import space_of
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
+ELSEWHERE = 0.1
+"""A place to come to rest at that moves by more than this [m] is another, for which nobody stops yet."""
 
 
 class Locomotion(Controller):
@@ -120,7 +122,7 @@ class Locomotion(Controller):
 
         A state whose `ground` was replaced goes on from there, feet and all: ValueError unless it is
         finite, and for a state that did not come from a controller over this library (`enter` it).
-        intent.velocity broadcasts against the state's batch axes. A wish that is not finite counts
+        intent.velocity and intent.halt broadcast against the state's batch axes. A wish that is not finite counts
         as no wish. One beyond what the library holds is walked slower on the same arc (so a hard
         turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
         turns or side-steps less.
@@ -137,6 +139,7 @@ class Locomotion(Controller):
         memory["looks"] = 0
         if intent.look is not None:
             self._look(memory, intent.look, shape, state.floor)
+        _halt(memory, intent.halt, wish, shape)
         ground = tops(intent.around) if len(intent.around) else FLAT
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
@@ -189,6 +192,19 @@ class Locomotion(Controller):
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""
         return Status("running")
+
+
+def _halt(memory: np.ndarray, halt: ArrayLike | None, wish: np.ndarray, shape: tuple[int, ...]) -> None:
+    """Note where (..., 3) characters (N,) are to come to rest; none that is not finite. Who stops for a place goes on with that until
+    he wishes (N, 3) for something else."""
+    if halt is None:
+        memory["halts"] *= ~wish.any(-1)
+        return
+    place = _spread(halt, shape + (3,)).reshape(-1, 3)
+    sound = np.isfinite(place[:, :2]).all(-1) & (np.abs(place[:, :2]) <= HIGHEST).all(-1)
+    same = sound & (memory["halts"] > 0) & (np.hypot(*(place - memory["halt"])[:, :2].T) < ELSEWHERE)
+    memory["halts"] = np.where(same, memory["halts"], sound)
+    memory["halt"] = np.where(sound[:, None], place, 0.0)
 
 
 def _spread(value: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:

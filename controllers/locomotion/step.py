@@ -15,6 +15,7 @@ from .foot_lock import at_rest, place_feet
 from .foothold import plan_footholds, room_to_plan, stride
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
+from .halt import heed_halt
 from .idle import add_idle, idle_kernel
 from .last_stride import until_together
 from .foot_points import foot_points, on_floor
@@ -56,6 +57,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     ahead = room_to_plan(memory["weights"].shape[1], joints)
     for n in range(memory.shape[0]):
         m = memory[n]
+        heed_halt(m, wish[n], settings.acceleration * settings.agility, dt)
         leave_rest(m, wish[n])
         lean = leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt))
         shape_command(m, wish[n], lean, dt, settings, table, walk, run, legs.stance, p, q)
