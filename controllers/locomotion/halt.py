@@ -11,7 +11,7 @@ import math
 from ..compiled import kernel
 from .last_stride import AHEAD, NOWHERE, STOPS, lets_go, time_to_stop, to_halt
 
-THERE, STRAIGHT = 0.035, 0.06
+THERE, STRAIGHT = 0.02, 0.034
 """Who stands so near to the place [m], so nearly turned as he should [rad], stays."""
 NEAR = 0.1
 """Nearer than this [m] his way is bent no more …"""

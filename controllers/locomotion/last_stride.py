@@ -33,16 +33,18 @@ GLIDE = 0.15
 EVEN, STEEPEST = 1.0, 3.0
 """Speed goes with these powers of the time that is left, while the foot is still on its way that the body will stand on, and at most; at first
 with the one that goes on braking as hard as he does already."""
-SHORT, LONGER = 0.7, 0.3
-"""Who stops at a place slows down with this power of the time that is left at least, and sets a foot down at most so far [m] from where it would come down."""
-NOWHERE, AHEAD, STOPS = 0, 1, 2
-"""Whether there is a place where somebody is to come to rest: none; one ahead; and he lets go of his wish for it."""
+SHORT, LONGER = 0.7, 0.2
+"""He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
+NOWHERE, AHEAD, STOPS = range(3)
+"""Whether there is a place where somebody is to come to rest: none; one ahead; he stops there, since he has let go of his wish for it or chose it himself."""
 HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
 OVER = 0.18
 """It comes over its feet with this half-life [s]."""
 BESIDE, DECIDED = 0.08, 0.9
 """Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second."""
+TOWARDS, PAST = 0.9, 0.25
+"""Who goes to a place does so at less than the angle with this cosine; one that is this near, but not ahead, has been passed [m]."""
 LATEST = 3.0
 """No stop takes longer than this [s]."""
 BRAKES = 0.15, 1.5
@@ -53,27 +55,55 @@ NO_WISH = 0.02
 
 @kernel
 def plan_stop(m, most, stance):
-    """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, and
-    how steeply he slows down: so that he comes to rest over the foot that stands. most: what legs push [m/s²]. stance:
-    where heels and balls are at rest (4, 2) [m]."""
+    """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, the place
+    where he comes to rest, and how steeply he slows down for it. most: what legs push [m/s²]. stance: where heels and balls are at
+    rest (4, 2) [m]."""
     if m.settled or m.halts != STOPS and abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
         m.stop, m.waits = 0.0, 0
         return
     speed = math.hypot(m.command[0], m.command[2])
     if m.waits:
         return
-    if m.stop > 0.0:
-        m.steep = _steepness(m, speed, stance)
-        return
-    if m.family != WALK or speed < LEAST and m.halts != STOPS:
-        return
-    left, pace, far = (STRIKE - m.phase) % 0.5, cadence_kernel(m), to_halt(m) if m.halts == STOPS else 0.0
-    while not _ends(left, pace, speed, far, most, m.halts == STOPS):
-        left += 0.5
-    m.stop = left
-    braking = -(m.rate[0] * m.command[0] + m.rate[2] * m.command[2]) / max(speed * speed, 1e-9)
-    m.steep = min(max(braking * time_to_stop(m), EVEN), STEEPEST)
-    m.steep = _steepness(m, speed, stance)
+    if m.stop <= 0.0:
+        if m.family != WALK or speed < LEAST and m.halts != STOPS:
+            return
+        left, pace, far = (STRIKE - m.phase) % 0.5, cadence_kernel(m), to_halt(m) if m.halts == STOPS else 0.0
+        while not _ends(left, pace, speed, far, most, m.halts == STOPS):
+            left += 0.5
+        m.stop = left
+        if m.halts != STOPS:
+            _choose_place(m, speed, stance)
+    m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
+
+
+@kernel
+def _choose_place(m, speed, stance):
+    """Where somebody comes to rest who stops now: over the foot that he will stand on, if that comes down soon or stands; else as he gets there by
+    slowing down evenly, or by going on to brake as hard as he does."""
+    time = time_to_stop(m)
+    steep = min(max(-(m.rate[0] * m.command[0] + m.rate[2] * m.command[2]) / (speed * speed) * time, EVEN), STEEPEST)
+    if m.stop < AT_PLACE:
+        steep = min(max(speed * time / max(_to_foot(m, speed, stance), 0.01) - 1.0, EVEN), STEEPEST)
+    time /= steep + 1.0
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    m.halt[0] = m.ground[0] + (c * m.command[2] + s * m.command[0]) * time
+    m.halt[1] = m.ground[1] + (c * m.command[0] - s * m.command[2]) * time
+    m.halt[2] = math.nan
+    m.halts = STOPS
+
+
+@kernel
+def _to_foot(m, speed, stance):
+    """How far on somebody is over the foot that he will stand on [m], where it stands or will come down."""
+    c, s, point, far = math.cos(m.ground[2]), math.sin(m.ground[2]), np.empty(2), 0.0
+    foot = 1 - _last(m)
+    for k in range(2):
+        shown_kernel(m, 2 * foot + k, point)
+        if m.stop > 0.5:  # it is not down yet
+            x, z = m.coming[foot, k, 0] - m.ground[0], m.coming[foot, k, 1] - m.ground[1]
+            point[0], point[1] = c * x - s * z, s * x + c * z
+        far += 0.5 * ((point[1] - stance[2 * foot + k, 1]) * m.command[0] + (point[0] - stance[2 * foot + k, 0]) * m.command[2]) / speed
+    return far
 
 
 @kernel
@@ -87,8 +117,8 @@ def _ends(left, pace, speed, far, most, place):
 def lets_go(m, most):
     """Whether somebody who walks is so near to where he is to come to rest that he stops now: by the soonest strike by which an even stop leads there."""
     speed, pace, far = math.hypot(m.command[0], m.command[2]), cadence_kernel(m), to_halt(m)
-    if far <= 0.0:
-        return True
+    if far <= 0.0:  # he turns to it, or is past it
+        return math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) < PAST
     if m.family != WALK:
         return far <= speed * BRAKES[0] + speed * speed / (BRAKES[1] * most)
     left, soonest = (STRIKE - m.phase) % 0.5, max(AT_PLACE / pace + GLIDE, speed / (HARD * most))
@@ -102,25 +132,12 @@ def lets_go(m, most):
 
 @kernel
 def to_halt(m):
-    """How far somebody still is from where he is to come to rest [m], negative where he is past it."""
+    """How far somebody still is from where he is to come to rest [m], 0 where he does not go there."""
     x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     ahead = (s * x + c * z) * m.command[0] + (c * x - s * z) * m.command[2]
-    return math.hypot(x, z) if ahead > 0.0 else 0.0
-
-
-@kernel
-def _steepness(m, speed, stance):
-    """The power of the time that is left with which a body slows down, so that it has come as far as the foot is that it will stand on."""
-    if speed <= 0.0:
-        return EVEN
-    if m.stop > 0.5:  # that one is not down yet
-        return min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST) if m.halts == STOPS else m.steep
-    point, far = np.empty(2), 0.0
-    for k in range(2 - 2 * _last(m), 4 - 2 * _last(m)):
-        shown_kernel(m, k, point)
-        far += 0.5 * ((point[1] - stance[k, 1]) * m.command[0] + (point[0] - stance[k, 0]) * m.command[2]) / speed
-    return min(max(speed * time_to_stop(m) / max(far, 0.01) - 1.0, SHORT if m.halts == STOPS else 1.0), STEEPEST)
+    far = math.hypot(x, z)
+    return far if ahead > TOWARDS * far * math.hypot(m.command[0], m.command[2]) else 0.0
 
 
 @kernel
@@ -158,13 +175,10 @@ def time_to_stop(m):
 
 
 @kernel
-def come_over(m, stance, most, dt):
-    """Lead the command of a body whose feet wait: it glides on until it is over them. most: what legs push [m/s²]."""
-    x, z, point = 0.0, 0.0, np.empty(2)
-    for k in range(4):
-        shown_kernel(m, k, point)
-        x += 0.25 * (stance[k, 0] - point[0])
-        z += 0.25 * (stance[k, 1] - point[1])
+def come_over(m, most, dt):
+    """Lead the command of a body whose feet wait: it glides on to where it comes to rest. most: what legs push [m/s²]."""
+    c, s, x, z = math.cos(m.ground[2]), math.sin(m.ground[2]), m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
+    x, z = s * z - c * x, -s * x - c * z
     m.rate[0] = (spring_kernel(z, m.command[0], 0.0, OVER, dt)[1] - m.command[0]) / dt
     m.rate[2] = (spring_kernel(x, m.command[2], 0.0, OVER, dt)[1] - m.command[2]) / dt
     share = min(most / max(math.hypot(m.rate[0], m.rate[2]), 1e-9), 1.0)
