@@ -6,6 +6,7 @@ import zlib
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from math import ceil
 from os import PathLike
 
 import numpy as np
@@ -28,6 +29,8 @@ from .uneven_ground import FLAT, tops
 from .velocity_correction import space_of
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
+FINEST = 1 / 60
+"""A longer step is made in parts no longer than this [s], as feet come down and gaits change at its moments."""
 ELSEWHERE = 0.1
 """A place to come to rest at that moves by more than this [m] is another, for which nobody stops yet."""
 
@@ -144,9 +147,11 @@ class Locomotion(Controller):
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
-        floor = _spread(state.floor, shape).reshape(-1)
-        here = floor.copy()
-        step_kernel(memory, wish, dt, self.settings, *self.tables, ground, here, root, local)
+        here = _spread(state.floor, shape).reshape(-1)
+        parts = ceil(dt / FINEST - 1e-6)
+        for _ in range(parts):
+            floor = here.copy()
+            step_kernel(memory, wish, dt / parts, self.settings, *self.tables, ground, here, root, local)
         root[:, 1] += floor
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)
