@@ -9,7 +9,7 @@ import numpy as np
 from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
-from .kernel import HIPS_AT, LABELS_AT, clamp_kernel, inner_kernel
+from .kernel import HIPS_AT, clamp_kernel, inner_kernel
 from .last_stride import come_over, plan_stop, time_to_stop
 from .memory import RUN, WALK
 from .root_motion import advance, cadence_kernel
@@ -23,8 +23,6 @@ LEFT_OVER = 0.4
 """Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
 GRAVITY, SPARE = 9.81, 0.15
 """Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
-MOMENTS, STANDS = 6, (0.1, 0.3)
-"""So many moments of a step are looked at for a runner's stance; a foot stands from the first to the second of these labels on."""
 PIECES = 2
 """The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
 
@@ -48,10 +46,11 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
         m.asked[i] = p[i]
     push = 1.0
     if not m.settled:  # and not at all while no foot stands
-        push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) * _stands(m, table, dt)
+        stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
+        push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) if stands else 0.0
     plan_stop(m, most, stance)
     if m.waits:
-        come_over(m, most, dt)
+        come_over(m, stance, most, dt)
         push = 0.0
     _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m), m.steep, dt)
 
@@ -86,40 +85,6 @@ def _take_up(command, rate, asked, settings, turning, push, left, steep, dt):
     command[0] += forward
     command[2] += lateral
     rate[0], rate[2] = forward_rate, lateral_rate
-
-
-@kernel
-def _stands(m, table, dt):
-    """For which share of a step a foot stands: a runner's by the labels of its moments, so that the size of a step does not matter."""
-    grip = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3]
-    if m.family == WALK:
-        return 1.0 if grip > 0.0 else 0.0
-    pace, total = cadence_kernel(m), 0.0
-    for k in range(MOMENTS):
-        angle = 2.0 * math.pi * (m.phase + (k + 0.5) / MOMENTS * dt * pace)
-        most = 0.0
-        for point in range(4):
-            most = max(most, label_kernel(table, m.weights, point, angle))
-        share = min(max((most - STANDS[0]) / (STANDS[1] - STANDS[0]), 0.0), 1.0)
-        if k == 0 and share > 0.5 and grip <= 0.0:  # the body is higher than its blend
-            return 0.0
-        total += share / MOMENTS
-    return total
-
-
-@kernel
-def label_kernel(table, weights, point, angle):
-    """How firmly a contact point of the blend stands at an angle of its cycle [rad]."""
-    c1, s1, total = math.cos(angle), math.sin(angle), 0.0
-    for p in range(table.shape[0]):
-        if weights[p] <= 0.0:
-            continue
-        c, s, value = c1, s1, table[p, 0, LABELS_AT + point]
-        for k in range(1, table.shape[1] - 1, 2):
-            value += c * table[p, k, LABELS_AT + point] + s * table[p, k + 1, LABELS_AT + point]
-            c, s = c * c1 - s * s1, s * c1 + c * s1
-        total += weights[p] * value
-    return total
 
 
 @kernel

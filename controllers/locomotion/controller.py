@@ -206,10 +206,11 @@ def _halt(memory: np.ndarray, halt: ArrayLike | None, wish: np.ndarray, shape: t
         memory["halts"] *= ~wish.any(-1)
         return
     place = _spread(halt, shape + (3,)).reshape(-1, 3)
-    sound = np.isfinite(place[:, :2]).all(-1) & (np.abs(place[:, :2]) <= HIGHEST).all(-1)
-    same = sound & (memory["halts"] > 0) & (np.hypot(*(place - memory["halt"])[:, :2].T) < ELSEWHERE)
-    memory["halts"] = np.where(same, memory["halts"], sound)
-    memory["halt"] = np.where(sound[:, None], place, 0.0)
+    sound = (np.abs(place[:, :2]) <= HIGHEST).all(-1)
+    goes, stops = sound & wish.any(-1), (memory["halts"] > 0) & ~wish.any(-1)
+    same = goes & (memory["halts"] > 0) & (np.hypot(*(place - memory["halt"])[:, :2].T) < ELSEWHERE)
+    memory["halts"] = np.where(same | stops, memory["halts"], goes)
+    memory["halt"] = np.where(goes[:, None], place, memory["halt"])
 
 
 def _spread(value: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:

@@ -32,15 +32,17 @@ GLIDE = 0.15
 """A body that comes to rest does so this long after its last foot has come down [s]."""
 EVEN, STEEPEST = 1.0, 3.0
 """Speed goes with these powers of the time that is left, while the foot is still on its way that the body will stand on, and at most; at first
-with the one that goes on braking as hard as he does already."""
+with the one that goes on braking as hard as he can."""
+BRAKING = 0.5
+"""Who brakes by more than this share of his push goes on as hard as he can."""
 SHORT, LONGER = 0.7, 0.2
 """He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
 NOWHERE, AHEAD, STOPS = range(3)
 """Whether there is a place where somebody is to come to rest: none; one ahead; he stops there, since he has let go of his wish for it or chose it himself."""
 HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
-OVER = 0.18
-"""It comes over its feet with this half-life [s]."""
+OVER, OFF = 0.18, 0.05
+"""It comes over its feet with this half-life [s], and rests no farther from their middle than this [m]."""
 BESIDE, DECIDED = 0.08, 0.9
 """Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second."""
 TOWARDS, PAST = 0.9, 0.25
@@ -72,16 +74,17 @@ def plan_stop(m, most, stance):
             left += 0.5
         m.stop = left
         if m.halts != STOPS:
-            _choose_place(m, speed, stance)
+            _choose_place(m, speed, most, stance)
     m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
 
 
 @kernel
-def _choose_place(m, speed, stance):
+def _choose_place(m, speed, most, stance):
     """Where somebody comes to rest who stops now: over the foot that he will stand on, if that comes down soon or stands; else as he gets there by
-    slowing down evenly, or by going on to brake as hard as he does."""
+    slowing down evenly, or by braking as hard as he can if he brakes already."""
     time = time_to_stop(m)
-    steep = min(max(-(m.rate[0] * m.command[0] + m.rate[2] * m.command[2]) / (speed * speed) * time, EVEN), STEEPEST)
+    brakes = -(m.rate[0] * m.command[0] + m.rate[2] * m.command[2]) > BRAKING * most * speed
+    steep = min(max(most * time / speed, EVEN), STEEPEST) if brakes else EVEN
     if m.stop < AT_PLACE:
         steep = min(max(speed * time / max(_to_foot(m, speed, stance), 0.01) - 1.0, EVEN), STEEPEST)
     time /= steep + 1.0
@@ -175,10 +178,19 @@ def time_to_stop(m):
 
 
 @kernel
-def come_over(m, most, dt):
-    """Lead the command of a body whose feet wait: it glides on to where it comes to rest. most: what legs push [m/s²]."""
-    c, s, x, z = math.cos(m.ground[2]), math.sin(m.ground[2]), m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
-    x, z = s * z - c * x, -s * x - c * z
+def come_over(m, stance, most, dt):
+    """Lead the command of a body whose feet wait: it glides on to the place where it comes to rest, or as near to it as its feet stand. most: what
+    legs push [m/s²]."""
+    x, z, point = 0.0, 0.0, np.empty(2)
+    for k in range(4):
+        shown_kernel(m, k, point)
+        x += 0.25 * (stance[k, 0] - point[0])
+        z += 0.25 * (stance[k, 1] - point[1])
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    across = s * (m.halt[1] - m.ground[1]) - c * (m.halt[0] - m.ground[0]) - x
+    along = -s * (m.halt[0] - m.ground[0]) - c * (m.halt[1] - m.ground[1]) - z
+    share = min(OFF / max(math.hypot(across, along), 1e-9), 1.0) if m.halts == STOPS else 0.0
+    x, z = x + share * across, z + share * along
     m.rate[0] = (spring_kernel(z, m.command[0], 0.0, OVER, dt)[1] - m.command[0]) / dt
     m.rate[2] = (spring_kernel(x, m.command[2], 0.0, OVER, dt)[1] - m.command[2]) / dt
     share = min(most / max(math.hypot(m.rate[0], m.rate[2]), 1e-9), 1.0)
