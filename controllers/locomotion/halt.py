@@ -17,6 +17,8 @@ NEAR = 0.1
 """Nearer than this [m] his way is bent no more …"""
 BENDS = 0.1
 """… and before with this half-life [s]."""
+SPARES = 0.9
+"""Of the square of his push so much is had for that and for braking."""
 SOONEST = 0.25
 """A turn that is left takes at least this long [s]."""
 
@@ -35,19 +37,20 @@ def heed_halt(m, wish, most, dt):
         return
     if m.halts == AHEAD and lets_go(m, most):
         m.halts = STOPS
-    if m.halts == STOPS:
+    if m.halts >= STOPS:
         wish[0] = wish[2] = 0.0
         wish[1] = 2.0 * turn / max(time_to_stop(m), SOONEST)
-        if m.stop > 0.0 and to_halt(m) > NEAR:
+        if m.halts == STOPS and m.stop > 0.0 and to_halt(m) > NEAR and m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0:
             _bend(m, most, dt)
 
 
 @kernel
 def _bend(m, most, dt):
-    """Turn the command of somebody who stops towards the place, no harder than legs push."""
+    """Turn the command of somebody who stops towards the place, with what braking leaves of the push of his legs."""
     x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
     off = _short(math.atan2(x, z) - m.ground[2] - math.atan2(m.command[2], m.command[0]))
-    most = most * dt / max(math.hypot(m.command[0], m.command[2]), 0.1)
+    left = math.sqrt(max(SPARES * most * most - m.rate[0] * m.rate[0] - m.rate[2] * m.rate[2], 0.0))
+    most = left * dt / max(math.hypot(m.command[0], m.command[2]), 0.1)
     turn = min(max(off * (1.0 - 2.0 ** (-dt / BENDS)), -most), most)
     c, s = math.cos(turn), math.sin(turn)
     m.command[0], m.command[2] = c * m.command[0] - s * m.command[2], s * m.command[0] + c * m.command[2]

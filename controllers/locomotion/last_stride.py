@@ -37,8 +37,8 @@ BRAKING = 0.5
 """Who brakes by more than this share of his push goes on as hard as he can."""
 SHORT, LONGER = 0.7, 0.2
 """He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
-NOWHERE, AHEAD, STOPS = range(3)
-"""Whether there is a place where somebody is to come to rest: none; one ahead; he stops there, since he has let go of his wish for it or chose it himself."""
+NOWHERE, AHEAD, STOPS, CHOSE = range(4)
+"""Whether there is a place where somebody is to come to rest: none; one ahead; he has let go of his wish for it; he stops at one of his own choice."""
 HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
 OVER, OFF = 0.18, 0.05
@@ -60,20 +60,20 @@ def plan_stop(m, most, stance):
     """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, the place
     where he comes to rest, and how steeply he slows down for it. most: what legs push [m/s²]. stance: where heels and balls are at
     rest (4, 2) [m]."""
-    if m.settled or m.halts != STOPS and abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
+    if m.settled or m.halts < STOPS and abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
         m.stop, m.waits = 0.0, 0
         return
     speed = math.hypot(m.command[0], m.command[2])
     if m.waits:
         return
     if m.stop <= 0.0:
-        if m.family != WALK or speed < LEAST and m.halts != STOPS:
+        if m.family != WALK or speed < LEAST and m.halts < STOPS:
             return
-        left, pace, far = (STRIKE - m.phase) % 0.5, cadence_kernel(m), to_halt(m) if m.halts == STOPS else 0.0
-        while not _ends(left, pace, speed, far, most, m.halts == STOPS):
+        left, pace, far = (STRIKE - m.phase) % 0.5, cadence_kernel(m), to_halt(m) if m.halts >= STOPS else 0.0
+        while not _ends(left, pace, speed, far, most, m.halts >= STOPS):
             left += 0.5
         m.stop = left
-        if m.halts != STOPS:
+        if m.halts < STOPS:
             _choose_place(m, speed, most, stance)
     m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
 
@@ -92,7 +92,7 @@ def _choose_place(m, speed, most, stance):
     m.halt[0] = m.ground[0] + (c * m.command[2] + s * m.command[0]) * time
     m.halt[1] = m.ground[1] + (c * m.command[0] - s * m.command[2]) * time
     m.halt[2] = math.nan
-    m.halts = STOPS
+    m.halts = CHOSE
 
 
 @kernel
@@ -162,7 +162,7 @@ def bring_together(m, foot, stance):
         x, z = stance[ball, 0] + HALFWAY * (point[0] - stance[other, 0]), point[1] + stance[ball, 1] - stance[other, 1]
         m.land[foot, 0] = m.ground[0] + c * x + s * z - m.coming[foot, 1, 0]
         m.land[foot, 1] = m.ground[1] - s * x + c * z - m.coming[foot, 1, 1]
-    elif m.halts == STOPS and 0.5 < m.stop <= 0.5 + STRIKE and foot != _last(m):
+    elif m.halts >= STOPS and 0.5 < m.stop <= 0.5 + STRIKE and foot != _last(m):
         heading = m.ground[2] if math.isnan(m.halt[2]) else m.halt[2]
         c, s = math.cos(heading), math.sin(heading)
         x = m.halt[0] + c * stance[ball, 0] + s * stance[ball, 1] - m.coming[foot, 1, 0]
@@ -189,7 +189,7 @@ def come_over(m, stance, most, dt):
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     across = s * (m.halt[1] - m.ground[1]) - c * (m.halt[0] - m.ground[0]) - x
     along = -s * (m.halt[0] - m.ground[0]) - c * (m.halt[1] - m.ground[1]) - z
-    share = min(OFF / max(math.hypot(across, along), 1e-9), 1.0) if m.halts == STOPS else 0.0
+    share = min(OFF / max(math.hypot(across, along), 1e-9), 1.0) if m.halts >= STOPS else 0.0
     x, z = x + share * across, z + share * along
     m.rate[0] = (spring_kernel(z, m.command[0], 0.0, OVER, dt)[1] - m.command[0]) / dt
     m.rate[2] = (spring_kernel(x, m.command[2], 0.0, OVER, dt)[1] - m.command[2]) / dt
