@@ -207,7 +207,7 @@ def _halt(memory: np.ndarray, halt: ArrayLike | None, wish: np.ndarray, shape: t
         return
     place = _spread(halt, shape + (3,)).reshape(-1, 3)
     sound = (np.abs(place[:, :2]) <= HIGHEST).all(-1)
-    goes, stops = sound & wish.any(-1), (memory["halts"] > 0) & ~wish.any(-1)
+    goes, stops = np.asarray(sound & wish.any(-1)), (memory["halts"] > 0) & ~wish.any(-1)
     same = goes & (memory["halts"] > 0) & (np.hypot(*(place - memory["halt"])[:, :2].T) < ELSEWHERE)
     memory["halts"] = np.where(same | stops, memory["halts"], goes)
     memory["halt"] = np.where(goes[:, None], place, memory["halt"])
