@@ -102,6 +102,8 @@ class Intent:
     the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish. turns: (n, 3, 3) how the joints
     at those points should be turned in the world, NaN where that is not known; None where none is.
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
+    halt: (..., 3) x, z [m], heading [rad] in the world where to come to rest, going there with that velocity; NaN for a heading: as one comes, for a
+    place: none; None for none. A walker lets go of the velocity in time for it.
     goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way. aside: (3,) what is added to
     the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
     held: no leap of the way goes off now, as somebody is where it leads.
@@ -120,6 +122,7 @@ class Intent:
     sighting: Sighting | None = None
     aim: Leap | None = None
     turns: np.ndarray | None = None
+    halt: np.ndarray | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

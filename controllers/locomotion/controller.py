@@ -6,6 +6,7 @@ import zlib
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from math import ceil
 from os import PathLike
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike
 from gambol import assets
 
 from ..body import Pose, Skeleton
-from ..contract import CharacterState, Controller, Intent, Status, level, seconds
+from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, level, seconds
 from .control_space import ControlSpace
 from .entry import entered
 from .first_stride import readiness
@@ -28,6 +29,10 @@ from .uneven_ground import FLAT, tops
 from .velocity_correction import space_of
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
+FINEST = 1 / 60
+"""A longer step is made in parts no longer than this [s], as feet come down and gaits change at its moments."""
+ELSEWHERE = 0.1
+"""A place to come to rest at that moves by more than this [m] is another, for which nobody stops yet."""
 
 
 class Locomotion(Controller):
@@ -120,7 +125,7 @@ class Locomotion(Controller):
 
         A state whose `ground` was replaced goes on from there, feet and all: ValueError unless it is
         finite, and for a state that did not come from a controller over this library (`enter` it).
-        intent.velocity broadcasts against the state's batch axes. A wish that is not finite counts
+        intent.velocity and intent.halt broadcast against the state's batch axes. A wish that is not finite counts
         as no wish. One beyond what the library holds is walked slower on the same arc (so a hard
         turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
         turns or side-steps less.
@@ -137,13 +142,16 @@ class Locomotion(Controller):
         memory["looks"] = 0
         if intent.look is not None:
             self._look(memory, intent.look, shape, state.floor)
+        _halt(memory, intent.halt, wish, shape)
         ground = tops(intent.around) if len(intent.around) else FLAT
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
-        floor = _spread(state.floor, shape).reshape(-1)
-        here = floor.copy()
-        step_kernel(memory, wish, dt, self.settings, *self.tables, ground, here, root, local)
+        here = _spread(state.floor, shape).reshape(-1)
+        parts = ceil(dt / FINEST - 1e-6)
+        for _ in range(parts):
+            floor = here.copy()
+            step_kernel(memory, wish, dt / parts, self.settings, *self.tables, ground, here, root, local)
         root[:, 1] += floor
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)
@@ -189,6 +197,20 @@ class Locomotion(Controller):
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""
         return Status("running")
+
+
+def _halt(memory: np.ndarray, halt: ArrayLike | None, wish: np.ndarray, shape: tuple[int, ...]) -> None:
+    """Note where (..., 3) characters (N,) are to come to rest; none that is not finite. Who stops for a place goes on with that until
+    he wishes (N, 3) for something else."""
+    if halt is None:
+        memory["halts"] *= ~wish.any(-1)
+        return
+    place = _spread(halt, shape + (3,)).reshape(-1, 3)
+    sound = (np.abs(place[:, :2]) <= HIGHEST).all(-1)
+    goes, stops = np.asarray(sound & wish.any(-1)), (memory["halts"] > 0) & ~wish.any(-1)
+    same = goes & (memory["halts"] > 0) & (np.hypot(*(place - memory["halt"])[:, :2].T) < ELSEWHERE)
+    memory["halts"] = np.where(same | stops, memory["halts"], goes)
+    memory["halt"] = np.where(goes[:, None], place, memory["halt"])
 
 
 def _spread(value: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:

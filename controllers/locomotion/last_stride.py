@@ -3,6 +3,7 @@
 Who lets go of the stick while walking chooses the strike at which his feet will be together: the next one by which he
 can have slowed down without pushing his hardest. Until then he loses as much speed each moment, so that strides get
 shorter by themselves and the last one ends beside the foot that stands; there he glides on a little, and both feet stay.
+Who runs brakes first, and chooses as soon as he walks. Who is to come to rest at a place (`halt`) sets his last two feet down there.
 """
 
 from __future__ import annotations
@@ -20,61 +21,126 @@ from .root_motion import cadence_kernel
 
 STRIKE = float(EVENTS["walk"][1])
 """The phase in which the left foot comes down; the right one does half a cycle later."""
-LEAST, MOST = 0.35, 1.4
-"""Who is slower than the first [m/s] just stops; who is faster than the second pushes against it as hard as he can."""
+LEAST = 0.35
+"""Who is slower than this [m/s] just stops."""
 HARD = 1.0
 """The share of their strength with which legs brake at most, if there is a strike for it."""
-SOONEST = 0.42
-"""The last foot comes down no sooner than this after the wish has gone, in phase: the other one must have been set down for it."""
+SOONEST, AT_PLACE = 0.42, 0.7
+"""The last foot comes down no sooner than the first after the wish has gone, in phase: the other one must have been set down for it; nor than the
+second where there is a place to stop at: the other one must get there."""
 GLIDE = 0.15
 """A body that comes to rest does so this long after its last foot has come down [s]."""
 EVEN, STEEPEST = 1.0, 3.0
-"""Speed goes with these powers of the time that is left, while the foot is still on its way that the body will stand on, and at most."""
+"""Speed goes with these powers of the time that is left, while the foot is still on its way that the body will stand on, and at most; at first
+with the one that goes on braking as hard as he can."""
+BRAKING = 0.5
+"""Who brakes by more than this share of his push goes on as hard as he can."""
+SHORT, LONGER = 0.7, 0.2
+"""He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
+NOWHERE, AHEAD, STOPS, CHOSE = range(4)
+"""Whether there is a place where somebody is to come to rest: none; one ahead; he has let go of his wish for it; he stops at one of his own choice."""
 HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
-OVER = 0.18
-"""It comes over its feet with this half-life [s]."""
+OVER, OFF = 0.18, 0.05
+"""It comes over its feet with this half-life [s], and rests no farther from their middle than this [m]."""
 BESIDE, DECIDED = 0.08, 0.9
 """Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second."""
+TOWARDS, PAST = 0.9, 0.25
+"""Who goes to a place does so at less than the angle with this cosine; one that is this near, but not ahead, has been passed [m]."""
+LATEST = 3.0
+"""No stop takes longer than this [s]."""
+BRAKES = 0.15, 1.5
+"""A runner lets go so many seconds of his way before he is as near as braking by this share of his push, twice, would take him."""
 NO_WISH = 0.02
 """Wishes smaller than this are none [m/s, rad/s]."""
 
 
 @kernel
 def plan_stop(m, most, stance):
-    """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, and
-    how steeply he slows down: so that he comes to rest over the foot that stands. most: what legs push [m/s²]. stance:
-    where heels and balls are at rest (4, 2) [m]."""
-    if m.settled or abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
+    """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, the place
+    where he comes to rest, and how steeply he slows down for it. most: what legs push [m/s²]. stance: where heels and balls are at
+    rest (4, 2) [m]."""
+    if m.settled or m.halts < STOPS and abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
         m.stop, m.waits = 0.0, 0
         return
     speed = math.hypot(m.command[0], m.command[2])
-    if m.waits or m.stop < 0.0:
+    if m.waits:
         return
-    if m.stop > 0.0:
-        m.steep = _steepness(m, speed, stance)
-        return
-    if m.family != WALK or speed > MOST:
-        m.stop = -1.0
-    if m.stop < 0.0 or speed < LEAST:
-        return
-    left, pace = (STRIKE - m.phase) % 0.5, cadence_kernel(m)
-    while left < SOONEST or left / pace + GLIDE < speed / (HARD * most):
-        left += 0.5
-    m.stop = left
-    m.steep = _steepness(m, speed, stance)
+    if m.stop <= 0.0:
+        if m.family != WALK or speed < LEAST and m.halts < STOPS:
+            return
+        left, pace, far = (STRIKE - m.phase) % 0.5, cadence_kernel(m), to_halt(m) if m.halts >= STOPS else 0.0
+        while not _ends(left, pace, speed, far, most, m.halts >= STOPS):
+            left += 0.5
+        m.stop = left
+        if m.halts < STOPS:
+            _choose_place(m, speed, most, stance)
+    m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
 
 
 @kernel
-def _steepness(m, speed, stance):
-    """The power of the time that is left with which a body slows down, so that it has come as far as the foot is that it will stand on."""
-    if m.stop > 0.5 or speed <= 0.0:  # that one is not down yet
-        return EVEN
-    point, far = np.empty(2), 0.0
-    for k in range(2 - 2 * _last(m), 4 - 2 * _last(m)):
-        shown_kernel(m, k, point)
-        far += 0.5 * ((point[1] - stance[k, 1]) * m.command[0] + (point[0] - stance[k, 0]) * m.command[2]) / speed
-    return min(max(speed * time_to_stop(m) / max(far, 0.01) - 1.0, 1.0), STEEPEST)
+def _choose_place(m, speed, most, stance):
+    """Where somebody comes to rest who stops now: over the foot that he will stand on, if that comes down soon or stands; else as he gets there by
+    slowing down evenly, or by braking as hard as he can if he brakes already."""
+    time = time_to_stop(m)
+    brakes = -(m.rate[0] * m.command[0] + m.rate[2] * m.command[2]) > BRAKING * most * speed
+    steep = min(max(most * time / speed, EVEN), STEEPEST) if brakes else EVEN
+    if m.stop < AT_PLACE:
+        steep = min(max(speed * time / max(_to_foot(m, speed, stance), 0.01) - 1.0, EVEN), STEEPEST)
+    time /= steep + 1.0
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    m.halt[0] = m.ground[0] + (c * m.command[2] + s * m.command[0]) * time
+    m.halt[1] = m.ground[1] + (c * m.command[0] - s * m.command[2]) * time
+    m.halt[2] = math.nan
+    m.halts = CHOSE
+
+
+@kernel
+def _to_foot(m, speed, stance):
+    """How far on somebody is over the foot that he will stand on [m], where it stands or will come down."""
+    c, s, point, far = math.cos(m.ground[2]), math.sin(m.ground[2]), np.empty(2), 0.0
+    foot = 1 - _last(m)
+    for k in range(2):
+        shown_kernel(m, 2 * foot + k, point)
+        if m.stop > 0.5:  # it is not down yet
+            x, z = m.coming[foot, k, 0] - m.ground[0], m.coming[foot, k, 1] - m.ground[1]
+            point[0], point[1] = c * x - s * z, s * x + c * z
+        far += 0.5 * ((point[1] - stance[2 * foot + k, 1]) * m.command[0] + (point[0] - stance[2 * foot + k, 0]) * m.command[2]) / speed
+    return far
+
+
+@kernel
+def _ends(left, pace, speed, far, most, place):
+    """Whether a walk may end with the strike `left` ahead in phase: not too soon, not with a harder push than `most`, and `far` enough [m]."""
+    time = left / pace + GLIDE
+    return left >= (AT_PLACE if place else SOONEST) and time >= speed / (HARD * most) and (0.5 * speed * time >= far or time > LATEST)
+
+
+@kernel
+def lets_go(m, most):
+    """Whether somebody who walks is so near to where he is to come to rest that he stops now: by the soonest strike by which an even stop leads there."""
+    speed, pace, far = math.hypot(m.command[0], m.command[2]), cadence_kernel(m), to_halt(m)
+    if far <= 0.0:  # he turns to it, or is past it
+        return math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) < PAST
+    if m.family != WALK:
+        return far <= speed * BRAKES[0] + speed * speed / (BRAKES[1] * most)
+    left, soonest = (STRIKE - m.phase) % 0.5, max(AT_PLACE / pace + GLIDE, speed / (HARD * most))
+    for _ in range(8):
+        time = left / pace + GLIDE
+        if left >= AT_PLACE and 0.5 * speed * time >= far:
+            return time < soonest + 1.0 / pace
+        left += 0.5
+    return False
+
+
+@kernel
+def to_halt(m):
+    """How far somebody still is from where he is to come to rest [m], 0 where he does not go there."""
+    x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    ahead = (s * x + c * z) * m.command[0] + (c * x - s * z) * m.command[2]
+    far = math.hypot(x, z)
+    return far if ahead > TOWARDS * far * math.hypot(m.command[0], m.command[2]) else 0.0
 
 
 @kernel
@@ -85,15 +151,24 @@ def _last(m):
 
 @kernel
 def bring_together(m, foot, stance):
-    """Lead the foot that comes down last to where it belongs beside the other, into m.land."""
-    if m.stop <= 0.0 or m.stop > STRIKE or foot != _last(m):
-        return
+    """Lead the foot that comes down last to where it belongs beside the other, into m.land; and that one before, where there is a place
+    to stop at, to where it belongs there."""
     other, ball, point = 3 - 2 * foot, 2 * foot + 1, np.empty(2)
-    shown_kernel(m, other, point)
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x, z = stance[ball, 0] + HALFWAY * (point[0] - stance[other, 0]), point[1] + stance[ball, 1] - stance[other, 1]
-    m.land[foot, 0] = m.ground[0] + c * x + s * z - m.coming[foot, 1, 0]
-    m.land[foot, 1] = m.ground[1] - s * x + c * z - m.coming[foot, 1, 1]
+    if m.stop <= 0.0:
+        return
+    if m.stop <= STRIKE and foot == _last(m):
+        shown_kernel(m, other, point)
+        c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+        x, z = stance[ball, 0] + HALFWAY * (point[0] - stance[other, 0]), point[1] + stance[ball, 1] - stance[other, 1]
+        m.land[foot, 0] = m.ground[0] + c * x + s * z - m.coming[foot, 1, 0]
+        m.land[foot, 1] = m.ground[1] - s * x + c * z - m.coming[foot, 1, 1]
+    elif m.halts >= STOPS and 0.5 < m.stop <= 0.5 + STRIKE and foot != _last(m):
+        heading = m.ground[2] if math.isnan(m.halt[2]) else m.halt[2]
+        c, s = math.cos(heading), math.sin(heading)
+        x = m.halt[0] + c * stance[ball, 0] + s * stance[ball, 1] - m.coming[foot, 1, 0]
+        z = m.halt[1] - s * stance[ball, 0] + c * stance[ball, 1] - m.coming[foot, 1, 1]
+        share = min(LONGER / max(math.hypot(x, z), 1e-9), 1.0)
+        m.land[foot, 0], m.land[foot, 1] = share * x, share * z
 
 
 @kernel
@@ -104,12 +179,18 @@ def time_to_stop(m):
 
 @kernel
 def come_over(m, stance, most, dt):
-    """Lead the command of a body whose feet wait: it glides on until it is over them. most: what legs push [m/s²]."""
+    """Lead the command of a body whose feet wait: it glides on to the place where it comes to rest, or as near to it as its feet stand. most: what
+    legs push [m/s²]."""
     x, z, point = 0.0, 0.0, np.empty(2)
     for k in range(4):
         shown_kernel(m, k, point)
         x += 0.25 * (stance[k, 0] - point[0])
         z += 0.25 * (stance[k, 1] - point[1])
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    across = s * (m.halt[1] - m.ground[1]) - c * (m.halt[0] - m.ground[0]) - x
+    along = -s * (m.halt[0] - m.ground[0]) - c * (m.halt[1] - m.ground[1]) - z
+    share = min(OFF / max(math.hypot(across, along), 1e-9), 1.0) if m.halts >= STOPS else 0.0
+    x, z = x + share * across, z + share * along
     m.rate[0] = (spring_kernel(z, m.command[0], 0.0, OVER, dt)[1] - m.command[0]) / dt
     m.rate[2] = (spring_kernel(x, m.command[2], 0.0, OVER, dt)[1] - m.command[2]) / dt
     share = min(most / max(math.hypot(m.rate[0], m.rate[2]), 1e-9), 1.0)

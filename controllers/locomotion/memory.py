@@ -127,7 +127,8 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
         ("fade", "f4"),  # its half-life [s]
         ("breath", "f4"),  # phase of breathing
-        ("stop", "f4"), ("steep", "f4"), ("waits", "i4"),  # how much phase is left until the strike that ends a walk (−1: he just stops), how it slows down until then; whether both feet wait after it
+        ("stop", "f4"), ("steep", "f4"), ("waits", "i4"),  # how much phase is left until the strike that ends a walk, how it slows down until then; whether both feet wait after it
+        ("halt", "f8", 3), ("halts", "i4"),  # where to come to rest, x, z in the world, heading or NaN; whether there is such a place, and he stops for it
         ("onset", "f4"), ("first", "i4"), ("shares", "f4", 2),  # how much phase of a start is left, its first foot, how far it shows
         ("rested", "f4"), ("presence", "f4"), ("presence_rate", "f4"),  # how long it has stood [s], how far its idling shows
         ("moment", "f4"), ("luck", "u4"), ("alert", "i4"),  # where in the recorded idling it is, and what comes next
@@ -144,6 +145,7 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
     for name in ("stood", "left_at", "coming"):
         memory[name] = _carried(memory[name], memory["ground"], ground)
+    memory["halts"] = 0
     memory["ground"], memory["aimed"] = ground, 0
 
 

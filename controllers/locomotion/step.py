@@ -15,6 +15,7 @@ from .foot_lock import at_rest, place_feet
 from .foothold import plan_footholds, room_to_plan, stride
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
+from .halt import heed_halt
 from .idle import add_idle, idle_kernel
 from .last_stride import until_together
 from .foot_points import foot_points, on_floor
@@ -56,11 +57,13 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     ahead = room_to_plan(memory["weights"].shape[1], joints)
     for n in range(memory.shape[0]):
         m = memory[n]
+        heed_halt(m, wish[n], settings.acceleration * settings.agility, dt)
         leave_rest(m, wish[n])
-        lean = leans(m, _share_of_cycle(m, table, settings.agility, 0.5 * dt))
+        family, whole = m.family, _share_of_cycle(m, table, settings.agility, dt)
+        lean = leans(m, 0.5 * whole)
         shape_command(m, wish[n], lean, dt, settings, table, walk, run, legs.stance, p, q)
         _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
-        advance_phase(m, table, settings.agility, legs.rest, dt)
+        advance_phase(m, table, settings.agility, legs.rest, dt, whole if m.family == family else -1.0)
         start_kernel(m, start, wish[n], dt)
         idle_kernel(m, idle, settings.idle, dt)
         blend_series(m, settings, table, fresh, legs, dt)
@@ -150,11 +153,13 @@ def _one_of(i, vertices):
 
 
 @kernel
-def advance_phase(m, table, agility, rest, dt):
-    """Run the phase on; at rest it waits."""
+def advance_phase(m, table, agility, rest, dt, before):
+    """Run the phase on; at rest it waits. before: how far it would by the weights of the step's beginning, whose mean with that by
+    those of its end is right to the second order; negative if they are of another gait."""
     if m.settled:
         return
-    step = until_together(m, _share_of_cycle(m, table, agility, dt), rest)
+    step = _share_of_cycle(m, table, agility, dt)
+    step = until_together(m, step if before < 0.0 else 0.5 * (step + before), rest)
     m.onset = max(m.onset - step, 0.0)
     m.phase = (m.phase + step) % 1.0
 

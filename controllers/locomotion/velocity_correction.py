@@ -49,7 +49,7 @@ def _walk_cycles(memory, frames, time, dt, settings, body, legs, table, velociti
         wraps, turned = 0, 0.0
         for _ in range(int((CYCLES + 2) * 4.0 / dt)):
             before, heading = m.phase, m.ground[2]
-            advance_phase(m, table, 1.0, legs.rest, dt)
+            advance_phase(m, table, 1.0, legs.rest, dt, -1.0)
             blend_series(m, settings, table, fresh, legs, dt)
             pose_kernel(body, fresh, local, positions, orientations, scratch)
             follow_feet(m, body, legs, positions, orientations, velocities, dt)

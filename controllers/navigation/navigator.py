@@ -6,6 +6,7 @@ in a step: what is thought of beside is used some steps later, for where he will
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,6 +19,8 @@ from .thinking import NEARER, Going, another, astray, began, landed, poised, rea
 
 STILL = 0.01
 """Who moves no faster than this [m/s, rad/s] stands."""
+SLOWS, TURNED = 2.0, 0.5
+"""So long before its end [s], and turned so far as he should then stand [rad], a plan is left to the walker's own last strides, which end where it does."""
 STAYS = 0.028, np.radians(2.8)
 """Who has arrived has done so as long as he is so near to the goal [m, rad]; else a step brings him back."""
 PATIENCE = 45.0
@@ -63,7 +66,10 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
     if now.crossings and leap is None and not intent.held and _leaps(now, state):
         leap, now = Leap(onto(now.crossings[0], now.pace)), now.but(asked=now.asked + dt)
     now = now.but(time=now.time + share * dt * float(walker.readiness(state)), spent=now.spent + dt)
-    return now, but(intent, velocity=velocity, leap=leap)
+    rests = now.thinking is None and not (now.crossings or now.plan.reason or leap or now.planned != goal) and share >= KEPT
+    turn = abs(math.remainder(now.plan.goal[2] - float(state.ground[2]), math.tau))
+    halt = now.plan.goal if rests and now.time > now.plan.seconds - SLOWS and turn < TURNED else None
+    return now, but(intent, velocity=velocity, leap=leap, halt=halt)
 
 
 def _stays(state: CharacterState, intent: Intent, goal: Goal) -> Going:

@@ -35,7 +35,7 @@ def stepping(figures: Sequence[Figure], after: World, overlays: Overlays) -> tup
 def _soles(one: Character) -> list[Patch]:
     if one.state.active not in ("", "locomotion") or one.intent.points is not None or not one.opacity:
         return []
-    told = forecast(one.controller, one.state, Intent(one.intent.velocity, around=one.intent.around, goal=one.intent.goal), AHEAD)
+    told = forecast(one.controller, one.state, Intent(one.intent.velocity, around=one.intent.around, goal=one.intent.goal, halt=one.intent.halt), AHEAD)
     rests = contact_height(one.controller.skeleton)
     left, ahead = rests / CONTACT_HEIGHT * SOLE.T
     soles = []

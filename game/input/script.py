@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status
+from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status, but
 from gambol.controllers.jump import Jumping
 from gambol.controllers.navigation import Path, follow, steer
 
@@ -16,6 +16,8 @@ from .pilot import STEERING
 
 ARRIVED = 0.12
 """A path is walked when no more than this is left of it [m]."""
+BRAKE = 0.25
+"""Wishes along a path fade over so much of its end [m]: walkers have let go of them before."""
 NEAR = 0.12
 """A jump no farther than this [m] goes straight up: nobody turns for it."""
 ASKEW = 0.15
@@ -157,8 +159,10 @@ class Script:
             return self, Intent(velocity)
         wish, progress = np.zeros(2), self.progress
         if self.path is not None:
-            wish, progress = follow(self.path, state.ground, np.float64(progress), move.speed)
+            wish, progress = follow(self.path, state.ground, np.float64(progress), move.speed, brake=BRAKE)
         intent = steer(state.ground, wish, move.facing, state.velocity[1], STEERING)
+        if self.path is not None and move.jump is None:
+            intent = but(intent, halt=np.array([*self.path.points[-1], math.nan if move.facing is None else move.facing]))
         return replace(self, progress=float(progress)), intent
 
     def _ask_jump(self, move: Move, jump: Jump, state: CharacterState, intent: Intent, dt: float) -> tuple[Script, Intent]:

@@ -20,6 +20,8 @@ from .world import Character, World
 
 RADIUS = 0.22
 """A body's [m]."""
+HALF_WAY = 0.5
+"""Who gives way by this share or more stops at no place of his own."""
 GIVEN_WAY = 0.2
 """Who is led off what he was asked by more than this [m/s] turns to where he is led."""
 LOOKS = 1.5
@@ -67,7 +69,8 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
         if way is not None and way.crossings and _taken(way, ground[:, :2], k):
             found[i] = replace(found[i], held=True)
         if part > 1e-6 and not jumps[k]:
-            found[i] = replace(found[i], velocity=own + change) if found[i].goal is None else replace(found[i], aside=change)
+            halt = found[i].halt if part < HALF_WAY else None  # who has to give way does not stop where he wished to
+            found[i] = replace(found[i], velocity=own + change, halt=halt) if found[i].goal is None else replace(found[i], aside=change)
     return found
 
 
