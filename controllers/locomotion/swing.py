@@ -26,9 +26,9 @@ SOONEST = 0.06
 """A way takes at least this long to its end [s]."""
 AHEAD = 0.2
 """A foot begins to give way so long before it would come too near [s] …"""
-LEAD = 0.025
+LEAD = 0.035
 """… and fully as it would so much later [s] …"""
-HALFLIFE, BACK = 0.012, 0.045
+HALFLIFE, BACK = 0.018, 0.045
 """… with the first half-life [s], and comes back with the second …"""
 YIELDING = 0.15
 """… once this share of its swing is over, since it leaves without a jump."""
