@@ -218,5 +218,6 @@ def _room(line, point, side, fade):
 
 @kernel
 def smooth(share):
+    """From 0 to 1, and level at both ends, as a share does; what is beyond them stays there."""
     share = min(max(share, 0.0), 1.0)
     return share * share * (3.0 - 2.0 * share)
