@@ -63,7 +63,7 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     memory["standing"] = memory["grip"] = stands
     memory["bears"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
-    memory["offset"] = memory["offset_rate"] = memory["raised"] = memory["raised_rate"] = 0.0
+    memory["offset"] = memory["offset_rate"] = memory["offset_push"] = memory["raised"] = memory["raised_rate"] = 0.0
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 

@@ -17,15 +17,13 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
-from .foot_clearance import BACK, HALFLIFE, aside_kernel
 from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
-from .foothold import SWING, swing_progress
 from .kernel import LABELS_AT
 from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, localise_kernel, tilt_kernel, toe_kernel
-from .root_motion import cadence_kernel
 from .short_leg import give_way
+from .swing import SWING, swing_kernel, swing_progress
 from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
 
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
@@ -36,10 +34,6 @@ GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
 GRIP_RATE = 25.0
 """How fast a grip may change [1/s]."""
-SOONEST = 0.06
-"""An offset is given at least this long to go [s] …"""
-LATEST = 0.45
-"""… and at most this."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 STEEPLY, FREED = 1.0, 0.015
@@ -56,8 +50,6 @@ STRAINED = (0.35, 0.8)
 """A ball lets go, the more the farther its heel had to rise [rad] between these."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
-YIELDING = 0.15
-"""A foot gives way to the other fully once this share of its swing is over."""
 OVER = 0.3
 """A foot swings higher by this share of how much higher or deeper the other stands."""
 CLOSE = 0.06
@@ -65,10 +57,10 @@ CLOSE = 0.06
 
 
 @kernel
-def place_feet(m, body, legs, clearance, tops, floor, before, positions, orientations, local, dt, work):
+def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, orientations, local, dt, work):
     """Hold standing feet, land swinging ones, bend the legs after them.
 
-    tops, floor: of the ground (`uneven_ground`). before: (4, 2) where the blend's contact points were one step ago, in
+    ahead: of the blend's feet (`foothold`). tops, floor: of the ground (`uneven_ground`). before: (4, 2) where the blend's contact points were one step ago, in
     the world.
     """
     ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
@@ -79,8 +71,11 @@ def place_feet(m, body, legs, clearance, tops, floor, before, positions, orienta
     for k in range(4):
         _take_hold(m, k, legs.height, dt)
     for foot in range(2):
-        _offset(m, foot, before, now, dt)
-        _step_aside(m, body, foot, before, now, legs.height, dt)
+        if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
+            _hold(m, foot, before, now, dt)
+        else:
+            ball = 2 * foot + 1
+            swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = 0.0
     for foot in range(2):
@@ -132,20 +127,15 @@ def _take_hold(m, k, height, dt):
 
 
 @kernel
-def _offset(m, foot, before, now, dt):
-    """The offset of what is shown from the blend: x, z of the ball in the world and the foot's turn."""
+def _hold(m, foot, before, now, dt):
+    """Take from a foot that stands, or has begun to, as much of the blend's movement as it grips: the offset of what is shown from the
+    blend, x, z of the ball in the world and the foot's turn."""
     h, b = 2 * foot, 2 * foot + 1
     offset, rate = m.offset[foot], m.offset_rate[foot]
     grip = max(m.grip[h], m.grip[b])
-    if grip <= 0.0:
-        left = ((SWING[m.family] + 0.5 * foot - m.phase) % 1.0) / cadence_kernel(m)
-        u = min(dt / min(max(left, SOONEST), LATEST), 1.0)
-        for i in range(3):
-            goal = m.land[foot, i] if i < 2 else 0.0
-            x, v = offset[i] - goal, rate[i] * dt / u
-            offset[i] = goal + x * (1.0 - u * u * (3.0 - 2.0 * u)) + v * u * (1.0 - u) ** 2
-            rate[i] = (6.0 * x * u * (u - 1.0) + v * (1.0 - u) * (1.0 - 3.0 * u)) * u / dt
-        return
+    for i in range(2):  # as far as it gave way, it stays aside
+        offset[i] += m.aside[foot, i]
+        m.aside[foot, i] = m.aside_rate[foot, i] = 0.0
     if m.aimed[foot] == 1 and grip < 1.0:  # to the very place that it chose
         for i in range(2):
             offset[i] += (m.land[foot, i] - offset[i]) * (1.0 - grip) * (1.0 - 2.0 ** (-dt / AIM_HALFLIFE))
@@ -164,29 +154,8 @@ def _offset(m, foot, before, now, dt):
     pz -= now[b, 1] + heel * (c * z - s * x)
     rate[0], rate[1], rate[2] = (px - offset[0]) / dt, (pz - offset[1]) / dt, (turn - offset[2]) / dt
     offset[0], offset[1], offset[2] = px, pz, turn
+    m.offset_push[foot, 0] = m.offset_push[foot, 1] = m.offset_push[foot, 2] = 0.0
     m.swing[foot] = math.sqrt(px * px + pz * pz)
-
-
-@kernel
-def _step_aside(m, body, foot, before, now, height, dt):
-    """A foot that swings gives way to the other one; one that lands so keeps it, as an offset."""
-    if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
-        m.offset[foot, 0] += m.aside[foot, 0]
-        m.offset[foot, 1] += m.aside[foot, 2]
-        for i in range(3):
-            m.aside[foot, i] = m.aside_rate[foot, i] = 0.0
-        return
-    wanted = np.empty(3)
-    progress, other = swing_progress(m, foot), swing_progress(m, 1 - foot)
-    ball = 2 * foot + 1
-    aside_kernel(m, body, foot, progress, progress < 1.0 and (progress > other or other >= 1.0),
-                 (now[ball, 0] - before[ball, 0]) / dt + m.offset_rate[foot, 0],
-                 (now[ball, 1] - before[ball, 1]) / dt + m.offset_rate[foot, 1], height, wanted)
-    share = min(progress / YIELDING, 1.0)
-    nearer = wanted[0] * m.aside[foot, 0] + wanted[2] * m.aside[foot, 2] < m.aside[foot, 0] ** 2 + m.aside[foot, 2] ** 2
-    for i in range(3):
-        m.aside[foot, i], m.aside_rate[foot, i] = spring_kernel(m.aside[foot, i], m.aside_rate[foot, i],
-                                                                share * wanted[i], BACK if nearer else HALFLIFE, dt)
 
 
 @kernel
@@ -268,8 +237,7 @@ def at_rest(m, legs):
     if m.weights[legs.rest] < 0.98:
         return False
     for foot in range(2):
-        x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 2]
-        if math.hypot(x, z) > (BESIDE + 0.01 if m.waits else CLOSE) or m.lift[foot] > 0.003:
+        if math.hypot(m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 1]) > (BESIDE + 0.01 if m.waits else CLOSE) or m.lift[foot] > 0.003:
             return False
     return True
 

@@ -34,7 +34,7 @@ def shown_kernel(m, k, out):
     """Where contact point k is shown along the floor: x, z in the ground frame, into `out` (2,)."""
     foot = k // 2
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 2]
+    x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 1]
     ball = m.points[2 * foot + 1]
     out[0], out[1] = ball[0] + c * x - s * z, ball[2] + s * x + c * z
     if k == 2 * foot:

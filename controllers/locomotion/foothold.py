@@ -16,15 +16,12 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .command import look_ahead, reached
 from .control_space import SCALE
-from .cycles import EVENTS
-from .foot_clearance import FADE, away_kernel, need_of_room, outline_kernel, with_toe
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
 from .last_stride import bring_together
-from .root_motion import SHORTEST, cadence_kernel
+from .root_motion import SHORTEST, advance, cadence_kernel
+from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
-SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
-"""The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
 BESIDE = 0.25
 """The most that a foot goes to its own side of where the blend has it [m]."""
 TRIES = 2
@@ -34,7 +31,12 @@ SOONEST = 0.002
 
 
 class Ahead(NamedTuple):
-    """Room for what is looked up of the time to come."""
+    """Room for what is looked up of the time to come.
+
+    until: (2,) when each foot that swings comes down [s], 0 for one that should be down. way: (2, SAMPLES, 2, 3) where the blend's heels and balls
+    will be, x and z in the world and y over the floor, after `shares` (2, SAMPLES) of that time, 0 or less where that is
+    past or nothing is planned.
+    """
 
     row: np.ndarray
     weights: np.ndarray
@@ -46,6 +48,10 @@ class Ahead(NamedTuple):
     barycentric: np.ndarray
     vectors: np.ndarray
     lines: np.ndarray
+    until: np.ndarray
+    shares: np.ndarray
+    way: np.ndarray
+    now: np.ndarray
 
 
 @kernel
@@ -53,24 +59,26 @@ def room_to_plan(width, joints):
     """That room, for a library as wide and a body of as many joints."""
     return Ahead(np.empty(COLUMNS, np.float32), np.empty(width, np.float32), np.empty((joints, 3, 3), np.float32),
                  np.empty((joints, 3), np.float32), np.empty((joints, 3, 3), np.float32), np.empty(SCRATCH, np.float32),
-                 np.empty((4, 3), np.float32), np.empty(4), np.empty((4, 3)), np.empty((2, 3, 2)))
-
-
-@kernel
-def swing_progress(m, foot):
-    """How far through its swing foot 0 (left) or 1 is, by the phase: 0 … 1, beyond while it stands."""
-    return ((m.phase - 0.5 * foot) % 1.0) / SWING[m.family]
+                 np.empty((4, 3), np.float32), np.empty(4), np.empty((4, 3)), np.empty((2, 3, 2)),
+                 np.empty(2), np.empty((2, SAMPLES)), np.empty((2, SAMPLES, 2, 3)), np.empty((3, 2, 3)))
 
 
 @kernel
 def plan_footholds(m, settings, space, table, body, legs, ahead):
-    """Plan where the feet that swing will come down."""
+    """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there."""
     for foot in range(2):
-        progress = swing_progress(m, foot)
-        if m.settled or progress >= 1.0:
+        swing = SWING[m.family]
+        left = (swing + 0.5 * foot - m.phase) % 1.0
+        coming = left < 0.5 * (1.0 + swing)
+        ahead.shares[foot] = 0.0
+        ahead.until[foot] = left / cadence_kernel(m) if coming else 0.0
+        lifts = coming and max(m.grip[2 * foot], m.grip[2 * foot + 1]) < 1.0
+        if m.settled or not (left < swing or lifts):
             continue
-        later = (1.0 - progress) * SWING[m.family] / cadence_kernel(m) * _slower(m, table, (1.0 - progress) * SWING[m.family])
-        _foresee(m, foot, max(later, SOONEST), settings, space, table, body, legs, ahead)
+        later = max(ahead.until[foot] * _slower(m, table, left), SOONEST)
+        ahead.until[foot] = later
+        _foresee(m, foot, later, settings, space, table, body, legs, ahead)
+        _foretell(m, foot, left, legs.paths, ahead)
         _beside(m, body, foot, ahead)
         bring_together(m, foot, legs.stance)
 
@@ -122,26 +130,81 @@ def _fading(m, hip, later, row):
 
 
 @kernel
+def _foretell(m, foot, left, paths, ahead):
+    """Write into ahead.way where the blend's foot will be until it comes down, `left` further in phase, and into ahead.shares when.
+
+    As the paths of the primitives have it at weights and along a way that lead evenly from now to then, and off it by as much as
+    it is now and will be then.
+    """
+    ground, now, end, at = ahead.vectors[0], ahead.now[0], ahead.now[1], ahead.now[2]
+    strike, whole = SWING[m.family] + 0.5 * foot, ahead.until[foot]
+    _along_paths(m.weights, ahead.weights, 0.0, paths, strike - left, foot, now)
+    _along_paths(m.weights, ahead.weights, 1.0, paths, strike, foot, end)
+    for k in range(2):
+        for i in range(3):
+            now[k, i] = m.points[2 * foot + k, i] - now[k, i]
+            end[k, i] = ahead.points[2 * foot + k, i] - end[k, i]
+    goes = ahead.vectors[1]  # the ground frame as it moves now, for all that time
+    for i in range(3):
+        goes[i] = m.ground[i]
+    advance(goes, m.velocity[0], m.velocity[1], m.velocity[2], whole)
+    turn, turned = _turn(goes[2] - m.ground[2]), _turn(ground[2] - goes[2])
+    for k in range(SAMPLES):
+        share = 1.0 - SWING[m.family] * (1.0 - (k + 0.5) / SAMPLES) / max(left, 1e-6)
+        ahead.shares[foot, k] = share
+        if share <= 0.0:
+            continue
+        _along_paths(m.weights, ahead.weights, share, paths, strike - (1.0 - share) * left, foot, at)
+        heading = m.ground[2] + share * turn + share * share * turned
+        x = m.ground[0] + share * (goes[0] - m.ground[0]) + share * share * (ground[0] - goes[0])
+        z = m.ground[1] + share * (goes[1] - m.ground[1]) + share * share * (ground[1] - goes[1])
+        c, s = math.cos(heading), math.sin(heading)
+        for p in range(2):
+            for i in range(3):
+                at[p, i] += now[p, i] + share * (end[p, i] - now[p, i])
+            ahead.way[foot, k, p, 0] = x + c * at[p, 0] + s * at[p, 2]
+            ahead.way[foot, k, p, 1] = at[p, 1]
+            ahead.way[foot, k, p, 2] = z - s * at[p, 0] + c * at[p, 2]
+
+
+@kernel
+def _turn(angle):
+    return math.pi - (math.pi - angle) % (2.0 * math.pi)
+
+
+@kernel
+def _along_paths(first, last, share, paths, phase, foot, out):
+    """Write where heel and ball (2, 3) of a foot are at a phase on the paths (P, PHASES, 4, 3) of primitives, at weights that have
+    gone that share of the way from the first to the last."""
+    at = (phase % 1.0) * paths.shape[1]
+    one = int(at) % paths.shape[1]
+    two, part = (one + 1) % paths.shape[1], at - int(at)
+    for k in range(2):
+        for i in range(3):
+            out[k, i] = 0.0
+    for p in range(paths.shape[0]):
+        w = first[p] + share * (last[p] - first[p])
+        if w > 0.0:
+            for k in range(2):
+                for i in range(3):
+                    a, b = paths[p, one, 2 * foot + k, i], paths[p, two, 2 * foot + k, i]
+                    out[k, i] += w * (a + part * (b - a))
+
+
+@kernel
 def _beside(m, body, foot, ahead):
     """Write into m.land how far aside (2,) of where the blend comes down a foot is set, so that it is a shoe's width from the other."""
-    here, there = ahead.lines[0], ahead.lines[1]
-    outline_kernel(m, body, 1 - foot, there)
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    for i in range(3):
-        x, z = there[i, 0], there[i, 1]
-        there[i, 0], there[i, 1] = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z
+    here, there, away = ahead.lines[0], ahead.lines[1], ahead.barycentric
+    m.land[foot, 0] = m.land[foot, 1] = 0.0
+    if not other_line(m, body, foot, there):
+        return
     for k in range(2):
         here[k, 0], here[k, 1] = m.coming[foot, k, 0], m.coming[foot, k, 1]
     with_toe(body, here)
     side = 1.0 - 2.0 * foot
-    x = there[1, 0] - there[0, 0] + here[1, 0] - here[0, 0]
-    z = there[1, 1] - there[0, 1] + here[1, 1] - here[0, 1]
-    size = math.sqrt(x * x + z * z) + 1e-9
-    x, z = side * z / size, -side * x / size  # to its own side of both
+    own_side(there, here, side, away)
     need = min(need_of_room(there, here, side, FADE), BESIDE)
-    away = ahead.barycentric
-    away[0], away[1] = need * x, need * z
-    m.land[foot, 0] = m.land[foot, 1] = 0.0
+    away[0], away[1] = need * away[0], need * away[1]
     for _ in range(1 + TRIES):
         for i in range(3):
             here[i, 0] += away[0]

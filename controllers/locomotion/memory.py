@@ -11,11 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..body import compose, contact_height, contact_points, exp, forward_kinematics, relative
+from .fourier import evaluate
 from .kernel import COLUMNS
 from .library import HIPS, Library
 
 WALK, RUN = 0, 1
 """Gait families, as memory and kernels number them."""
+PATH = 48
+"""Phases of a cycle at which the feet of primitives are looked up."""
 
 
 class Settings(NamedTuple):
@@ -56,7 +59,8 @@ def plain(settings: Settings) -> Settings:
 class Legs(NamedTuple):
     """What the step must know of body and library: joint numbers (hip: (2,), left and right;
     head: (2,), neck and head; shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive, and
-    where its contact points are along the floor (4, 2), x, z in the ground frame [m]."""
+    where its contact points are along the floor (4, 2), x, z in the ground frame [m]; and where those of every primitive are at
+    phases of its cycle, paths (P, PATH, 4, 3), likewise."""
 
     hip: np.ndarray
     chest: int
@@ -65,13 +69,14 @@ class Legs(NamedTuple):
     height: float
     rest: int
     stance: np.ndarray
+    paths: np.ndarray
 
 
 def legs_of(library: Library) -> Legs:
     """What the step must know of a library."""
     at = library.skeleton.index
     return Legs(np.array([at("LeftUpLeg"), at("RightUpLeg")]), at("Spine2"), at("Neck"),
-                np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest, _stance(library))
+                np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest, _stance(library), _paths(library))
 
 
 def _stance(library: Library) -> np.ndarray:
@@ -80,6 +85,14 @@ def _stance(library: Library) -> np.ndarray:
     local = library.reference @ exp(row[:HIPS].reshape(-1, 3))
     points = contact_points(library.skeleton, *forward_kinematics(library.skeleton, row[HIPS:HIPS + 3], local))
     return np.ascontiguousarray(points[:, [0, 2]], float)
+
+
+def _paths(library: Library) -> np.ndarray:
+    """Where heels and balls of every primitive are at PATH phases of its cycle (P, PATH, 4, 3) [m], in the ground frame."""
+    rows = evaluate(np.asarray(library.coefficients, float), np.arange(PATH) / PATH)
+    local = library.reference @ exp(rows[..., :HIPS].reshape(*rows.shape[:2], -1, 3))
+    points = contact_points(library.skeleton, *forward_kinematics(library.skeleton, rows[..., HIPS:HIPS + 3], local))
+    return np.ascontiguousarray(points, np.float32)
 
 
 def walks(memory: Any) -> bool:
@@ -107,7 +120,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("grip", "f4", 4),  # how firmly each point is held: 0 free … 1
         ("stood", "f8", (4, 2)), ("standing", "i4", 4), ("torn", "i4", 2),  # where each point was held, x, z in the world; whether it stands; feet let go until well into their swing
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
-        ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended
+        ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)), ("offset_push", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended; its speed and acceleration
         ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
         ("left", "f8", 2), ("left_at", "f8", (2, 2)),  # the ground it left, and where, x, z in the world
         ("held", "i4", 2), ("land", "f8", (2, 2)),  # whether it found its own; how far from where the blend does it comes down
@@ -116,7 +129,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("pace", "f4"),  # the share of the wished speed that the ground allows
         ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
-        ("aside", "f4", (2, 3)), ("aside_rate", "f4", (2, 3)),  # how each foot gives way to the other, in the world
+        ("aside", "f4", (2, 2)), ("aside_rate", "f4", (2, 2)),  # how each foot gives way to the other, x, z in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
         ("rise", "f4", 2), ("rise_rate", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
@@ -141,7 +154,7 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
     """Carry characters (...), in place, to other ground frames (..., 3), with all that they know in the world."""
     there, here = ground[..., None, :], memory["ground"][..., None, :]
     turn = (there - here) * [0.0, 0.0, 1.0]
-    for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("land", [0, 1]), ("aside", [0, 2]), ("aside_rate", [0, 2])):
+    for name, axes in (("offset", [0, 1]), ("offset_rate", [0, 1]), ("offset_push", [0, 1]), ("land", [0, 1]), ("aside", [0, 1]), ("aside_rate", [0, 1])):
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
     for name in ("stood", "left_at", "coming"):
         memory[name] = _carried(memory[name], memory["ground"], ground)

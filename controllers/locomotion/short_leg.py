@@ -10,8 +10,8 @@ import math
 
 from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
-from .foothold import swing_progress
 from .legs import soft_reach, tilt_kernel
+from .swing import swing_progress
 
 HEEL_RISE = 0.9
 """The most that a heel may rise about the ball to give a leg length [rad] …"""

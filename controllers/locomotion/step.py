@@ -77,7 +77,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         stride(m, m.points, positions)
         if settings.footing:
             plan_footholds(m, settings, walk if m.family == WALK else run, table, body, legs, ahead)
-            place_feet(m, body, legs, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
+            place_feet(m, body, legs, ahead, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
                 m.grip[k] = 1.0 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0.0

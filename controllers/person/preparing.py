@@ -76,8 +76,9 @@ def _note(part: str, walker: Locomotion) -> None:
 def feet(walker: Locomotion) -> None:
     """Compile what places the feet: half of a step."""
     memory, body, legs, places, turns, local, dt = _some(walker)
-    _compile(step.place_feet, memory, body, legs, walker.settings.clearance, np.zeros((0, 8)), 0.0, np.zeros((4, 2)), places, turns, local, dt,
-             np.zeros((5, 3, 3)))
+    ahead = step.room_to_plan(memory["weights"].size, len(local))
+    _compile(step.place_feet, memory, body, legs, ahead, walker.settings.clearance, np.zeros((0, 8)), 0.0, np.zeros((4, 2)), places, turns, local,
+             dt, np.zeros((5, 3, 3)))
 
 
 def rest(walker: Locomotion) -> None:
