@@ -13,7 +13,7 @@ from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jump
 from gambol.controllers.jump.motion import grounded
 from gambol.controllers.jump.motion.centroidal import CALM, EXACT, LOOSE, course_kernel
-from gambol.controllers.jump.motion.footing import standing_soles
+from gambol.controllers.jump.motion.footing import heels_down, settling, standing_soles
 
 FPS = 60
 KNOTS, STEP, RATE, FLIGHT = 9, 0.06, 10.0, 0.4
@@ -31,23 +31,28 @@ def course(start, land, leave=(0.0, 0.1), near=0.05, soles=SOLES):
     return *out, outside
 
 
+def ends(p, x, v):
+    """Where and how fast it is in the end that is pressed at p (N,): ẍ = r (x − p), p linear between knots, in closed form."""
+    for before, after in zip(p[:-1], p[1:]):
+        w, slope = np.sqrt(RATE), (after - before) / STEP
+        x, v = (before + slope * STEP + (x - before) * np.cosh(w * STEP) + (v - slope) / w * np.sinh(w * STEP),
+                slope + (x - before) * w * np.sinh(w * STEP) + (v - slope) * np.cosh(w * STEP))
+    return x, v
+
+
 def test_a_general_solver_finds_the_same():
     """One axis, the very cost that is written, within the same bounds."""
-    start, land, leave, near = ((0.0, 0.0), (0.0, 0.3)), (0.0, 0.8), 0.1, 0.05
-    _, _, pressed, outside = course(start, land, (0.0, leave), near)
+    land, leave, near = 0.8, 0.1, 0.05
+    _, _, pressed, outside = course(((0.0, 0.0), (0.0, 0.3)), (0.0, land), (0.0, leave), near)
 
-    def ends(p):
-        x, v = start[0][1], start[1][1]
-        for before, after in zip(p[:-1], p[1:]):  # ẍ = r (x − p), p linear: in closed form
-            w, slope = np.sqrt(RATE), (after - before) / STEP
-            x, v = (before + slope * STEP + (x - before) * np.cosh(w * STEP) + (v - slope) / w * np.sinh(w * STEP),
-                    slope + (x - before) * w * np.sinh(w * STEP) + (v - slope) * np.cosh(w * STEP))
-        return x, v
+    def arrives(p):
+        x, v = ends(p, 0.0, 0.3)
+        return x + FLIGHT * v - land
 
     def cost(p):
-        return near * p @ p + CALM * np.diff(p) @ np.diff(p) + (ends(p)[0] - leave) ** 2 / LOOSE
+        return near * p @ p + CALM * np.diff(p) @ np.diff(p) + (ends(p, 0.0, 0.3)[0] - leave) ** 2 / LOOSE
     found = minimize(cost, np.zeros(KNOTS), method="SLSQP", bounds=[(-0.17, 0.07)] * KNOTS, tol=1e-12,
-                     constraints={"type": "eq", "fun": lambda p: ends(p)[0] + FLIGHT * ends(p)[1] - land[1]})
+                     constraints={"type": "eq", "fun": arrives})
     assert found.success and outside < EXACT
     assert cost(pressed[:, 1]) == pytest.approx(found.fun, rel=0.02)
     np.testing.assert_allclose(pressed[:, 1], found.x, atol=0.01)
@@ -66,13 +71,9 @@ def test_the_arc_ends_over_the_target_whatever_the_soles_allow(vx, vz, x, z):
 @given(st.floats(-0.1, 0.1), st.floats(-0.1, 0.0), st.integers(0, 2**31 - 1))
 def test_what_soles_can_give_is_found(x, z, seed):
     """Ends that come from some pressure within the soles."""
-    inside = SOLES.mean(0) + np.random.default_rng(seed).uniform(-0.09, 0.09, (KNOTS, 2))
-    held = [np.empty((KNOTS, 2)) for _ in range(3)]
-    hulls, counts = np.repeat(inside[:, None], 13, 1), np.ones(KNOTS, np.int64)
-    given_, none = np.array([[x, z], [0.0, 0.2]]), np.zeros(2)
-    course_kernel(STEP, np.full(2 * KNOTS - 1, RATE), given_, FLIGHT, none, none, inside, np.full(KNOTS, 1e9), hulls, counts, *held)
-    land = held[0][-1] + FLIGHT * held[1][-1]
-    assert course(given_, land, held[0][-1])[3] < 2e-3
+    pressed = SOLES.mean(0) + np.random.default_rng(seed).uniform(-0.09, 0.09, (KNOTS, 2))
+    left, fast = np.transpose([ends(pressed[:, 0], x, 0.0), ends(pressed[:, 1], z, 0.2)])
+    assert course(((x, z), (0.0, 0.2)), left + FLIGHT * fast, left)[3] < 2e-3
 
 
 @pytest.fixture(scope="module")
@@ -125,12 +126,26 @@ def test_who_can_t_be_stopped_is_not_asked_to_leap_back(jump, strollers):
 
 
 def test_what_stands_is_what_is_down(jump, strollers):
-    """A foot counts from when it has come down; heels not once they may rise."""
-    body, start = jump.physique.tables, jump.start_of(strollers[0])
-    times = np.linspace(0.0, 0.4, 5)
-    hulls, counts = standing_soles(start, start.planted(0.0, body), body, times, times < 0.3)
-    areas = [0.5 * abs(np.sum(c[:, 0] * np.roll(c[:, 1], -1) - c[:, 1] * np.roll(c[:, 0], -1))) for c in (h[:n] for h, n in zip(hulls, counts))]
-    assert areas[0] < 0.7 * areas[2] and areas[4] < areas[2]
+    """A foot counts from when it has come down; heels not once they may rise, nor where legs or ankles can't reach."""
+    body, times, high = jump.physique.tables, np.linspace(0.0, 0.4, 5), 0
+    for state in strollers:
+        start = jump.start_of(state)
+        planted = start.planted(0.0, body)
+        feet = settling(start, planted, body, times)
+        hulls, counts = standing_soles(feet, body.sole, np.repeat(times < 0.3, 2).reshape(-1, 2), None, body)
+        shapes = [h[:n] for h, n in zip(hulls, counts)]
+        areas = [0.5 * abs(np.sum(c[:, 0] * np.roll(c[:, 1], -1) - c[:, 1] * np.roll(c[:, 0], -1))) for c in shapes]
+        assert areas[3] < areas[2]
+        if feet[0, :, 1].max() > body.sole + 0.03:
+            high += 1
+            assert areas[0] < areas[2]
+    assert high
+    ahead, up = np.meshgrid(np.linspace(-0.3, 0.6, 19), [0.8, 0.87, 0.94])
+    middle = planted[:, :3].mean(0)
+    centres = np.stack([0.0 * ahead + middle[0], up, middle[2] + ahead], -1)
+    down = [heels_down(row, np.repeat(planted[None], 19, 0), body, 0.7).all(-1) for row in centres]
+    assert all(row[0] and not row[-1] and (np.diff(row.astype(int)) <= 0).all() for row in down)
+    assert down[0].sum() < down[1].sum()  # a deep crouch bends ankles
 
 
 def test_a_slower_wind_up_never_pulls(jump, strollers):

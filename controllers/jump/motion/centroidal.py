@@ -15,12 +15,12 @@ import numpy as np
 
 from ...compiled import kernel
 
-CALM, PENALTY = 1.0, 1.0
-"""How much counts that pressure moves from knot to knot, where its distance from the soles' nearest counts the second."""
+CALM, PENALTY, OVER = 1.0, 0.3, 1.7
+"""How much counts that pressure moves from knot to knot; the method's penalty on what is outside the soles, and its over-relaxation."""
 LOOSE = 0.3
 """How little it minds to leave elsewhere than was guessed; 0 would hold it there."""
 ROUNDS, EXACT = 120, 5e-4
-"""At most so many rounds, until the pressure is within the soles to this [m]."""
+"""At most so many rounds, until the pressure is within the soles to this [m], and what is nearest in them moves no more."""
 
 
 @kernel
@@ -46,7 +46,7 @@ def course_kernel(step, rates, start, flight, land, leave, guess, near, hulls, c
         _solve(factor, rows[k], away[k])
     a, b, c = rows[0] @ away[0], rows[0] @ away[1], rows[1] @ away[1] + LOOSE
     whole = a * c - b * b
-    held, owed, at, lacks = guess.copy(), np.zeros((count, 2)), np.empty(2), np.empty((2, 2))
+    held, owed, at, before, lacks = guess.copy(), np.zeros((count, 2)), np.empty(2), np.empty(2), np.empty((2, 2))
     for i in range(2):
         gone = moves[count] * start[0, i] + moves[count + 1] * start[1, i]
         fast = speeds[count] * start[0, i] + speeds[count + 1] * start[1, i]
@@ -63,13 +63,17 @@ def course_kernel(step, rates, start, flight, land, leave, guess, near, hulls, c
             first, second = (c * e - b * f) / whole, (a * f - b * e) / whole
             for n in range(count):
                 pressed[n, i] = given[n] + first * away[0, n] + second * away[1, n]
-        outside = 0.0
+        outside, moved = 0.0, 0.0
         for n in range(count):
-            at[0], at[1] = pressed[n, 0] + owed[n, 0], pressed[n, 1] + owed[n, 1]
+            for i in range(2):
+                before[i] = held[n, i]
+                at[i] = OVER * pressed[n, i] + (1.0 - OVER) * before[i] + owed[n, i]
             _project(at, hulls[n], counts[n], held[n])
-            owed[n, 0], owed[n, 1] = at[0] - held[n, 0], at[1] - held[n, 1]
+            for i in range(2):
+                owed[n, i] = at[i] - held[n, i]
             outside = max(outside, math.hypot(pressed[n, 0] - held[n, 0], pressed[n, 1] - held[n, 1]))
-        if outside < EXACT:
+            moved = max(moved, math.hypot(held[n, 0] - before[0], held[n, 1] - before[1]))
+        if max(outside, moved) < EXACT:
             break
     for i in range(2):
         place[0, i], velocity[0, i] = start[0, i], start[1, i]

@@ -3,15 +3,16 @@ estimated first, and when it goes down if that takes longer."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from ..body import FLAT, HEEL_UP, TAKE_OFF_REACH, Physique, Start, hermite, measures, over, stretched, take_off_velocity
+from ..body import FLAT, FLEX, HEEL_UP, TAKE_OFF_REACH, Physique, Start, hermite, measures, over, stretched, take_off_velocity
 from ..prior import BETWEEN, LEGS
 from .centroidal import course_kernel
 from .descent import descent, sinking
-from .footing import heels_rise, standing_soles
+from .footing import heels_down, heels_rise, settling, standing_soles
 from .path_estimate import Course, Path
 from .take_off import STRIDE
 from .thrust import push
@@ -24,32 +25,46 @@ SLOWER = 1.0, 1.3, 1.6, 2.0
 """A body on two feet takes so many times as long to wind up, until its soles are enough."""
 WITHIN = 0.01
 """Soles are enough if the pressure lies no farther than this outside them [m], at standard height."""
+AGAIN = 2
+"""How high it leaves and where heels rise follow from where it goes: that is found so often again."""
+ASTRAY = 0.5
+"""No soles are enough for who must leave so far from where it was estimated [m], at standard height."""
+AGES = 12.0
+"""Nobody winds up and pushes longer [s √(m/s²)] than this over the root of gravity."""
 LIGHTEST = 0.1
 """A slower wind-up leaves so much of its weight on the floor at least."""
 
 
 def grounded(physique: Physique, start: Start, way: Path, floor: float) -> Path:
-    """The path with a `Course` that a floor [m] can give, as far as there is one; a path without a push as it is."""
+    """The path with a `Course` that a floor [m] can give, as far as there is one; a path without a push as it is, one that pushes for ages
+    without it."""
     if way.push is None or not np.isfinite(np.concatenate([way.low, way.leave, way.velocity])).all():
         return way
+    if (way.wind_up + way.push.duration) * np.sqrt(-way.gravity[1] / physique.size) > AGES:
+        return replace(way, push=None)
     planted = start.planted(floor, physique.tables)
     best = None
     for scale in SLOWER if start.single is None and start.low is None else SLOWER[:1]:
         slower = replace(way, wind_up=scale * way.wind_up)
         if scale > 1.0 and (sinking(slower, start, np.linspace(0.0, slower.wind_up, KNOTS))[2][:, 1] < (1.0 - LIGHTEST) * way.gravity[1]).any():
             break
-        slower = _left(physique, start, slower, planted, _course(physique, start, slower, planted, floor), floor)
-        course = _course(physique, start, slower, planted, floor)
+        course = _course(physique, start, slower, planted, floor, None)
+        for _ in range(AGAIN):
+            if not np.linalg.norm(course.place[-1] - way.leave[[0, 2]]) < ASTRAY * physique.size:
+                course = course._replace(outside=np.inf)
+                break
+            slower = _left(physique, start, slower, planted, course)
+            course = _course(physique, start, slower, planted, floor, course)
         if best is None or course.outside < best[1].outside - WITHIN * physique.size:
             best = slower, course
         if course.outside <= WITHIN * physique.size:
             break
     assert best is not None  # there is always one
-    return _on(*best)
+    return _on(*best) if np.isfinite(best[1].outside) else replace(way, course=best[1])
 
 
-def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, floor: float) -> Course:
-    """The way along the floor until it leaves, for this way up and down."""
+def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, floor: float, before: Course | None) -> Course:
+    """The way along the floor until it leaves, for this way up and down. before: the one found last, which tells where heels rise."""
     assert way.push is not None
     until = way.wind_up + way.push.duration
     half = np.linspace(0.0, until, 2 * KNOTS - 1)
@@ -57,21 +72,26 @@ def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, fl
     sunk, _, bent = sinking(way, start, down)
     height = np.concatenate([sunk[:, 1], way.low[1] + way.push.moved(pushing, 0.0 * way.passing)[0][:, 1]]) - floor
     force = np.concatenate([bent[:, 1] - way.gravity[1], way.push.force(pushing)[:, 1]])
-    times, guess = half[::2], _guess(start, way, floor)
+    times, (guess, place) = half[::2], _guess(start, way, floor)
     share = np.clip((times - way.wind_up) / way.push.duration, 0.0, 1.0)
-    flat = share <= heels_rise(start, planted, guess[1], share)
-    hulls, counts = standing_soles(start, planted, physique.tables, times, flat)
+    centres = np.insert(place if before is None else before.place, 1, height[::2] + floor, axis=1)
+    feet = settling(start, planted, physique.tables, times)
+    flat = np.ones(feet.shape[:2], bool)
+    if start.single is not None:  # whose hips are under his mass; who crouches on two feet sits back, heels down
+        flat = heels_down(centres, feet, physique.tables, FLEX * physique.flexibility)
+    flat &= (share <= heels_rise(start, planted, centres, share))[:, None]
+    hulls, counts = standing_soles(feet, float(planted[0, 1]), flat, start.single, physique.tables)
     near = np.full(KNOTS, NEAR)
     near[0] = BEGINS
     place, velocity, pressed = (np.empty((KNOTS, 2)) for _ in range(3))
     outside = course_kernel(times[1], force / height, np.stack([start.centre[[0, 2]], start.velocity[[0, 2]]]), way.airtime, way.land[[0, 2]],
-                            way.leave[[0, 2]], guess[0], near, hulls, counts, place, velocity, pressed)
+                            way.leave[[0, 2]], guess, near, hulls, counts, place, velocity, pressed)
     lean = float((np.linalg.norm(place - pressed, axis=1) / height[::2]).max())
     return Course(times, place, velocity, pressed, float(outside), lean)
 
 
-def _guess(start: Start, way: Path, floor: float) -> tuple[np.ndarray, np.ndarray]:
-    """Where the estimate presses (KNOTS, 2), x and z, and where its centre of mass is (KNOTS, 3), evenly from the start until it leaves."""
+def _guess(start: Start, way: Path, floor: float) -> Iterator[np.ndarray]:
+    """Where the estimate presses and where its centre of mass is (KNOTS, 2) x, z, evenly from the start until it leaves."""
     assert way.push is not None
     before = np.linspace(0.0, way.wind_up, KNOTS)
     pushing = np.linspace(0.0, way.push.duration, KNOTS)[1:-1]
@@ -81,12 +101,10 @@ def _guess(start: Start, way: Path, floor: float) -> tuple[np.ndarray, np.ndarra
     force = np.concatenate([a - way.gravity, way.push.force(pushing)])
     pressed = centres - force * ((centres[:, 1] - floor) / np.maximum(force[:, 1], 1e-3 * -way.gravity[1]))[:, None]
     known, times = np.concatenate([before, way.wind_up + pushing]), np.linspace(0.0, way.wind_up + way.push.duration, KNOTS)
-    rows = np.concatenate([pressed[:, [0, 2]], centres], 1)
-    rows = np.stack([np.interp(times, known, row) for row in rows.T], 1)
-    return np.ascontiguousarray(rows[:, :2]), rows[:, 2:]
+    return (np.ascontiguousarray(np.stack([np.interp(times, known, part[:, k]) for k in (0, 2)], 1)) for part in (pressed, centres))
 
 
-def _left(physique: Physique, start: Start, way: Path, planted: np.ndarray, course: Course, floor: float) -> Path:
+def _left(physique: Physique, start: Start, way: Path, planted: np.ndarray, course: Course) -> Path:
     """The path that leaves where the course does, as high as its legs then reach."""
     leave = way.leave.copy()
     leave[[0, 2]] = course.place[-1]
