@@ -8,18 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..body import yaw
-from .body import FOOT_FADE, HEEL_UP, Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
-from .motion import (FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, descent, faded, flight_kernel,
-                     ground_kernel)
+from .body import HEEL_UP, Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
+from .motion import (FADE, FREE, GROUND_RATE, HEEL, RUNNERS_HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel,
+                     heels_rise, settling, sinking)
 from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
-HEELS_RISE = (0.45, 0.90)
-"""When in the push a heel starts to rise, at the earliest and at the latest."""
-RUNNERS_HEEL = 0.2, 1.15
-"""When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
 GATHERS = 0.2
 """Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
@@ -90,24 +85,23 @@ class _Draft(Airborne):
         way, start = self.way, self.start
         before = np.linspace(0.0, self.off, max(int(np.ceil(self.off * GROUND_RATE)), 3) + 1)
         pushing = np.linspace(0.0, self.push.duration, max(int(np.ceil(PUSH_RATE * self.push.duration)), 8) + 1)[1:]
-        c, v, a = descent(way, start, self.planted[0, 1] - self.body.sole, before)
+        c, v, a = sinking(way, start, before)
         gone, speed = self.push.moved(pushing, way.passing)
         self.times = np.concatenate([before, self.off + pushing])
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
         self.forces = np.concatenate([a - self.gravity, self.push.force(pushing)])
+        self._along_the_floor()
         self.angles = self.carriage(self.times)
         self._differ(self.angles[0])
         self.offsets = self._left_over(self.times)
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
         self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0], self.times)
         share = np.clip((self.times - self.off) / self.push.duration, 0.0, 1.0)
-        rising = self._heels_rise(share)
+        rising = heels_rise(start, self.planted, self.centres, share)
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
-        self.feet[..., :5] = self.planted + faded(start.feet - self.planted, start.feet_rates, FOOT_FADE, self.times)
-        heels = np.sin(np.maximum(-self.feet[..., 4], 0.0)) * (self.body.toe[2] - self.body.heel[2])  # lower than balls by this
-        self.feet[..., 1] = np.maximum(self.feet[..., 1], self.planted[:, 1] + heels)
+        self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
         risen = HEEL_UP * late**2 * (1.5 - 0.5 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
@@ -118,13 +112,16 @@ class _Draft(Airborne):
             self.feet[:, swing, 5] = FREE
             self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
 
-    def _heels_rise(self, share: np.ndarray) -> float:
-        """When in the push (0 … 1) the heels rise: not before a standing jumper is over the balls of the feet."""
-        if self.start.single is not None:
-            return RUNNERS_HEEL[0]
-        past = (self.centres[:, None] - self.planted[:, :3]) @ yaw(self.start.heading)[:, 2]
-        over = (past > 0.0).all(-1) & (share > 0.0)
-        return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
+    def _along_the_floor(self) -> None:
+        """Centre of mass and force as the path's course has them along the floor."""
+        course = self.way.course
+        assert course is not None  # a path with a push has one before it is planned
+        places = hermite(course.times, course.place, course.velocity, self.times)
+        pressed = np.stack([np.interp(self.times, course.times, part) for part in course.pressed.T], 1)
+        high = self.centres[:, 1] - (self.planted[0, 1] - self.body.sole)
+        self.centres[:, [0, 2]] = places
+        self.forces[:, [0, 2]] = (self.forces[:, 1] / high)[:, None] * (places - pressed)
+        self.velocities[:, [0, 2]] = np.stack([np.interp(self.times, course.times, part) for part in course.velocity.T], 1)
 
     def _knee_drive(self, side: int) -> np.ndarray:
         """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: as recorded, from how it is."""

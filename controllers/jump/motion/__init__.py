@@ -2,15 +2,17 @@
 the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
 """
 
-from .airborne import FADE, FREE, GROUND_RATE, HEEL, PLANT, SAME, Airborne, faded, ground_kernel
-from .descent import descent
+from .airborne import FADE, FREE, GROUND_RATE, HEEL, PLANT, SAME, Airborne, ground_kernel
+from .descent import sinking
 from .fall import fall, over_nothing, struck
+from .footing import RUNNERS_HEEL, faded, heels_rise, settling
 from .flight import flight_kernel
-from .path_estimate import SPINS, Path, path
+from .grounded import grounded
+from .path_estimate import SPINS, Course, Path, path
 from .plan import Plan
 from .thrust import Push, push
 
 __all__ = [
-    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "SAME", "SPINS", "Airborne", "Path", "Plan", "Push", "descent", "faded", "fall",
-    "flight_kernel", "ground_kernel", "over_nothing", "path", "push", "struck",
+    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "RUNNERS_HEEL", "SAME", "SPINS", "Airborne", "Course", "Path", "Plan", "Push", "faded", "fall",
+    "flight_kernel", "ground_kernel", "grounded", "heels_rise", "over_nothing", "path", "push", "settling", "sinking", "struck",
 ]

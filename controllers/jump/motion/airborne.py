@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 
-from ...body import exp_kernel, product_kernel, settle, yaw
+from ...body import exp_kernel, product_kernel, yaw
 from ...compiled import kernel
 from ..body import (FLEX, TOES_DOWN, Physique, Start, hermite, measures, monotone, parts_kernel, place_kernel, soles, stand_kernel,
                     carriage, turns, vectors)
 from ..prior import BETWEEN, EACH, LEGS
+from .footing import faded
 from .landing import TIME, absorb
 from .looking import Look
 from .path_estimate import Path
@@ -198,12 +199,6 @@ def keyed_leg(times: np.ndarray, rows: np.ndarray):
     bent[:, :EACH, 0] = np.concatenate([rows, rows[-1:]])
     slopes = monotone(times, bent)
     return lambda at: turns(hermite(times, bent, slopes, at))
-
-
-def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
-    """Offsets (N, ...) at times (N,) [s] of one (...) that settles from its rate."""
-    kept, carried = settle(np.array([1.0, 0.0]), np.array([0.0, 1.0]), halflife, times[:, None])[0].T  # of offset, of rate
-    return np.multiply.outer(kept, offset) + np.multiply.outer(carried, rate)
 
 
 @kernel

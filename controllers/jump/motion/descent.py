@@ -15,36 +15,44 @@ from .take_off import MEETS
 
 
 def descent(way: Path, start: Start, floor: float, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Place [m], velocity and acceleration (N, 3) of the centre of mass at times (N,) [s], evenly from 0 to the lowest point.
-
-    A runner goes down by a quartic: how hard the ground meets the foot is left open. A standing body does by a quintic,
-    later where `Path.dip` says so. floor: [m].
+    """Place [m], velocity and acceleration (N, 3) of the centre of mass at times (N,) [s], evenly from 0 to the lowest point, as it is
+    estimated: what `grounded` begins with. floor: [m].
     """
     assert way.push is not None  # a fall has none, and comes down in the air
-    pushed = way.push.force(0.0) + way.gravity
+    c, v, a = sinking(way, start, times)
     if way.running:
-        down, along = (joined(start.centre, start.velocity, begins, way.low, way.passing, pushed, times)
-                       for begins in (None, np.zeros(3)))
-        for part, flat in zip(down, along):
+        along = joined(start.centre, start.velocity, np.zeros(3), way.low, way.passing, way.push.force(0.0) + way.gravity, times, way.wind_up)
+        for part, flat in zip((c, v, a), along):
             part[:, [0, 2]] = flat[:, [0, 2]]
-        return down
+        return c, v, a
     half = np.linspace(0.0, times[-1], 2 * len(times) - 1)
-    late = np.maximum(half - max(way.wind_up - way.dip, 0.0), 0.0)
-    pushed[1] = min(pushed[1], -MEETS * way.gravity[1])
-    sinking = start.velocity if way.dip >= way.wind_up else 0.0 * start.velocity
-    c, v, a = joined(start.centre, sinking, start.acceleration, way.low, way.passing, pushed, late)
-    rates = (a[:, 1] + 1e-9 - way.gravity[1]) / (c[:, 1] - floor)
+    sunk, _, bent = sinking(way, start, half)
+    rates = (bent[:, 1] + 1e-9 - way.gravity[1]) / (sunk[:, 1] - floor)
     fallen = fallen_kernel(half, rates, start.centre[[0, 2]], (start.centre - start.acceleration / rates[0])[[0, 2]],
                            start.velocity[[0, 2]], way.low[[0, 2]], way.passing[[0, 2]], way.pressed[[0, 2]])
-    c, v, a = c[::2], v[::2], a[::2]
     c[:, [0, 2]], v[:, [0, 2]], a[:, [0, 2]] = fallen
     return c, v, a
 
 
-def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times):
-    """Place, velocity, acceleration (N, 3) along the quintic with these ends at times[0] = 0 and times[-1], or, without a
+def sinking(way: Path, start: Start, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Place [m], velocity and acceleration (N, 3) of the way down at times (N,) [s] until the lowest point, of which the upward part counts.
+
+    A runner goes down by a quartic: how hard the ground meets the foot is left open. A standing body does by a quintic,
+    later where `Path.dip` says so.
+    """
+    assert way.push is not None
+    pushed = way.push.force(0.0) + way.gravity
+    if way.running:
+        return joined(start.centre, start.velocity, None, way.low, way.passing, pushed, times, way.wind_up)
+    pushed[1] = min(pushed[1], -MEETS * way.gravity[1])
+    lasts = min(way.dip, way.wind_up)
+    sinks = start.velocity if way.dip >= way.wind_up else 0.0 * start.velocity
+    return joined(start.centre, sinks, start.acceleration, way.low, way.passing, pushed, np.maximum(times - way.wind_up + lasts, 0.0), lasts)
+
+
+def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times, t):
+    """Place, velocity, acceleration (N, 3) at times (N,) along the quintic with these ends at 0 and t [s], or, without a
     first acceleration, the quartic."""
-    t = times[-1]
     powers = np.arange(3, 6) if acceleration is not None else np.arange(2, 5)
     begins = np.zeros(3) if acceleration is None else acceleration
     ends = np.stack([t**powers, powers * t ** (powers - 1.0), powers * (powers - 1.0) * t ** (powers - 2.0)])

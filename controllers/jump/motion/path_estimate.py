@@ -5,6 +5,7 @@ wind-up over take-off to landing, and what stops a body from going there.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,6 +47,18 @@ ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
 a share at least of what the last round found."""
 
 
+class Course(NamedTuple):
+    """A way along the floor until the body leaves it: times (K,) [s]; place [m], velocity [m/s] and centre of pressure [m] (K, 2), x and z; how
+    far [m] that lies outside the soles at most; how far the force leans from upright at most, which is the friction it needs."""
+
+    times: np.ndarray
+    place: np.ndarray
+    velocity: np.ndarray
+    pressed: np.ndarray
+    outside: float
+    lean: float
+
+
 @dataclass(frozen=True, eq=False)
 class Path:
     """The way of the centre of mass: lowest point, take-off, landing (3,) [m], its velocities (3,) [m/s] at the lowest point
@@ -55,6 +68,7 @@ class Path:
     whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
     foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down. lands: on which foot it lands to run
     on, 0 left, 1 right; None on both. turn: [rad] to the left from `heading` until it lands.
+    course: how it goes along the floor, None where that was only estimated (see `grounded`).
     """
 
     low: np.ndarray
@@ -78,6 +92,7 @@ class Path:
     lands: int | None = None
     keys: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     turn: float = 0.0
+    course: Course | None = None
 
     def turned(self, time: ArrayLike) -> np.ndarray:
         """How far (...) [rad] to the left it has turned at times (...) [s] after it began."""

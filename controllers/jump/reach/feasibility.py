@@ -11,7 +11,7 @@ from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ...contract import Unable
 from ...navigation import gap
 from ..body import FLAT, TURNED, Physique, along, measures, carriage, turns
-from ..motion import SPINS, Path, Plan, Push
+from ..motion import SPINS, Path, Plan
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
 
@@ -19,9 +19,8 @@ RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
 SLIP = 1.0
 """Soles slip on the floor under a force that leans farther: their friction."""
-ASIDE = 0.5
-"""The force of a runner's push passes by the middle of the foot at most so far [m], at standard height: the foot is half
-of that, limbs that turn account for the rest."""
+ASIDE = 0.03
+"""The ground presses no farther outside the soles that stand than this [m], at standard height."""
 STOPS = 6.0, 0.5
 """What legs give as they stop a fall, in an adult's weights on Earth at strength 1, and over which way [m], at
 standard height."""
@@ -62,9 +61,9 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if way.running and force > RUNNER * 9.81 * physique.strength:
         return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
                 f"where this one has {RUNNER * physique.strength:.1f}")
-    if way.running and not _grips(physique, way, way.push, floor):
-        gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.passing * FLAT)
-        return f"too {'far' if gains else 'near'} for this run: no foot {'speeds up' if gains else 'brakes'} so much in one step"
+    if way.course is not None and (way.course.outside > ASIDE * physique.size or way.course.lean > SLIP):
+        gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.course.velocity[0])
+        return f"too {'far' if gains else 'near'} for this {'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
     size, down = physique.size, -float(way.falling[1])
@@ -84,17 +83,6 @@ def wrong(physique: Physique, made: Plan) -> str:
     if tilt.max() > TILT or tilt[-1] > 0.5 * TILT:
         return "it would tumble: turn towards the place first"
     return ""
-
-
-def _grips(physique: Physique, way: Path, push: Push, floor: float) -> bool:
-    """Whether the ground can give the push: up, without the foot slipping, and from about where it is."""
-    time = np.linspace(0.0, 0.75, 4) * push.duration
-    force = push.force(time)
-    gone, _ = push.moved(time, way.passing)
-    lean = force * FLAT / force[:, 1:2]
-    pressed = (way.low + gone) * FLAT - lean * (way.low + gone - floor)[:, 1:2]
-    return bool(np.linalg.norm(lean, axis=1).max() < SLIP
-                and np.linalg.norm(pressed - way.stance * FLAT, axis=1).max() < ASIDE * physique.size)
 
 
 def _weak(physique: Physique, way: Path, floor: float) -> str:

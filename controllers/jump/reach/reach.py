@@ -9,7 +9,7 @@ import numpy as np
 
 from ...navigation import floor_at, gap
 from ..body import FLAT, Physique, Start, landing_feet, soles
-from ..motion import Path, Plan, path
+from ..motion import Path, Plan, grounded, path
 from ..planner import plan
 from ..prior import Prior
 from .feasibility import fault, wrong
@@ -110,7 +110,7 @@ class Reach:
             for low, tucked in WAYS if len(around) else WAYS[:1]:
                 if first is not None and higher > 1.0 and not tucked:
                     continue
-                way = self.path(start, place, floor, flight, low, tucked)
+                way = grounded(self.physique, start, self.path(start, place, floor, flight, low, tucked), floor)
                 first = first or way
                 yield way, fault(self.physique, way, around, floor)
                 if not way.strong:

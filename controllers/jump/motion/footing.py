@@ -1,0 +1,90 @@
+"""Which soles stand at each moment of a wind-up and a push: from where the ground can press."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...body import HALF_SOLE, hull_kernel, settle, yaw
+from ...compiled import kernel
+from ..body import FOOT_FADE, BodyTables, Start
+
+STANDS = 0.02
+"""What is higher over the floor than this [m], at standard height, does not stand."""
+HIPS = 0.09
+"""How far below the centre of mass hips are that push [m], at standard height."""
+STRAIGHT, RAISED = 0.992, 0.05
+"""A heel rises where the leg is longer than this share of its length, or where the ankle would bend by so much more than it can [rad]."""
+HEELS_RISE = (0.45, 0.90)
+"""When in the push a heel starts to rise, at the earliest and at the latest."""
+RUNNERS_HEEL = 0.2, 1.15
+"""When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
+
+
+def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndarray) -> np.ndarray:
+    """The feet (N, 2, 5) at times (N,) [s], on their way from the start to where they are planted (2, 5): balls x, y, z [m], yaw, pitch [rad]."""
+    feet = planted + faded(start.feet - planted, start.feet_rates, FOOT_FADE, times)
+    heels = np.sin(np.maximum(-feet[..., 4], 0.0)) * (body.toe[2] - body.heel[2])  # lower than balls by this
+    feet[..., 1] = np.maximum(feet[..., 1], planted[:, 1] + heels)
+    return feet
+
+
+def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np.ndarray) -> float:
+    """When in the push (0 … 1) the heels rise: not before a standing jumper, its mass at centres (N, 3) when so much (N,) of the push is
+    over, is over the balls of the feet."""
+    if start.single is not None:
+        return RUNNERS_HEEL[0]
+    past = (centres[:, None] - planted[:, :3]) @ yaw(start.heading)[:, 2]
+    over = (past > 0.0).all(-1) & (share > 0.0)
+    return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
+
+
+def heels_down(centres: np.ndarray, feet: np.ndarray, body: BodyTables, flex: float) -> np.ndarray:
+    """Whether heels (N, 2) of feet (N, 2, 5) can be on the floor under a mass at centres (N, 3): neither is the leg too short nor does the ankle
+    bend by more than `flex` [rad]."""
+    heading = np.stack([np.sin(feet[..., 3]), np.zeros(feet.shape[:2]), np.cos(feet[..., 3])], -1)
+    leg = (centres - [0.0, HIPS * body.size, 0.0])[:, None] - feet[..., :3] + body.toe[2] * heading + [0.0, body.toe[1], 0.0]
+    long = np.linalg.norm(leg, axis=-1)
+    bent = np.clip((body.shank**2 + long**2 - body.thigh**2) / (2.0 * body.shank * long), -1.0, 1.0)
+    shank = np.arctan2((leg * heading).sum(-1), leg[..., 1]) + np.arccos(bent)
+    return (long < STRAIGHT * (body.thigh + body.shank)) & (shank < flex + RAISED)
+
+
+def standing_soles(feet: np.ndarray, low: float, flat: np.ndarray, single: int | None, body: BodyTables) -> tuple[np.ndarray, np.ndarray]:
+    """The corners (N, 13, 2) x, z [m] of what of feet (N, 2, 5) stands on a floor on which balls are `low` [m], counter-clockwise, and how many (N,)
+    they are. flat: (N, 2) whether heels may stand; single: the only foot that counts, if one does."""
+    hulls, counts = np.empty((len(feet), 13, 2)), np.empty(len(feet), np.int64)
+    soles_kernel(feet, low + STANDS * body.size, flat, -1 if single is None else single, body, hulls, counts)
+    return hulls, counts
+
+
+@kernel
+def soles_kernel(feet, low, flat, single, body, hulls, counts):
+    """Write the hulls (N, 13, 2) of what of the soles of feet (N, 2, 5) is no higher than `low` [m], and their counts (N,). flat: (N, 2) as in
+    `standing_soles`; single: the only foot that stands, or −1."""
+    points, half = np.empty((12, 2)), HALF_SOLE * body.size
+    back, ahead = body.heel[2] - body.toe[2], body.tip[2]
+    for n in range(len(feet)):
+        count = 0
+        for side in range(2):
+            if single >= 0 and side != single:
+                continue
+            foot = feet[n, side]
+            s, c, rise = math.sin(foot[3]), math.cos(foot[3]), math.sin(foot[4])
+            for k in range(3):
+                along = back if k == 0 else 0.0 if k == 1 else ahead
+                high = foot[1] - rise * back if k == 0 else foot[1] if k == 1 else foot[1] - min(rise, 0.0) * ahead
+                if high > low or (k == 0 and not flat[n, side]):
+                    continue
+                for aside in (half, -half):
+                    points[count, 0] = foot[0] + aside * c + along * s
+                    points[count, 1] = foot[2] - aside * s + along * c
+                    count += 1
+        counts[n] = hull_kernel(points, count, hulls[n])
+
+
+def faded(offset: np.ndarray, rate: np.ndarray, halflife: float, times: np.ndarray) -> np.ndarray:
+    """Offsets (N, ...) at times (N,) [s] of one (...) that settles from its rate."""
+    kept, carried = settle(np.array([1.0, 0.0]), np.array([0.0, 1.0]), halflife, times[:, None])[0].T  # of offset, of rate
+    return np.multiply.outer(kept, offset) + np.multiply.outer(carried, rate)
