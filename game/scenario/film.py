@@ -131,7 +131,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
         scripts = tuple(script for script, _ in moves)
         intents = [intent for _, intent in moves]
         ways = [script.wished(character.state) for script, character in zip(scripts, world.characters)]
-        world = world.step(avoiding(world, intents, ways, groups) if scenario.avoid else intents)
+        world, intents = avoiding(world, intents, ways, groups) if scenario.avoid else (world, intents)
+        world = world.step(intents)
 
 
 def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:

@@ -102,7 +102,8 @@ class Turns(NamedTuple):
 
 
 class _Met(NamedTuple):
-    """Walkers as a door has them: along it, beyond it [m], on which side, how far off [m] and aside of the opening; who heads for it, and who comes out."""
+    """Walkers as a door has them: along it, beyond it [m], on which side, how far off [m] and aside of the opening; who heads for it, who comes out,
+    and who would, though others are in his way."""
 
     along: np.ndarray
     beyond: np.ndarray
@@ -111,10 +112,19 @@ class _Met(NamedTuple):
     aside: np.ndarray
     comes: np.ndarray
     leaving: np.ndarray
+    would: np.ndarray
 
     def first(self, side: float) -> float:
         """How far the next of one side is from the door [m], 0 while some of it come out; inf if nobody comes."""
         return min(np.min(self.far[self.comes & (self.side == side)], initial=np.inf), 0.0 if np.any(self.leaving & (self.side == -side)) else np.inf)
+
+    def within(self, turn: float) -> np.ndarray:
+        """Who (N,) is in the door though it is the turn of those on the other side."""
+        return self.comes & (self.far < WITHIN) & (self.side != turn)
+
+    def blocked(self, turn: float) -> bool:
+        """Whether those whose turn it is wait until it is empty."""
+        return bool(np.any(self.within(turn)) or np.any(self.would & (self.side == turn)))
 
     def nearer(self) -> float:
         """The side that is nearer to it."""
@@ -132,14 +142,15 @@ def _met(door: Door, places: np.ndarray, wishes: np.ndarray, aims: np.ndarray, m
     aside = np.maximum(np.abs(along) - door.half + 0.3, 0.0)
     far = np.hypot(aside, beyond)
     comes = (far < FAR) & (near | towards & (np.abs(at) < door.half + 0.1) & (side * a_beyond < THROUGH))
-    leaving = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes & (side * door.seen(door.middle + moving)[1] > 0.1)
-    return _Met(along, beyond, side, far, aside, comes, leaving)
+    there = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes
+    leaving, would = (there & (side * seen > 0.1) for seen in (door.seen(door.middle + moving)[1], w_beyond))
+    return _Met(along, beyond, side, far, aside, comes, leaving, would)
 
 
 def taking_turns(places, wishes, aims, doors: Sequence[Door], going, turns: Turns | None, dt: float) -> Turns:
     """Whose turn it is after a step of dt [s]; arguments as of `queued`, turns: as they were, None at first.
 
-    A side goes on as long as its people follow each other closely, but for no longer than those of the other side are patient.
+    A side goes on as long as its people follow each other closely, but for no longer than those of the other side are patient, from when it can.
     """
     places, wishes, aims, going = (np.asarray(a, float) for a in (places, wishes, aims, going))
     turns = Turns(np.zeros(len(doors)), np.zeros(len(doors))) if turns is None or len(turns.sides) != len(doors) else turns
@@ -148,7 +159,7 @@ def taking_turns(places, wishes, aims, doors: Sequence[Door], going, turns: Turn
         met = _met(door, places, wishes, aims, going)
         follows = met.first(sides[d]) < FOLLOWS if sides[d] else False
         waits = bool(sides[d]) and bool(np.any(met.comes & (met.side == -sides[d]) & (met.far < WAITS)))
-        waited[d] = waited[d] + dt if waits else 0.0
+        waited[d] = 0.0 if not waits else waited[d] if met.blocked(sides[d]) else waited[d] + dt
         if not follows or waited[d] > PATIENCE:
             sides[d], waited[d] = -sides[d] if follows else met.nearer() if np.any(met.comes) else 0.0, 0.0
     return Turns(sides, waited)
@@ -166,8 +177,7 @@ def queued(places, wishes, aims, doors: Sequence[Door], going=None, turns: Turns
         met = _met(door, places, found, aims, moving)
         first = [met.first(-1.0), met.first(1.0)]
         turn = met.nearer() if turns is None or turns.sides[d] == 0.0 else float(turns.sides[d])
-        within = met.comes & (met.far < WITHIN) & (met.side != turn) & (turns is not None)  # it was their turn, and they are in it
-        blocked = turns is not None and bool(np.any(within) or np.any(met.leaving & (met.side == turn)))
+        within, blocked = met.within(turn) & (turns is not None), turns is not None and met.blocked(turn)
         mine = np.flatnonzero(met.comes & (met.side == turn))
         rank = np.argsort(np.argsort(met.far[mine] + met.aside[mine], kind="stable"), kind="stable")
         slips = max(round(2.0 * door.half / SLIPS), 1)
