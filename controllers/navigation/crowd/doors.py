@@ -43,6 +43,8 @@ WITHIN = 0.7
 """Who is so near to a door [m] when it is the others' turn goes through it all the same."""
 FOLLOWS = 2.0
 """Whoever is no farther from the door [m] follows those before him."""
+CLEARS = 5.0
+"""For so long [s], at most, those whose turn begins wait until the others are out."""
 WAITS, PATIENCE = 4.0, 14.0
 """Who is so near to a door [m] waits for his turn, for so long [s]; then the others let him."""
 
@@ -95,7 +97,7 @@ def _doors(table: bytes) -> tuple[Door, ...]:
 
 class Turns(NamedTuple):
     """Whose turn it is at each door of D. sides: (D,) -1 for those before it, 1 for those beyond, as `Door.seen` has it; 0 for nobody's yet. waited: (D,)
-    for how long those of the other side have waited meanwhile [s]."""
+    for how long those of the other side have waited meanwhile [s], below 0 while the door is left for them to go on."""
 
     sides: np.ndarray
     waited: np.ndarray
@@ -142,8 +144,8 @@ def _met(door: Door, places: np.ndarray, wishes: np.ndarray, aims: np.ndarray, m
     aside = np.maximum(np.abs(along) - door.half + 0.3, 0.0)
     far = np.hypot(aside, beyond)
     comes = (far < FAR) & (near | towards & (np.abs(at) < door.half + 0.1) & (side * a_beyond < THROUGH))
-    there = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes
-    leaving, would = (there & (side * seen > 0.1) for seen in (door.seen(door.middle + moving)[1], w_beyond))
+    leaving = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes & (side * door.seen(door.middle + moving)[1] > 0.1)
+    would = (np.abs(along) < door.half + 0.2) & (np.abs(beyond) < WITHIN) & ~comes & (side * w_beyond > 0.1)
     return _Met(along, beyond, side, far, aside, comes, leaving, would)
 
 
@@ -159,9 +161,12 @@ def taking_turns(places, wishes, aims, doors: Sequence[Door], going, turns: Turn
         met = _met(door, places, wishes, aims, going)
         follows = met.first(sides[d]) < FOLLOWS if sides[d] else False
         waits = bool(sides[d]) and bool(np.any(met.comes & (met.side == -sides[d]) & (met.far < WAITS)))
-        waited[d] = 0.0 if not waits else waited[d] if met.blocked(sides[d]) else waited[d] + dt
+        if waited[d] < 0.0:
+            waited[d] = min(waited[d] + dt, 0.0) if met.blocked(sides[d]) else 0.0
+        else:
+            waited[d] = waited[d] + dt if waits else 0.0
         if not follows or waited[d] > PATIENCE:
-            sides[d], waited[d] = -sides[d] if follows else met.nearer() if np.any(met.comes) else 0.0, 0.0
+            sides[d], waited[d] = -sides[d] if follows else met.nearer() if np.any(met.comes) else 0.0, -CLEARS
     return Turns(sides, waited)
 
 
@@ -177,7 +182,7 @@ def queued(places, wishes, aims, doors: Sequence[Door], going=None, turns: Turns
         met = _met(door, places, found, aims, moving)
         first = [met.first(-1.0), met.first(1.0)]
         turn = met.nearer() if turns is None or turns.sides[d] == 0.0 else float(turns.sides[d])
-        within, blocked = met.within(turn) & (turns is not None), turns is not None and met.blocked(turn)
+        within, blocked = met.within(turn) & (turns is not None), turns is not None and turns.waited[d] < 0.0 and met.blocked(turn)
         mine = np.flatnonzero(met.comes & (met.side == turn))
         rank = np.argsort(np.argsort(met.far[mine] + met.aside[mine], kind="stable"), kind="stable")
         slips = max(round(2.0 * door.half / SLIPS), 1)
