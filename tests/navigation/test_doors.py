@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation.crowd import aims, crowd_intent, crowd_turns, doors_of, queued, taking_turns, together
+from gambol.controllers.navigation.crowd import aims, crowd_intent, doors_of, queued, taking_turns, together
 from gambol.game.scene import Box, Pillar
 
 WALL = Box((-3.0, 1.0, 0.0), (5.0, 2.0, 0.2)), Box((3.0, 1.0, 0.0), (5.0, 2.0, 0.2))
@@ -79,30 +79,6 @@ def test_who_walks_alone_wishes_as_before():
     assert np.array_equal(found[2], wishes[2]) and found[0, 1] == pytest.approx(found[1, 1])
     with pytest.raises(ValueError, match="groups"):
         together(places, wishes, [0, 0])
-
-
-def crossed(walker, people, seconds):
-    """When (N,) [s] each of two crowds of so many people has passed a door from both sides, inf for who has not."""
-    wall = Box((-5.9, 1.0, 0.0), (10.0, 2.0, 0.2)), Box((5.9, 1.0, 0.0), (10.0, 2.0, 0.2))
-    some = np.array([[x, -1.5 - z] for z in np.arange(people // 4) * 0.9 for x in (-1.5, -0.5, 0.5, 1.5)])
-    places = np.concatenate([some, -some - [0.1, 0.0]])
-    goals = -places * [1.0, 1.6]
-    state, turns, lead = walker.start(np.column_stack([places, np.where(places[:, 1] < 0.0, 0.0, np.pi)])), None, goals
-    passed = np.full(len(places), np.inf)
-    for step in range(round(60 * seconds)):
-        lead = aims(state.ground[:, :2], goals, wall) if step % 30 == 0 else lead
-        turns = crowd_turns(state.ground, state.velocity, lead, 1.2, wall, turns, 1 / 60)
-        state, _ = walker.step(state, crowd_intent(state.ground, state.velocity, lead, 1.2, around=wall, turns=turns), 1 / 60)
-        passed = np.where(np.isinf(passed) & (state.ground[:, 1] * places[:, 1] < 0.0), step / 60, passed)
-    return passed
-
-
-def test_neither_side_of_a_door_waits_until_the_other_is_through(walker):
-    """Who waits is let go before all of the others are through."""
-    passed = crossed(walker, 24, 30.0)
-    one, other = passed[:24], passed[24:]
-    late, soon = (one, other) if one.min() > other.min() else (other, one)
-    assert np.isfinite(late).any() and np.sum(soon > late.min()) >= 4
 
 
 def test_whose_turn_it_is_changes_when_nobody_follows_or_the_others_lose_patience():
