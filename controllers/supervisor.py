@@ -16,6 +16,7 @@ import numpy as np
 from .body import Pose, Skeleton
 from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, but, seconds
 from .navigation import going
+from .navigation.passing import drawn_in
 
 
 MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
@@ -48,7 +49,7 @@ class Supervisor(Controller):
     """Several controllers as one. The first is where every character starts and what always can go on.
 
     controllers: by name, all for the same skeleton. Characters come singly: for a crowd that only
-    walks, step the locomotion itself. Where an intent has a goal, the way is planned by what the first can walk, beside the
+    walks, step the locomotion itself. Who walks closely by something draws his arms in. Where an intent has a goal, the way is planned by what the first can walk, beside the
     steps: what is planned is used some steps later.
     """
 
@@ -107,8 +108,10 @@ class Supervisor(Controller):
         duty, own = self._choose(duty, own, intent)
         before = state.pose
         after, pose = self.parts[duty.active].step(own, intent, dt)
+        if duty.active == self.first and len(intent.around):
+            pose = drawn_in(self.skeleton, pose, after.ground, intent.around)
         duty = but(duty, memory=after.memory)
-        return but(after, memory=duty, previous=before, elapsed=dt, going=way), pose
+        return but(after, pose=pose, memory=duty, previous=before, elapsed=dt, going=way), pose
 
     def _choose(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState]:
         """Who acts in this step, and the state it starts from."""

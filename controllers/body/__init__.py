@@ -1,7 +1,7 @@
 """What a character is: rotations, skeletons and their kinematics, poses and clips, the standard human."""
 
 from . import rotations
-from .anatomy import Anatomy, anatomy, centre_of_mass, joint_limits, segment_centres
+from .anatomy import Anatomy, anatomy, centre_in_pose, centre_of_mass, joint_limits, segment_centres
 from .ccd import ccd_kernel, foot_turn_kernel
 from .clip import Clip, Pose, mirror_index
 from .contact import (HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact_points, detect_contacts, feet_apart,
@@ -18,7 +18,7 @@ from .support_polygon import (HALF_SOLE, centroid_kernel, hull, hull_kernel, mar
 
 __all__ = [
     "CONTACT_HEIGHT", "HALF_SOLE", "HEEL", "HEIGHT_GATE", "RELEASE", "STATURE", "WALK_SPEEDS", "Anatomy", "Clip", "Pose",
-    "Skeleton", "advance", "anatomy", "between", "ccd_kernel", "centre_of_mass", "centroid_kernel", "compose",
+    "Skeleton", "advance", "anatomy", "between", "ccd_kernel", "centre_in_pose", "centre_of_mass", "centroid_kernel", "compose",
     "contact_height", "contact_points", "damp", "detect_contacts", "distance_kernel", "end_positions", "exp",
     "exp_kernel", "feet_apart", "foot_drift", "foot_turn_kernel", "forward_kinematics", "heading_of", "heel_offset",
     "hull", "hull_kernel", "human", "joint_limits", "local_rotations", "log", "log_kernel", "margin", "margin_kernel",

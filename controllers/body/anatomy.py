@@ -15,6 +15,8 @@ from typing import Literal
 
 import numpy as np
 
+from ..compiled import kernel
+from .clip import Pose
 from .contact import heel_offset
 from .skeleton import Skeleton, end_positions, forward_kinematics
 
@@ -103,6 +105,33 @@ def centre_of_mass(anatomy: Anatomy, positions: np.ndarray, orientations: np.nda
     """The body's centre of mass (..., 3) [m], from what forward kinematics returned."""
     return np.einsum("s,...si->...i", anatomy.shares.astype(positions.dtype),
                      segment_centres(anatomy, positions, orientations))
+
+
+def centre_in_pose(anatomy: Anatomy, skeleton: Skeleton, pose: Pose) -> np.ndarray:
+    """The centre of mass (3,) [m] of one body in a pose: what `centre_of_mass` tells, without its joints, in a tenth of the time."""
+    out = np.empty(3)
+    _centre(skeleton.parents, skeleton.offsets, np.asarray(pose.root, float), np.ascontiguousarray(pose.rotations, float), anatomy.joints, anatomy.shares, anatomy.centres, out)
+    return out
+
+
+@kernel
+def _centre(parents, offsets, root, local, joints, shares, centres, out):
+    places, turned = np.empty((len(parents), 3)), np.empty((len(parents), 3, 3))
+    for j in range(len(parents)):
+        p = parents[j]
+        if p < 0:
+            places[j], turned[j] = root, local[j]
+            continue
+        for i in range(3):
+            places[j, i] = places[p, i]
+            for k in range(3):
+                places[j, i] += turned[p, i, k] * offsets[j, k]
+                turned[j, i, k] = turned[p, i, 0] * local[j, 0, k] + turned[p, i, 1] * local[j, 1, k] + turned[p, i, 2] * local[j, 2, k]
+    out[:] = 0.0
+    for s in range(len(joints)):
+        for i in range(3):
+            along = turned[joints[s], i, 0] * centres[s, 0] + turned[joints[s], i, 1] * centres[s, 1] + turned[joints[s], i, 2] * centres[s, 2]
+            out[i] += shares[s] * (places[joints[s], i] + along)
 
 
 def _segments(skeleton, positions, orientations, column):

@@ -132,7 +132,8 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
         intents = [intent if script.leaps else stopped(character.state, intent, props)
                    for (script, intent), character in zip(moves, world.characters)]
         ways = [script.wished(character.state) for script, character in zip(scripts, world.characters)]
-        world = world.step(avoiding(world, intents, ways, groups) if scenario.avoid else intents)
+        world, intents = avoiding(world, intents, ways, groups) if scenario.avoid else (world, intents)
+        world = world.step(intents)
 
 
 def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:

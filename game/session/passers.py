@@ -61,12 +61,12 @@ def asked(moment: SessionState) -> tuple[tuple[Script, ...], list[Intent]]:
     return tuple(script for script, _ in steps), [intent for _, intent in steps]
 
 
-def polite(moment: SessionState, intents: Sequence[Intent]) -> list[Intent]:
-    """The intents with which passers-by avoid each other and the players; of players those only avoid others who are sent somewhere."""
+def polite(moment: SessionState, intents: Sequence[Intent]) -> tuple[World, list[Intent]]:
+    """The world after, as of `avoiding`, and the intents with which passers-by avoid each other and the players; of players those only avoid others who are sent somewhere."""
     if not moment.passers:
-        return list(intents)
-    led = avoiding(moment.after, intents, [None] * len(intents), [-1] * len(intents))
-    return [own if who < len(moment.players) and own.goal is None else other for who, (own, other) in enumerate(zip(intents, led))]
+        return moment.after, list(intents)
+    world, led = avoiding(moment.after, intents, [None] * len(intents), [-1] * len(intents))
+    return world, [own if who < len(moment.players) and own.goal is None else other for who, (own, other) in enumerate(zip(intents, led))]
 
 
 def _free(rng: Any, props: Sequence[Prop], people: Sequence[np.ndarray]) -> np.ndarray:

@@ -86,7 +86,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
     intents += theirs
     held, turns = (None, None) if moment.comparison is None else (moment.comparison.goals, moment.comparison.turns)
     intents += [Intent() if one.follows is None else Intent(points=held, turns=turns) for one in moment.after.characters[len(intents):]]
-    return replace(moment, before=moment.after, after=moment.after.step(polite(moment, intents)), players=tuple(players), phase=0, passers=passers)
+    world, intents = polite(moment, intents)
+    return replace(moment, before=moment.after, after=world.step(intents), players=tuple(players), phase=0, passers=passers)
 
 
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:

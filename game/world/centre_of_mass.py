@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.body import centre_of_mass, settle
+from gambol.controllers.body import Pose, centre_in_pose, settle
 from gambol.controllers.jump import Jump, Physique
 
 HALFLIFE = 0.06
@@ -51,6 +51,6 @@ def physique_of(controller: Any) -> Physique:
     return ADULT if jump is None else jump.physique
 
 
-def centre_of(controller: Any, joints: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    """The centre of mass (3,) [m] of a controller's body, its joints' positions (J, 3) and orientations (J, 3, 3) known."""
-    return centre_of_mass(physique_of(controller).anatomy, *joints)
+def centre_of(controller: Any, pose: Pose) -> np.ndarray:
+    """The centre of mass (3,) [m] of a controller's body in a pose."""
+    return centre_in_pose(physique_of(controller).anatomy, controller.skeleton, pose)

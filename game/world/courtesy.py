@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import Intent, but
 from gambol.controllers.navigation import Going, in_world
-from gambol.controllers.navigation.crowd import Manners, avoid, doors_of, queued, stepping, together
+from gambol.controllers.navigation.crowd import Manners, avoid, doors_of, queued, stepping, taking_turns, together
 from gambol.controllers.navigation.levels import levels_of
 
 from ..input import STEERING, jumping
 from ..scene import Prop
-from .world import Character, World
+from .world import DT, Character, World
 
 RADIUS = 0.22
 """A body's [m]."""
@@ -33,11 +33,11 @@ FREE, BEHIND = 0.7, 0.6
 MANNERS = Manners()
 
 
-def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray | None], groups: Sequence[int]) -> list[Intent]:
-    """The intents, one for each character, with which those who walk avoid each other and what stands about; untouched where nobody is in the way.
+def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray | None], groups: Sequence[int]) -> tuple[World, list[Intent]]:
+    """The world, whose turn it is at its doors noted, and the intents, one for each character, with which those who walk avoid each other and what stands about; untouched where nobody is in the way.
 
     ways: (2,) [m/s] along x and z, where each would go in the world, if he were turned to it; None where his intent says all.
-    groups: who walks with whom, as `together` takes it. At doors they queue.
+    groups: who walks with whom, as `together` takes it. At doors they queue, and both sides take turns.
 
     Who goes to a goal follows his plan and leaves it as far as others make him, and leaps only where nobody is. Who jumps is avoided, and avoids nobody;
     who follows points or is not there does neither.
@@ -45,7 +45,7 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
     found = list(intents)
     who = [i for i, one in enumerate(world.characters) if one.there(world.number) and one.follows is None]
     if len(who) < 2:
-        return found
+        return world, found
     jumps = [intents[i].leap is not None or jumping(world.characters[i].state) is not None for i in who]
     ground = np.array([world.characters[i].state.ground for i in who], float)
     velocity = np.array([world.characters[i].state.velocity for i in who], float)
@@ -56,7 +56,10 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
     aims = np.array([_ahead(world.characters[i], found[i], place + LOOKS * w) for i, place, w in zip(who, ground[:, :2], wishes)])
     alone, moving = wishes, in_world(ground, velocity)
     wishes = together(ground[:, :2], wishes, [groups[i] for i in who])
-    wishes = queued(ground[:, :2], wishes, aims, doors_of(world.props), moving)
+    doors = doors_of(world.props)
+    if doors:
+        world = but(world, turns=taking_turns(ground[:, :2], wishes, aims, doors, moving, world.turns, DT))
+        wishes = queued(ground[:, :2], wishes, aims, doors, moving, world.turns)
     regions = _regions(world, ground[:, :2], np.array([float(world.characters[i].state.floor) for i in who]))
     chosen = np.empty_like(wishes)
     for region in np.unique(regions):  # what is a wall to one is a floor to another
@@ -71,7 +74,7 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
         if part > 1e-6 and not jumps[k]:
             halt = found[i].halt if part < HALF_WAY else None  # who has to give way does not stop where he wished to
             found[i] = replace(found[i], velocity=own + change, halt=halt) if found[i].goal is None else replace(found[i], aside=change)
-    return found
+    return world, found
 
 
 def _regions(world: World, places: np.ndarray, floors: np.ndarray) -> np.ndarray:

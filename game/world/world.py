@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation
 from gambol.controllers.body import Pose, forward_kinematics, wrap
 from gambol.controllers.contract import CharacterState, Intent, but
 from gambol.controllers.navigation import drift
+from gambol.controllers.navigation.crowd import Turns
 from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import TINT, Figure, Prop
@@ -88,8 +89,8 @@ class Character:
             here = np.array([[state.ground[0], float(state.floor) + FLOOR_LIFT, state.ground[1]]])
             trail = np.concatenate([trail[-(TRAIL_LENGTH - 1):], here])
         made = but(self, state=state, intent=intent, trail=trail)
-        centre = centre_of(made.controller, made.joints)
-        centre_of_mass = self.centre_of_mass or CentreOfMass.begun(before := centre_of(self.controller, self.joints), (centre - before) / DT)
+        centre = centre_of(made.controller, state.pose)
+        centre_of_mass = self.centre_of_mass or CentreOfMass.begun(before := centre_of(self.controller, self.state.pose), (centre - before) / DT)
         return but(made, centre_of_mass=centre_of_mass.step(centre, DT))
 
     def tracked(self, performers: Mapping[str, Character], number: int) -> Character:
@@ -126,11 +127,12 @@ class Character:
 
 @dataclass(frozen=True, eq=False)
 class World:
-    """All that is simulated at one moment. number: steps made since the start."""
+    """All that is simulated at one moment. number: steps made since the start. turns: whose turn it is at doors, where people mind that."""
 
     characters: tuple[Character, ...] = ()
     props: tuple[Prop, ...] = ()
     number: int = 0
+    turns: Turns | None = None
 
     @property
     def time(self) -> float:

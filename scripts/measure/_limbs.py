@@ -30,20 +30,20 @@ def thickness() -> np.ndarray:
     return np.array([radius for _, radius in LIMBS.values()])
 
 
-def limbs_in(skeleton, poses, things) -> tuple[float, str]:
-    """How deep [m] any limb is in things in any of the poses, negative where none is, and which is."""
+def limbs_in(skeleton, poses, things) -> tuple[float, str, int, int]:
+    """How deep [m] any limb is in things in any of the poses, negative where none is; which is, in which thing, and in which pose."""
     ends = ends_of(skeleton, np.array([pose.root for pose in poses]), np.array([pose.rotations for pose in poses]))
     middle = ends.mean((1, 2))
-    deepest, which = -np.inf, ""
-    for thing in things:
+    found = -np.inf, "", -1, -1
+    for number, thing in enumerate(things):
         near = gap(np.column_stack([middle[:, 0], np.full(len(middle), 0.5), middle[:, 2]]), thing) < FAR
         if near.any():
             places = ends[near][..., 0, None, :] + PARTS[:, None] * (ends[near][..., 1, :] - ends[near][..., 0, :])[..., None, :]
-            apart = gap(places.reshape(-1, 3), thing).reshape(places.shape[:-1])
-            depth = (thickness()[:, None] - apart).max((0, 2))
-            if depth.max() > deepest:
-                deepest, which = float(depth.max()), list(LIMBS)[int(depth.argmax())]
-    return deepest, which
+            depth = (thickness()[:, None] - gap(places.reshape(-1, 3), thing).reshape(places.shape[:-1])).max(2)
+            frame, limb = np.unravel_index(depth.argmax(), depth.shape)
+            if depth[frame, limb] > found[0]:
+                found = float(depth[frame, limb]), list(LIMBS)[limb], number, int(np.flatnonzero(near)[frame])
+    return found
 
 
 def limb_depths(skeleton, pose, pairs, arms: bool = True) -> np.ndarray:

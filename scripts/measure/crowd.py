@@ -25,7 +25,7 @@ from _plots import pictures, pyplot
 
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import is_box
-from gambol.controllers.navigation.crowd import aims, crowd_intent
+from gambol.controllers.navigation.crowd import aims, crowd_intent, crowd_turns
 from gambol.controllers.navigation.routes import distance, shapes_of
 
 RATE = 60
@@ -61,7 +61,7 @@ def walked(walker: Locomotion, scene: Scene, seconds: float, rng, speeds=None) -
     speeds = np.clip(rng.normal(1.25, 0.15, count), 0.9, 1.55) if speeds is None else speeds
     arrivals, done = np.zeros(count, int), np.zeros(count, bool)
     goals = np.array([scene.goal(who, 0, rng) for who in range(count)])
-    state, aim = walker.start(scene.start), goals.copy()
+    state, aim, turns = walker.start(scene.start), goals.copy(), None
     trails, spent = np.empty((steps, count, 3)), 0.0
     touched = limbs = legs = 0
     deepest = limbs_deepest = legs_deepest = 0.0
@@ -79,7 +79,8 @@ def walked(walker: Locomotion, scene: Scene, seconds: float, rng, speeds=None) -
         far = np.linalg.norm(aim - state.ground[:, :2], axis=1)
         turn = (np.abs(aim - goals).max(1) > 1e-6) & (far > 1e-6)  # nobody slows down for a corner
         lead = state.ground[:, :2] + (aim - state.ground[:, :2]) * np.where(turn, np.maximum(1.0 / np.maximum(far, 1e-6), 1.0), 1.0)[:, None]
-        intent = crowd_intent(state.ground, state.velocity, lead, speeds, BODY, scene.around)
+        turns = crowd_turns(state.ground, state.velocity, lead, speeds, scene.around, turns, 1 / RATE)
+        intent = crowd_intent(state.ground, state.velocity, lead, speeds, BODY, scene.around, turns=turns)
         state, pose = walker.step(state, intent, 1 / RATE)
         spent += time.process_time() - begun
         trails[step] = state.ground

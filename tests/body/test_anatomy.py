@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from sampling import BATCHES, rotations
 
-from gambol.controllers.body import forward_kinematics, human
-from gambol.controllers.body.anatomy import anatomy, centre_of_mass, joint_limits, segment_centres
+from gambol.controllers.body import Pose, forward_kinematics, human
+from gambol.controllers.body.anatomy import anatomy, centre_in_pose, centre_of_mass, joint_limits, segment_centres
 from gambol.controllers.body.rotations import exp
 
 SEXES = ("male", "female")
@@ -94,3 +94,9 @@ def test_knees_bend_back_only_and_the_spine_shares_its_range():
 def test_nonsense_is_refused(mass, sex, message):
     with pytest.raises(ValueError, match=message):
         anatomy(human(), mass, sex)
+
+
+def test_in_a_pose_the_centre_of_mass_is_the_same():
+    skeleton, rng = human(1.5), np.random.default_rng(3)
+    body, turns, root = anatomy(skeleton), exp(rng.uniform(-1.0, 1.0, (len(skeleton), 3))), rng.uniform(-2.0, 2.0, 3)
+    np.testing.assert_allclose(centre_in_pose(body, skeleton, Pose(root, turns)), centre_of_mass(body, *forward_kinematics(skeleton, root, turns)), atol=1e-12)

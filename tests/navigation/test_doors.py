@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation.crowd import aims, crowd_intent, doors_of, queued, together
+from gambol.controllers.navigation.crowd import aims, crowd_intent, doors_of, queued, taking_turns, together
 from gambol.game.scene import Box, Pillar
 
 WALL = Box((-3.0, 1.0, 0.0), (5.0, 2.0, 0.2)), Box((3.0, 1.0, 0.0), (5.0, 2.0, 0.2))
@@ -79,3 +79,20 @@ def test_who_walks_alone_wishes_as_before():
     assert np.array_equal(found[2], wishes[2]) and found[0, 1] == pytest.approx(found[1, 1])
     with pytest.raises(ValueError, match="groups"):
         together(places, wishes, [0, 0])
+
+
+def test_whose_turn_it_is_changes_when_nobody_follows_or_the_others_lose_patience():
+    doors, away = doors_of(WALL), np.array([[0.0, 9.0], [0.0, -9.0]])
+    places, wishes = np.array([[0.0, -0.9], [0.3, 1.8]]), np.array([[0.0, 1.2], [0.0, -1.2]])
+    side = np.sign(doors[0].seen(places[0])[1])
+    turns = taking_turns(places, wishes, -places, doors, wishes, None, 0.1)
+    assert turns.sides.tolist() == [side], "who is nearer begins"
+    for _ in range(100):
+        turns = taking_turns(places, wishes, -places, doors, wishes, turns, 0.1)
+    assert turns.sides.tolist() == [side] and turns.waited[0] == pytest.approx(9.9)
+    for _ in range(45):
+        turns = taking_turns(places, wishes, -places, doors, wishes, turns, 0.1)
+    assert turns.sides.tolist() == [-side], "until the others have waited long enough"
+    gone = np.array([[0.0, -0.9], [0.0, -9.0]])
+    assert taking_turns(gone, [[0.0, 1.2], [0.0, -1.2]], -gone, doors, wishes, turns, 0.1).sides.tolist() == [side], "who is not there needs no turn"
+    assert taking_turns(away, -away, -away * 2.0, (), wishes, turns, 0.1).sides.shape == (0,)

@@ -39,6 +39,14 @@ ASIDE = 0.6
 """How fast they step aside [m/s]."""
 OUT = 1.2
 """Who is no farther than this beyond a door [m] still comes out of it."""
+WITHIN = 0.7
+"""Who is so near to a door [m] when it is the others' turn goes through it all the same."""
+FOLLOWS = 2.0
+"""Whoever is no farther from the door [m] follows those before him."""
+CLEARS = 5.0
+"""For so long [s], at most, those whose turn begins wait until the others are out."""
+WAITS, PATIENCE = 4.0, 14.0
+"""Who is so near to a door [m] waits for his turn, for so long [s]; then the others let him."""
 
 
 class Door(NamedTuple):
@@ -87,41 +95,109 @@ def _doors(table: bytes) -> tuple[Door, ...]:
     return tuple(found)
 
 
-def queued(places, wishes, aims, doors: Sequence[Door], going=None) -> np.ndarray:
+class Turns(NamedTuple):
+    """Whose turn it is at each door of D. sides: (D,) -1 for those before it, 1 for those beyond, as `Door.seen` has it; 0 for nobody's yet. waited: (D,)
+    for how long those of the other side have waited meanwhile [s], below 0 while the door is left for them to go on."""
+
+    sides: np.ndarray
+    waited: np.ndarray
+
+
+class _Met(NamedTuple):
+    """Walkers as a door has them: along it, beyond it [m], on which side, how far off [m] and aside of the opening; who heads for it, who comes out,
+    and who would, though others are in his way."""
+
+    along: np.ndarray
+    beyond: np.ndarray
+    side: np.ndarray
+    far: np.ndarray
+    aside: np.ndarray
+    comes: np.ndarray
+    leaving: np.ndarray
+    would: np.ndarray
+
+    def first(self, side: float) -> float:
+        """How far the next of one side is from the door [m], 0 while some of it come out; inf if nobody comes."""
+        return min(np.min(self.far[self.comes & (self.side == side)], initial=np.inf), 0.0 if np.any(self.leaving & (self.side == -side)) else np.inf)
+
+    def within(self, turn: float) -> np.ndarray:
+        """Who (N,) is in the door though it is the turn of those on the other side."""
+        return self.comes & (self.far < WITHIN) & (self.side != turn)
+
+    def blocked(self, turn: float) -> bool:
+        """Whether those whose turn it is wait until it is empty."""
+        return bool(np.any(self.within(turn)) or np.any(self.would & (self.side == turn)))
+
+    def nearer(self) -> float:
+        """The side that is nearer to it."""
+        return -1.0 if self.first(-1.0) <= self.first(1.0) else 1.0
+
+
+def _met(door: Door, places: np.ndarray, wishes: np.ndarray, aims: np.ndarray, moving: np.ndarray) -> _Met:
+    along, beyond = door.seen(places)
+    w_along, w_beyond = door.seen(door.middle + wishes)
+    a_along, a_beyond = door.seen(aims)
+    side = np.where(beyond >= 0.0, 1.0, -1.0)
+    towards = side * w_beyond < -1e-6
+    at = along - beyond * w_along / np.where(towards, w_beyond, 1.0)
+    near = np.hypot(np.maximum(np.abs(a_along) - door.half, 0.0), a_beyond) < THROUGH + 0.2
+    aside = np.maximum(np.abs(along) - door.half + 0.3, 0.0)
+    far = np.hypot(aside, beyond)
+    comes = (far < FAR) & (near | towards & (np.abs(at) < door.half + 0.1) & (side * a_beyond < THROUGH))
+    leaving = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes & (side * door.seen(door.middle + moving)[1] > 0.1)
+    would = (np.abs(along) < door.half + 0.2) & (np.abs(beyond) < WITHIN) & ~comes & (side * w_beyond > 0.1)
+    return _Met(along, beyond, side, far, aside, comes, leaving, would)
+
+
+def taking_turns(places, wishes, aims, doors: Sequence[Door], going, turns: Turns | None, dt: float) -> Turns:
+    """Whose turn it is after a step of dt [s]; arguments as of `queued`, turns: as they were, None at first.
+
+    A side goes on as long as its people follow each other closely, but for no longer than those of the other side are patient, from when it can.
+    """
+    places, wishes, aims, going = (np.asarray(a, float) for a in (places, wishes, aims, going))
+    turns = Turns(np.zeros(len(doors)), np.zeros(len(doors))) if turns is None or len(turns.sides) != len(doors) else turns
+    sides, waited = turns.sides.copy(), turns.waited.copy()
+    for d, door in enumerate(doors):
+        met = _met(door, places, wishes, aims, going)
+        follows = met.first(sides[d]) < FOLLOWS if sides[d] else False
+        waits = bool(sides[d]) and bool(np.any(met.comes & (met.side == -sides[d]) & (met.far < WAITS)))
+        if waited[d] < 0.0:
+            waited[d] = min(waited[d] + dt, 0.0) if met.blocked(sides[d]) else 0.0
+        else:
+            waited[d] = waited[d] + dt if waits else 0.0
+        if not follows or waited[d] > PATIENCE:
+            sides[d], waited[d] = -sides[d] if follows else met.nearer() if np.any(met.comes) else 0.0, -CLEARS
+    return Turns(sides, waited)
+
+
+def queued(places, wishes, aims, doors: Sequence[Door], going=None, turns: Turns | None = None) -> np.ndarray:
     """Wishes (N, 2) [m/s] of walkers at places (N, 2), slowed down and led aside where they come to doors.
 
     aims: (N, 2) where each turns to first on his way. going: (N, 2) how they move [m/s], by which those who come out of a door are known; as
-    they wish by default.
+    they wish by default. turns: whose turn it is, from `taking_turns`; by default that of the side whose people come out, or are nearer.
     """
     places, found, aims = np.asarray(places, float), np.array(wishes, float), np.asarray(aims, float)
     moving = found if going is None else np.asarray(going, float)
-    for door in doors:
-        along, beyond = door.seen(places)
-        w_along, w_beyond = door.seen(door.middle + found)
-        a_along, a_beyond = door.seen(aims)
-        side = np.where(beyond >= 0.0, 1.0, -1.0)
-        towards = side * w_beyond < -1e-6
-        at = along - beyond * w_along / np.where(towards, w_beyond, 1.0)
-        near = np.hypot(np.maximum(np.abs(a_along) - door.half, 0.0), a_beyond) < THROUGH + 0.2
-        aside = np.maximum(np.abs(along) - door.half + 0.3, 0.0)
-        far = np.hypot(aside, beyond)
-        comes = (far < FAR) & (near | towards & (np.abs(at) < door.half + 0.1) & (side * a_beyond < THROUGH))
-        leaving = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < OUT) & ~comes & (side * door.seen(door.middle + moving)[1] > 0.1)
-        first = [min(np.min(far[comes & (side == s)], initial=np.inf), np.inf if not np.any(leaving & (side == -s)) else 0.0) for s in (-1.0, 1.0)]
-        turn = -1.0 if first[0] <= first[1] else 1.0  # whose side it is
-        mine = np.flatnonzero(comes & (side == turn))
-        rank = np.argsort(np.argsort(far[mine] + aside[mine], kind="stable"), kind="stable")
+    for d, door in enumerate(doors):
+        met = _met(door, places, found, aims, moving)
+        first = [met.first(-1.0), met.first(1.0)]
+        turn = met.nearer() if turns is None or turns.sides[d] == 0.0 else float(turns.sides[d])
+        within, blocked = met.within(turn) & (turns is not None), turns is not None and turns.waited[d] < 0.0 and met.blocked(turn)
+        mine = np.flatnonzero(met.comes & (met.side == turn))
+        rank = np.argsort(np.argsort(met.far[mine] + met.aside[mine], kind="stable"), kind="stable")
         slips = max(round(2.0 * door.half / SLIPS), 1)
         room = np.sqrt(FREE**2 + 2.0 * np.maximum(rank - slips, 0) / (np.pi * DENSE))
-        found[mine] *= np.where(rank < slips, 1.0, np.clip((far[mine] - room) / EASE, 0.0, 1.0))[:, None]
+        if not blocked:
+            found[mine] *= np.where(rank < slips, 1.0, np.clip((met.far[mine] - room) / EASE, 0.0, 1.0))[:, None]
         if not np.isfinite(min(first)):
             continue
-        lets = comes & (side != turn)
+        keeps = (met.side != turn) | blocked
+        lets = met.comes & keeps & ~within
         if np.any(lets):
-            found[lets] *= np.clip((far[lets] - KEPT) / EASE, 0.0, 1.0)[:, None]
-            lane = (np.abs(along) < door.half + LANE) & (np.abs(beyond) < LONG) & (side != turn) & (comes | (np.hypot(*found.T) < 0.1))
+            found[lets] *= np.clip((met.far[lets] - KEPT) / EASE, 0.0, 1.0)[:, None]
+            lane = (np.abs(met.along) < door.half + LANE) & (np.abs(met.beyond) < LONG) & keeps & ~within & (met.comes | (np.hypot(*found.T) < 0.1))
             if np.isfinite(first[0]) and np.isfinite(first[1]):
-                away = np.where(along >= 0.0, 1.0, -1.0)[:, None] * door.along
+                away = np.where(met.along >= 0.0, 1.0, -1.0)[:, None] * door.along
                 found[lane] = ASIDE * away[lane]
     return found
 

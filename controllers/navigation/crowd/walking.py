@@ -11,7 +11,7 @@ from ...contract import Intent
 from ..routes import clear, grid_way, shapes_of, ways
 from ..steering import Steering, in_world, turn_towards, within
 from .avoidance import Manners, avoid, lag
-from .doors import doors_of, queued
+from .doors import Turns, doors_of, queued, taking_turns
 from .groups import together
 
 SIDEWAYS = 0.35
@@ -61,17 +61,24 @@ def stepping(ground, velocity, chosen, steering: Steering = Steering(), manners:
 
 
 def crowd_intent(ground, velocity, goals, speeds, radii=0.22, around: Sequence[Any] = (), steering: Steering = Steering(),
-                 manners: Manners = Manners(), groups=None) -> Intent:
+                 manners: Manners = Manners(), groups=None, turns: Turns | None = None) -> Intent:
     """What takes N walkers to their goals past each other: one intent for one step of the whole crowd.
 
     ground: (N, 3) x, z [m], heading [rad]; velocity: (N, 3) v_f, ω, v_l, both of the crowd's state. goals: (N, 2) [m], or where they `aims`.
     speeds: (N,) [m/s]. radii: (N,) [m] of their bodies. around: what stands about; at doors in it people queue. groups: (N,) who walks
-    with whom, as `together` takes it.
+    with whom, as `together` takes it. turns: whose turn it is at doors, from `crowd_turns`; by default that of who is nearer.
     """
     ground, velocity = np.asarray(ground, float), np.asarray(velocity, float)
     wishes = towards(ground[:, :2], goals, np.broadcast_to(np.asarray(speeds, float), len(ground)))
     moving = in_world(ground, velocity)
     wishes = wishes if groups is None else together(ground[:, :2], wishes, groups)
-    wishes = queued(ground[:, :2], wishes, goals, doors_of(around), moving)
+    wishes = queued(ground[:, :2], wishes, goals, doors_of(around), moving, turns)
     chosen = avoid(ground[:, :2], moving, wishes, radii, around, ground[:, 2], manners)
     return Intent(stepping(ground, velocity, chosen, steering, manners))
+
+
+def crowd_turns(ground, velocity, goals, speeds, around: Sequence[Any], turns: Turns | None, dt: float) -> Turns:
+    """Whose turn it is at the doors among what stands about, a step of dt [s] later; arguments as of `crowd_intent`, turns: as they were, None at first."""
+    ground = np.asarray(ground, float)
+    wishes = towards(ground[:, :2], goals, np.broadcast_to(np.asarray(speeds, float), len(ground)))
+    return taking_turns(ground[:, :2], wishes, goals, doors_of(around), in_world(ground, np.asarray(velocity, float)), turns, dt)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..obstacles import DEPTH, SHOULDER
-from ..routes import distance, shapes_of
+from ..routes import distance, grid_way, shapes_of
 from ..steering import in_world
 from .guesses import faced, guesses
 from .walk_plan import Plan
@@ -28,7 +28,7 @@ STRETCH = 0.15, 0.1
 REPAIRS = 2
 """A plan that comes too near to something between the places that are looked at is mended so often."""
 MOST = 250
-"""Steps of Newton's method for a guess, at most."""
+"""Steps of Newton's method for a guess, at most; twice as many where he has to turn aside to pass."""
 TOLERANCE = 1e-6
 """A search ends where another step would gain less than this share of the cost."""
 ALLOWED = np.array([0.01, 0.004])
@@ -107,8 +107,9 @@ class _Post(NamedTuple):
 
 
 def rehearse() -> None:
-    """A plan that nobody needs, past a post, so that what it compiles or loads does not halt a game."""
+    """A plan that nobody needs, past a post, and a search on a grid, so that what they compile or load does not halt a game."""
     plan(np.zeros(3), (1.0, 1.0, 1.0), limits=np.array([[1.0, 0.0, 0.0, -2.0]]), around=(_Post(),))
+    grid_way((0.0, 0.0), (1.0, 1.0), shapes_of((_Post(),)), SHOULDER)
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:
@@ -151,15 +152,18 @@ def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, sh
     speeds = np.column_stack([in_world(starts, velocities[whose]), velocities[whose, 1]])
     leaves = np.column_stack([in_world(ends, onward[whose]), onward[whose, 1]])
 
-    def searched(which, margin, shapes, allowed):
+    ceilings = np.array([found[number].cost for number in whose])
+    most = MOST if girth[1] == girth[0] else 2 * MOST
+
+    def searched(which, margin, shapes, allowed, ceilings=np.full(len(splines), np.inf)):
         some, times, count = splines[which], seconds[which], len(splines[which])
         costs, faults, steps = np.empty(count), np.empty((count, 2)), np.empty(count, np.int64)
         search(some, times, starts[which], speeds[which], ends[which], leaves[which], facing[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
-               girth + margin, allowed, MOST if girth[1] == girth[0] else 2 * MOST, TOLERANCE, np.array(whose)[which], costs, faults, steps)
+               girth + margin, allowed, most, TOLERANCE, np.array(whose)[which], ceilings[which], costs, faults, steps)
         splines[which], seconds[which] = some, times
         return costs, faults, np.all(faults <= allowed, 1) & np.isfinite(costs)
 
-    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED if girth[1] == girth[0] else TIGHT)
+    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED if girth[1] == girth[0] else TIGHT, ceilings)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
         true = round_ends(grounds[number], goals[number], around, girth, MARGIN)

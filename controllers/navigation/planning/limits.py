@@ -92,6 +92,9 @@ def keep_clear(y, shapes, girth, multipliers, stiffness, weight, gradient, hessi
     cost, worst = 0.0, 0.0
     out, by, slope, bend = np.empty(3), np.empty(2), np.empty(3), np.empty((3, 3))
     for k in range(shapes.shape[0]):
+        far = abs(shapes[k, 2]) + abs(shapes[k, 3]) + max(shapes[k, 5], 0.0) + girth[0]
+        if multipliers[k] == 0.0 and (y[0] - shapes[k, 0]) ** 2 + (y[1] - shapes[k, 1]) ** 2 > far * far:
+            continue  # it is nowhere near, which is quickly told
         there = distance(y[0], y[1], shapes[k], out)
         c = reach(out[0], out[1], y[2], girth, by) - there
         worst = max(worst, c)

@@ -24,36 +24,39 @@ ROUNDS = 9
 
 @kernel(nogil=True)
 def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values, weights, planes, shapes, girth, allowed, most, tolerance,
-           whose, costs, faults, steps):
+           whose, ceilings, costs, faults, steps):
     """Every guess (S, M + 3, 3) with its time (S,) [s] becomes the least cost near it, in place.
 
     starts, speeds, goals, leaves: (S, 3), speeds, and those at the goals, as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), girth (3,) [m]: the limits. allowed: (2,)
     how far velocities and distances may break them. whose: (S,) whose guess it is, in order: a guess is given up where it would cost more
-    than another of the same one that keeps to its limits. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
+    than another of the same one that keeps to its limits, or, once multipliers tell, than his ceiling (S,). most: steps for a guess; twice as many for all guesses of one who turns aside to
+    pass though he has a ceiling. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
     negative where the search did not settle.
     """
     places = weights.shape[0]
     by_plane, by_shape = np.empty((places, planes.shape[0])), np.empty((places, shapes.shape[0]))
-    best, tight, held = np.inf, girth[1] < girth[0], girth.copy()
+    best, tight, held, spent = np.inf, girth[1] < girth[0], girth.copy(), 0
     for s in range(guesses.shape[0]):
         if s and whose[s] != whose[s - 1]:
-            best = np.inf
+            best, spent = np.inf, 0
         by_plane[:], by_shape[:] = 0.0, 0.0
         stiff = np.array(SOFT)
         if tight:
             stiff[1] = TIGHT
         last = np.full(2, np.inf)
         total, settled, owed = 0, False, 0.0
-        for lap in range(ROUNDS):
+        fast = near = costs[s] = faults[s, 0] = faults[s, 1] = np.inf
+        left = most if not tight or ceilings[s] == np.inf else min(most, 2 * most - spent)
+        for lap in range(ROUNDS if left > 0 else 0):
             held[0] = girth[0] + (WIDER if lap == 0 and tight else 0.0)
             seconds[s], costs[s], dual, fast, near, count, settled = minimise(
                 guesses[s], seconds[s], starts[s], speeds[s], goals[s], leaves[s], aims[s], alpha, values, weights, planes, shapes, held,
-                by_plane, by_shape, stiff[0], stiff[1], most - total, tolerance if lap else 10.0 * tolerance, best + owed)
+                by_plane, by_shape, stiff[0], stiff[1], left - total, tolerance if lap else 10.0 * tolerance, best + owed)
             total += count
             faults[s, 0], faults[s, 1] = fast, near
             if lap == 0 and tight:
                 continue
-            if (fast <= allowed[0] and near <= allowed[1]) or total >= most or dual - owed > best:
+            if (fast <= allowed[0] and near <= allowed[1]) or total >= left or dual - owed > min(best, ceilings[s]):
                 break
             renew(guesses[s], seconds[s], values, planes, shapes, girth, by_plane, by_shape, stiff)
             for i in range(2):
@@ -65,6 +68,7 @@ def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values,
                 owed += weights[place] * (0.5 * np.sum(by_plane[place] ** 2) / stiff[0] + 0.5 * np.sum(by_shape[place] ** 2) / stiff[1])
         if fast <= allowed[0] and near <= allowed[1]:
             best = min(best, costs[s])
+        spent += total
         steps[s] = total if settled else -total
 
 

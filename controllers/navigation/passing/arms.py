@@ -1,0 +1,151 @@
+"""Arms drawn in, as people do who pass closely by something: without it hands swing farther than a walker's clearance.
+
+What stands there is convex, so that all of it lies behind the plane through its place nearest to the body. An arm that comes to
+that plane turns about its shoulder by what is missing. As that follows from the pose and the place alone, nothing is remembered, and arms
+move as smoothly as the body does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ...body import Pose, Skeleton
+from ...compiled import kernel
+from ..obstacles import is_box, is_pillar, slope
+from ..routes import distance
+
+ARMS = ("LeftArm", "LeftForeArm", "LeftHand"), ("RightArm", "RightForeArm", "RightHand")
+THICK = 0.045, 0.04, 0.035
+"""Elbows, wrists and finger tips, half a forearm on, are so thick [m]."""
+KEPT = 0.02
+"""So much room is left beside them [m]."""
+SOFT = 0.025
+"""An arm begins to be drawn in so much before it has to [m]."""
+MOST = 0.35
+"""No farther than this [rad]: there is the trunk."""
+FAR = 0.75
+"""What is farther from the body's middle [m] no arm touches."""
+LOW = 0.1
+"""Arms so far above or below something [m] are not drawn in at all."""
+
+
+def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any]) -> Pose:
+    """The pose of one walker at a ground frame (3,) x, z [m], heading [rad], his arms drawn in where they come near to boxes and pillars. The very same
+    where nothing is near, or where he stands in something."""
+    things = _near(float(ground[0]), float(ground[1]), around)
+    chains = _chains(skeleton.names)
+    if not things or not len(chains):
+        return pose
+    rotations = np.array(pose.rotations)
+    moved = draw_kernel(np.asarray(pose.root, float), rotations, skeleton.parents, skeleton.offsets, chains, np.asarray(ground, float), np.array(things), np.array(THICK))
+    return Pose(pose.root, rotations) if moved else pose
+
+
+def _near(x: float, z: float, around: Sequence[Any]) -> list[tuple[float, ...]]:
+    """What is near enough: shapes as of `shapes_of`, how low and how high they reach [m]. Ramps are walked on."""
+    found = []
+    for thing in around:
+        if is_box(thing) and not slope(thing):
+            centre, size = thing.centre, thing.size
+            if math.hypot(centre[0] - x, centre[2] - z) < FAR + 0.5 * math.hypot(size[0], size[2]):
+                found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, centre[1] - 0.5 * size[1], centre[1] + 0.5 * size[1]))
+        elif is_pillar(thing) and math.hypot(thing.foot[0] - x, thing.foot[2] - z) < FAR + thing.radius:
+            found.append((thing.foot[0], thing.foot[2], 0.0, 0.0, 0.0, thing.radius, thing.foot[1], thing.foot[1] + thing.height))
+    return found
+
+
+@lru_cache(maxsize=8)
+def _chains(names: tuple[str, ...]) -> np.ndarray:
+    """The joints (2, 3) of both arms; none (0, 3) of a skeleton without such arms."""
+    return np.array([[names.index(name) for name in chain] for chain in ARMS if all(name in names for name in chain)], np.int64).reshape(-1, 3)
+
+
+@kernel
+def draw_kernel(root, local, parents, offsets, chains, ground, things, thick):
+    """Turn the upper arms in local rotations (J, 3, 3), in place; whether any was. things: (K, 8) as of `_near`."""
+    count = local.shape[0]
+    places, turned = np.empty((count, 3)), np.empty((count, 3, 3))
+    for j in range(count):
+        p = parents[j]
+        for i in range(3):
+            places[j, i] = root[i]
+            for k in range(3):
+                turned[j, i, k] = local[j, i, k]
+        if p >= 0:
+            for i in range(3):
+                places[j, i] = places[p, i]
+                for k in range(3):
+                    places[j, i] += turned[p, i, k] * offsets[j, k]
+                    turned[j, i, k] = 0.0
+                    for m in range(3):
+                        turned[j, i, k] += turned[p, i, m] * local[j, m, k]
+    points, slope, axis, moved = np.empty((3, 3)), np.empty(3), np.empty(3), False
+    for arm in range(chains.shape[0]):
+        shoulder = chains[arm, 0]
+        for i in range(3):
+            points[0, i], points[1, i] = places[chains[arm, 1], i], places[chains[arm, 2], i]
+            points[2, i] = points[1, i] + 0.5 * (points[1, i] - points[0, i])
+        for n in range(things.shape[0]):
+            there = distance(ground[0], ground[1], things[n, :6], slope)
+            if there <= 0.0:
+                continue
+            most, worst = 0.0, -1
+            for k in range(3):
+                missing = thick[k] + KEPT - there - slope[0] * (points[k, 0] - ground[0]) - slope[1] * (points[k, 2] - ground[1])
+                if missing <= -SOFT:
+                    continue
+                over = max(points[k, 1] - things[n, 7], things[n, 6] - points[k, 1], 0.0)
+                missing = missing if missing >= SOFT else (missing + SOFT) ** 2 / (4.0 * SOFT)
+                dx, dy, dz = points[k, 0] - places[shoulder, 0], points[k, 1] - places[shoulder, 1], points[k, 2] - places[shoulder, 2]
+                lever = math.sqrt((dy * slope[1]) ** 2 + (dz * slope[0] - dx * slope[1]) ** 2 + (dy * slope[0]) ** 2)
+                turn = max(1.0 - over / LOW, 0.0) * missing / max(lever, 0.1)
+                if turn > most:
+                    most, worst = turn, k
+            if worst < 0:
+                continue
+            dx, dy, dz = points[worst, 0] - places[shoulder, 0], points[worst, 1] - places[shoulder, 1], points[worst, 2] - places[shoulder, 2]
+            axis[0], axis[1], axis[2] = dy * slope[1], dz * slope[0] - dx * slope[1], -dy * slope[0]
+            length = math.sqrt(axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2)
+            if length < 1e-6:
+                continue
+            angle = MOST * math.tanh(most / MOST)
+            _turn(axis / length, angle, turned[shoulder])
+            for k in range(3):
+                _turn_point(axis / length, angle, places[shoulder], points[k])
+            moved = True
+        p = parents[shoulder]
+        for i in range(3):
+            for k in range(3):
+                value = 0.0
+                for m in range(3):
+                    value += turned[p, m, i] * turned[shoulder, m, k]
+                local[shoulder, i, k] = value
+    return moved
+
+
+@kernel
+def _turn_point(axis, angle, about, point):
+    """Turn a place (3,) about an axis (3,) of length 1 through another place, in place: Rodrigues."""
+    c, s = math.cos(angle), math.sin(angle)
+    x, y, z = point[0] - about[0], point[1] - about[1], point[2] - about[2]
+    along = (1.0 - c) * (axis[0] * x + axis[1] * y + axis[2] * z)
+    point[0] = about[0] + c * x + s * (axis[1] * z - axis[2] * y) + along * axis[0]
+    point[1] = about[1] + c * y + s * (axis[2] * x - axis[0] * z) + along * axis[1]
+    point[2] = about[2] + c * z + s * (axis[0] * y - axis[1] * x) + along * axis[2]
+
+
+@kernel
+def _turn(axis, angle, frame):
+    """Turn a frame (3, 3) about an axis (3,) of length 1, in place."""
+    column, about = np.empty(3), np.zeros(3)
+    for k in range(3):
+        for i in range(3):
+            column[i] = frame[i, k]
+        _turn_point(axis, angle, about, column)
+        for i in range(3):
+            frame[i, k] = column[i]

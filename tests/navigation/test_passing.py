@@ -1,0 +1,83 @@
+"""Arms are drawn in where they would brush what is passed closely, and only there."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.navigation import gap
+from gambol.controllers.navigation.passing import drawn_in
+from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene import Box, Pillar
+
+@pytest.fixture(scope="module")
+def locomotion():
+    """Who walks."""
+    return Locomotion.load()
+
+
+BESIDE = 0.30
+"""So far from a wall [m] hands swing into it."""
+BONES = ("LeftArm", "LeftForeArm", "LeftHand", "RightArm", "RightForeArm", "RightHand")
+
+
+def arms(skeleton, pose):
+    """Shoulders, elbows and wrists (6, 3) [m]."""
+    return forward_kinematics(skeleton, pose.root, pose.rotations)[0][[skeleton.index(name) for name in BONES]]
+
+
+def walk(locomotion, velocity, around, seconds=5.0):
+    """Poses and ground frames of somebody who walks so, with what he is told that stands about."""
+    someone = Supervisor({"locomotion": locomotion})
+    state, made = someone.start(), []
+    for _ in range(round(60 * seconds)):
+        state, pose = someone.step(state, Intent(np.array(velocity), around=around), 1 / 60)
+        made.append((pose, state.ground))
+    return made
+
+
+def by_a_wall(locomotion, velocity):
+    """Places of arms and how far they are from a wall beside somebody who walks on his way so (T, 6, 3), (T, 6), where he knows of it and where he does
+    not: along the wall if he goes straight, turning beside it if he turns on the spot."""
+    wall = Box((-BESIDE - 0.1, 1.0, 0.0), (0.2, 2.0, 40.0))
+    places = [np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, velocity, around)]) for around in ((wall,), ())]
+    return [(one, gap(one.reshape(-1, 3), wall).reshape(one.shape[:2])) for one in places]
+
+
+@pytest.mark.parametrize("velocity", [(1.3, 0.0, 0.0), (0.0, 2.5, 0.0), (0.0, -2.5, 0.0)])
+def test_arms_keep_out_of_a_wall(locomotion, velocity):
+    (_, kept), (_, brushed) = by_a_wall(locomotion, velocity)
+    assert kept[:, [1, 2, 4, 5]].min() > 0.045
+    assert brushed.min() < 0.035  # a forearm is as thick
+
+
+def test_they_come_in_smoothly(locomotion):
+    (near, _), (free, _) = by_a_wall(locomotion, (0.0, 2.5, 0.0))
+    jerk, own = (np.abs(np.diff(one, n=2, axis=0)).max() * 3600.0 for one in (near, free))
+    assert np.abs(near - free).max() > 0.03
+    assert jerk < 1.5 * own
+
+
+def test_between_two_walls_both_do(locomotion):
+    walls = [Box((side * 0.42, 1.0, 0.0), (0.2, 2.0, 40.0)) for side in (-1.0, 1.0)]
+    places = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, (1.2, 0.0, 0.0), walls)])
+    assert min(gap(places[:, [1, 2, 4, 5]].reshape(-1, 3), wall).min() for wall in walls) > 0.04
+
+
+def test_where_nothing_is_near_a_pose_stays_itself(locomotion):
+    state = locomotion.start()
+    low, far, high = Box((0.4, 0.1, 0.0), (0.2, 0.2, 2.0)), Pillar((3.0, 0.0, 0.0), 0.3, 2.0), Box((0.4, 2.6, 0.0), (0.2, 0.4, 2.0))
+    assert drawn_in(locomotion.skeleton, state.pose, state.ground, [low, far, high]) is state.pose
+    inside = Box((0.0, 1.0, 0.0), (2.0, 2.0, 2.0))
+    assert drawn_in(locomotion.skeleton, state.pose, state.ground, [inside]) is state.pose
+
+
+def test_no_farther_than_to_the_trunk(locomotion):
+    """However near something is an arm turns no more than a shoulder lets it, and stays a rotation."""
+    state = locomotion.start()
+    for far in np.linspace(0.01, 0.4, 20):
+        pose = drawn_in(locomotion.skeleton, state.pose, state.ground, [Box((far + 0.1, 1.0, 0.0), (0.2, 2.0, 2.0))])
+        turn = np.einsum("jik,jil->jkl", state.pose.rotations, pose.rotations)
+        assert np.arccos(np.clip((np.trace(turn, axis1=1, axis2=2) - 1.0) / 2.0, -1.0, 1.0)).max() < 0.36
+        assert np.abs(np.einsum("jik,jil->jkl", pose.rotations, pose.rotations) - np.eye(3)).max() < 1e-5
