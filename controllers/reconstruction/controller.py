@@ -30,7 +30,7 @@ ANEW = 0.25
 LEAP = 0.2
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind."""
 FRESH, NEWS = 0.02, 0.15
-"""… and farther than this within so long [s] after points have come or gone: what it knows has changed."""
+"""… and farther than this within so long [s] after points came back that had all been lost: what it knows has changed."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
 _CALMED = 0.5
@@ -56,7 +56,7 @@ class Following:
     frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
-    point was followed. news: [s] since points came or went. fault: what went wrong.
+    point was followed. news: [s] since points came back that had all been lost. fault: what went wrong.
     """
 
     memory: Any
@@ -212,7 +212,7 @@ class Reconstruction(Controller):
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
-        news = following.news + self.dt if np.array_equal(gate.trusted, following.gate.trusted) else 0.0
+        news = 0.0 if back else following.news + self.dt
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost, news=news)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
         if leap <= (FRESH if news < NEWS else LEAP):

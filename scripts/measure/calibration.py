@@ -2,11 +2,11 @@
 
     python scripts/measure/calibration.py LARGE --small FOLDER [--network FILE] [--tuned] [--out docs/reconstruction/calibration.md]
 
-LARGE, FOLDER: as for scripts/build/trackers.py. Performers are as they were captured, with proportions of their own: subjects of CMU of whom nothing
-was learnt, or with --tuned the long ones of those that settings are chosen on. Trackers are 10 cm and 20° off, in whatever direction. They
+LARGE, FOLDER: as for scripts/build/trackers.py. Performers move as subjects of CMU of whom nothing was learnt, or with --tuned as in takes that
+settings are chosen on, on limbs as long as those of others of CMU's (`_performers`). Trackers are 10 cm and 20° off, in whatever direction. They
 stand in T-pose, arms 6° low, other joints 1.5° off about each axis, then the take's first five seconds are heard, and all of it is judged.
-Beside it: arms as they were asked; trackers right on their joints, on proportions that are the performer's own; what exact mounts and bones
-would give. All distances are centimetres in the room over 19 joints.
+Beside it: arms as they were asked; trackers right on their joints, for the performer's own proportions; and what exact mounts and bones would
+give. All distances are centimetres in the room over 19 joints.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 import numpy as np
 
 from gambol.controllers.body import Skeleton, contact_height, exp, forward_kinematics, yaw
-from gambol.controllers.mocap import MotionFileError
 from gambol.controllers.reconstruction import SKELETON, parse
-from gambol.controllers.reconstruction.calibration import BEFORE, FRAMES, JOINTS, SHIPPED, STRIDE, WORN, SetNetwork, Stood, calibrated
+from gambol.controllers.reconstruction.calibration import BEFORE, FRAMES, JOINTS, SHIPPED, STRIDE, WORN, CalibrationNetwork, Stood, calibrated
 from gambol.controllers.reconstruction.database import Database, DatabaseError
 from gambol.controllers.reconstruction.evaluation import small_of, strangers, trials
 from gambol.controllers.reconstruction.live import placed
 from gambol.controllers.reconstruction.trackers import Network, Trackers
+from _performers import people, performing
 from reconstruction_figures import table
-from reconstruction_trackers import FPS, Performance, raw
+from reconstruction_trackers import FPS, Performance
 
 OFF, TURNED, UNREST = 0.10, np.radians(20.0), np.radians(1.5)
 SETS = {"6": ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightFoot"), "3": ("Head", "LeftHand", "RightHand")}
@@ -58,7 +58,7 @@ def standing(skeleton: Skeleton, arms: float, rng: np.random.Generator) -> tuple
     return positions + [0.0, contact_height(skeleton) - positions[toes, 1].min(), 0.0], orientations
 
 
-def off(networks: tuple[Network, SetNetwork], on: Performance, which: tuple[str, ...], case: tuple[float, float], rng: np.random.Generator) -> list[float]:
+def off(networks: tuple[Network, CalibrationNetwork], on: Performance, which: tuple[str, ...], case: tuple[float, float], rng: np.random.Generator) -> list[float]:
     """A row's numbers of one performance."""
     there = np.array([name in which for name in WORN])
     mine = JOINTS[there]
@@ -118,7 +118,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
     try:
-        networks, large = (Network.load(), SetNetwork.load(options.network)), Database.open(options.large)
+        networks, large = (Network.load(), CalibrationNetwork.load(options.network)), Database.open(options.large)
         takes = strangers(large)
         if options.tuned:
             small = small_of(large, options.small)
@@ -126,22 +126,17 @@ def main() -> None:
                           if take.stop - take.start > 5 * FPS)
     except (DatabaseError, ValueError) as error:
         sys.exit(str(error))
-    those = []
-    for take in takes:
-        try:
-            those.append(raw(options.small, take))
-        except (MotionFileError, ValueError) as error:
-            print(f"left out: {take.clip}: {error}", file=sys.stderr)
+    bodies = people(options.small / "cmu")
     rows = []
     for name, case in list(CASES.items()):
         if list(CASES).index(name) not in options.cases:
             continue
         for count, which in SETS.items():
-            found = np.array([off(networks, on, which, case, np.random.default_rng([seed, number]))
-                              for number, on in enumerate(those) for seed in range(options.seeds)])
+            found = np.array([off(networks, performing(large, take, bodies[(options.seeds * number + seed) % len(bodies)]), which, case,
+                                  np.random.default_rng([seed, number])) for number, take in enumerate(takes) for seed in range(options.seeds)])
             rows.append([name, count, *(f"{number:.2f}" for number in found.mean(0))])
             print(" | ".join(rows[-1]), flush=True)
-    text = (f"{len(those)} takes, each worn in {options.seeds} ways; the network after {networks[1].learnt:,} batches.\n\n" + table(HEAD, rows))
+    text = (f"{len(takes)} takes, each worn in {options.seeds} ways; the network learnt from {networks[1].people:,} performers.\n\n" + table(HEAD, rows))
     print(f"\n{text}")
     if options.out:
         options.out.write_text(TITLE + text + "\n", encoding="utf-8")

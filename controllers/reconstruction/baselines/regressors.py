@@ -104,14 +104,14 @@ class Adam:
 
     def __init__(self, values: list[np.ndarray], batches: int, rate: float = 1e-3):
         self.values, self.batches, self.rate, self.batch = values, batches, rate, 0
-        self.first, self.second = ([np.zeros_like(value) for value in values] for _ in range(2))
+        self._first, self._second = ([np.zeros_like(value) for value in values] for _ in range(2))
 
     def step(self, slopes: list[np.ndarray]) -> None:
         """Go on by the loss's derivatives by all values."""
         now = self.rate * 0.5 * (1 + math.cos(math.pi * self.batch / self.batches))
         self.batch += 1
         share, scale = now / (1 - 0.9 ** self.batch), 1 - 0.999 ** self.batch
-        for value, slope, first, second in zip(self.values, slopes, self.first, self.second, strict=True):
+        for value, slope, first, second in zip(self.values, slopes, self._first, self._second, strict=True):
             first += 0.1 * (slope - first)
             second += 0.001 * (slope * slope - second)
             value -= share * first / (np.sqrt(second / scale) + 1e-8)

@@ -11,13 +11,11 @@ import numpy as np
 from ...body import contact_height, exp, log, yaw
 from ..pose_vector import REFERENCE, SKELETON, WIDTH
 from ..trackers import FIRST, LEGS, Moments, bodies, legs, moments_kernel
-from .moved import PER_FRAME, moved_kernel
-from .stood import JOINTS, WORN, Stood
+from .moved import BEFORE, MOVING, told as told_by_moving
+from .stood import JOINTS, STANDING_INPUTS, WORN, Stood
 
-FRAMES, STRIDE, BEFORE = 32, 9, 3
-"""So many moments of somebody's moving are heard, so many frames of 1/60 s apart, each with one so many frames before."""
-DT = BEFORE / 60.0
-"""… in seconds."""
+FRAMES, STRIDE = 32, 9
+"""So many moments of somebody's moving are heard, so many frames of 1/60 s apart."""
 _SETS = ((0.45, (1, 1, 1, 1, 1, 1)), (0.30, (0, 1, 1, 1, 0, 0)), (0.05, (1, 1, 1, 1, 0, 0)), (0.05, (1, 0, 0, 0, 1, 1)), (0.05, (0, 1, 1, 1, 1, 1)))
 """How often which of `WORN` are worn together; the rest is any of them."""
 _USUAL = np.array([[0.0, 0.03, -0.12], [0.0, 0.13, 0.05], [0.05, 0.03, 0.03], [-0.05, 0.03, 0.03], [0.0, 0.02, 0.08], [0.0, 0.02, 0.08]])
@@ -45,6 +43,8 @@ _RIGHT = [SKELETON.index(SKELETON.names[j].replace("Left", "Right")) for j in _L
 _BONES = 2 * len(_MIDDLE) + 3 * len(_LEFT)
 TARGETS = _BONES + 6 * len(WORN) + 1
 """Numbers of a calibration: bones, offsets, turns, the floor."""
+INPUTS = STANDING_INPUTS + MOVING + 1
+"""… and of what is heard for it."""
 SCALES = np.concatenate([np.full(_BONES, 0.01), np.full(3 * len(WORN), 0.03), np.full(3 * len(WORN), 0.1), [0.01]])
 """What each is told over [m, rad]."""
 
@@ -71,12 +71,9 @@ def told(found: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndar
 
 @dataclass(frozen=True, eq=False)
 class Performances:
-    """frames: (B, F, PER_FRAME) float32 of moments, of which heard (B, F) bool count. stood: how they stood. truth: (B, TARGETS).
-    tells: (B, TARGETS) bool, what is asked: mounts of trackers that are worn."""
+    """inputs: (B, INPUTS), what is heard. truth: (B, TARGETS). tells: (B, TARGETS) bool, what is asked: mounts of trackers that are worn."""
 
-    frames: np.ndarray
-    heard: np.ndarray
-    stood: Stood
+    inputs: np.ndarray
     truth: np.ndarray
     tells: np.ndarray
 
@@ -102,7 +99,7 @@ def drawn(moments: Moments, count: int, seed: int, number: int) -> Performances:
     stood = Stood.of(*seen(joints, orientations), there)
     places, turns, heard = _moving(moments, people, rng)
     heard &= rng.random((count, 1)) >= _UNMOVED
-    frames = heard_as(stood, *seen(places, turns), there, heard)
+    inputs = heard_as(stood, *seen(places, turns), heard)
     # what standing got wrong
     right, turned = (part[:, 0] for part in stood.corrected(*(part[:, None] for part in _exactly(joints, orientations, beside, mounts, floor))))
     scale = stood.scale[:, None, None]
@@ -112,7 +109,7 @@ def drawn(moments: Moments, count: int, seed: int, number: int) -> Performances:
     bones[:, 0] = 0.0
     truth = numbers(bones, away, log(np.swapaxes(turned, -1, -2) @ orientations), scale[:, 0, 0] * floor)
     tells = np.concatenate([np.ones((count, _BONES), bool), np.repeat(there, 3, 1), np.repeat(there, 3, 1), np.ones((count, 1), bool)], -1)
-    return Performances(frames, heard, stood, truth, tells)
+    return Performances(inputs, truth, tells)
 
 
 def _exactly(joints, orientations, beside, mounts, floor):
@@ -120,15 +117,13 @@ def _exactly(joints, orientations, beside, mounts, floor):
     return (joints + np.einsum("bsij,bsj->bsi", orientations, beside) + [0.0, 1.0, 0.0] * floor[:, None, None], orientations @ mounts)
 
 
-def heard_as(stood: Stood, places: np.ndarray, turns: np.ndarray, there: np.ndarray, heard: np.ndarray) -> np.ndarray:
-    """Moments (B, F, PER_FRAME) of trackers in pairs of frames: places (B, F, 2, S, 3) [m] above the room's floor, turns (B, F, 2, S, 3, 3),
-    those of `heard` (B, F)."""
-    count, frames, slots = len(there), heard.shape[1], len(WORN)
-    known = heard[:, :, None] & there[:, None]
-    joined = stood.corrected(places.reshape(count, 2 * frames, slots, 3), turns.reshape(count, 2 * frames, slots, 3, 3))
-    out = np.empty((count * frames, PER_FRAME), np.float32)
-    moved_kernel(joined[0].reshape(-1, 2, slots, 3), joined[1].reshape(-1, 2, slots, 3, 3), known.reshape(-1, slots), DT, out)
-    return out.reshape(count, frames, PER_FRAME)
+def heard_as(stood: Stood, places: np.ndarray, turns: np.ndarray, heard: np.ndarray) -> np.ndarray:
+    """What is heard of people (B, INPUTS) who stood, and of moments of trackers in pairs of frames: places (B, F, 2, S, 3) [m] above the room's floor,
+    turns (B, F, 2, S, 3, 3), those of `heard` (B, F) bool; there may be none."""
+    count, frames, slots = len(stood.there), heard.shape[1], len(WORN)
+    places, turns = stood.corrected(places.reshape(count, 2 * frames, slots, 3), turns.reshape(count, 2 * frames, slots, 3, 3))
+    moving = told_by_moving(places.reshape(count, frames, 2, slots, 3), turns.reshape(count, frames, 2, slots, 3, 3), stood.there, heard)
+    return np.concatenate([stood.inputs, moving, heard.mean(-1, keepdims=True)], -1)
 
 
 def _worn(count, rng):

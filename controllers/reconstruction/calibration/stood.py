@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...body import yaw
-from ..live import SIZES, stances
+from ..live import stances
 from ..pose_vector import SKELETON
 
 WORN = ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightFoot")

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...body import STATURE, Skeleton, exp
 from ..pose_vector import SKELETON
-from .set_network import SetNetwork
+from .calibration_network import CalibrationNetwork
 from .simulated import heard_as, told
 from .stood import WORN, Stood
 
@@ -48,7 +48,7 @@ class Calibration:
         return points - [0.0, self.floor, 0.0], turns @ self.mounts
 
 
-def calibrated(network: SetNetwork, stood: Stood, places: np.ndarray | None = None, turns: np.ndarray | None = None) -> Calibration:
+def calibrated(network: CalibrationNetwork, stood: Stood, places: np.ndarray | None = None, turns: np.ndarray | None = None) -> Calibration:
     """What standing, and moments of moving in pairs of frames if there are any, tell of one person.
 
     places: (F, 2, S, 3) [m] above the room's floor, turns: (F, 2, S, 3, 3), `simulated.BEFORE` frames apart, newest first; those that are not known
@@ -59,10 +59,10 @@ def calibrated(network: SetNetwork, stood: Stood, places: np.ndarray | None = No
         places, turns = np.zeros((1, 2, len(WORN), 3)), np.tile(np.eye(3), (1, 2, len(WORN), 1, 1))
         heard = np.zeros((1, 1), bool)
     else:
-        known = np.isfinite(places).all(-1) & np.isfinite(turns).all((-1, -2))
-        heard = (known | ~there[:, None]).all((1, 2))[None]
+        known: np.ndarray = np.isfinite(places).all(-1) & np.isfinite(turns).all((-1, -2))
+        heard = np.all(known | ~there[:, None], axis=(1, 2))[None]
         places, turns = np.where(known[..., None], places, 0.0), np.where(known[..., None, None], turns, np.eye(3))
-    found, deviations = network.predict(heard_as(stood, places[None], turns[None], there, heard), heard, stood.inputs)
+    found, deviations = network.predict(heard_as(stood, places[None], turns[None], heard))
     bones, away, turned, floor = told(found[0])
     unsure = told(deviations[0])
     worn = there[0]
