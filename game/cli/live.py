@@ -131,8 +131,8 @@ def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
 
 
 def stand(source: Any, height: float | None, calibration: Path | None = None) -> None:
-    """Tell the source where floor and body are and how its trackers are worn: as a file says that is there, else as somebody does who stands still;
-    then the file is written."""
+    """Tell the source where floor and body are: as somebody does who stands still, and if a file is named how trackers are worn, too: as it says if
+    it is there; else it is written then."""
     from gambol.controllers.reconstruction.calibration import load, save
 
     if calibration is not None and calibration.exists():
@@ -141,13 +141,12 @@ def stand(source: Any, height: float | None, calibration: Path | None = None) ->
         return
     if calibration is not None and not calibration.parent.is_dir():
         raise Mistake(f"{calibration}: there is no folder {calibration.parent}")
-    _stood(source, height)
-    if source.worn is not None:
+    _stood(source, height, calibration is not None)
+    if source.worn is not None and calibration is not None:
         say(source.worn.said(source.controls.names))
-        if calibration is not None:
-            save(calibration, source.worn)
+        save(calibration, source.worn)
     elif calibration is not None:
-        say(f"{calibration}: not written: trackers are calibrated that all tell how they are turned, on hips, head, hands and feet, without --height")
+        say(f"{calibration}: not written: trackers are calibrated that all tell how they are turned, on hips, head, hands and feet")
 
 
 def moved(source: Any, calibration: Path | None) -> None:
@@ -160,8 +159,8 @@ def moved(source: Any, calibration: Path | None) -> None:
         say(f"{calibration}: written; with it nobody need stand still the next time")
 
 
-def _stood(source: Any, height: float | None) -> None:
-    """Wait until somebody who wears the trackers stands still."""
+def _stood(source: Any, height: float | None, calibrating: bool) -> None:
+    """Wait until somebody who wears the trackers stands still; where they sit is told, too, if it is asked for."""
     import numpy as np
 
     from gambol.controllers.reconstruction.calibration import CalibrationNetwork, Wearer, calibratable
@@ -178,7 +177,7 @@ def _stood(source: Any, height: float | None) -> None:
         if standing.place is not None:
             try:
                 source.placement = placed(standing.place, source.controls, height, standing.turn)
-                if height is None and (turn := standing.turn) is not None and calibratable(source.controls, turn):
+                if calibrating and (turn := standing.turn) is not None and calibratable(source.controls, turn):
                     source.worn = Wearer.standing(source.controls, source.placement, standing.place, turn, CalibrationNetwork.load())
                 return
             except ValueError as error:

@@ -29,7 +29,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 host: Annotated[str | None, typer.Option(help="Whom to listen to: 127.0.0.1, programs on this machine, by default; 0.0.0.0, trackers on other machines, too.")] = None,
                 trackers: Annotated[Path | None, typer.Option("--map", help="A TOML file that says which tracker is on which point.")] = None,
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
-                calibration: Annotated[Path | None, typer.Option(help="A TOML file of how one wears the trackers: read if it is there, else written once one has stood still, and moved.")] = None,
+                calibration: Annotated[Path | None, typer.Option(help="Trackers are worn anyhow, beside their joints: a TOML file of how, read if it is there, else written once one has stood still, and moved.")] = None,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
                 send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
@@ -46,6 +46,8 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     for option, given in recorded if stream is not None else listening + (recorded if heard_again else worn):
         if given is not None:
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
+    if height is not None and calibration is not None:
+        raise Mistake("--height and --calibration both say how tall one is: give one of them")
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
     if window and (send is None or out is not None or heard_again):

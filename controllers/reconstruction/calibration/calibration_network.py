@@ -14,7 +14,7 @@ from ...files import reason
 from ..baselines import Adam, backward, forward, starting
 from ..trackers import Moments
 from .simulated import INPUTS, TARGETS, drawn
-from .stood import WORN
+from .stood import STANDING_INPUTS, WORN
 
 SHIPPED = assets.path("reconstruction", "calibration.npz")
 """Learnt from CMU's motion; see PROVENANCE.md beside it."""
@@ -22,6 +22,8 @@ HIDDEN = (256, 256)
 WIDTHS = (INPUTS, *HIDDEN, 2 * TARGETS)
 CLIPPED = 4.0
 """No input counts for more deviations from its mean than this."""
+STRANGE = 2.5
+"""Moving whose inputs are off their means by more deviations squared than this, on the average, is like nothing that was learnt from: people's have about 1."""
 VERSION = 1
 """Of what the numbers in a file mean."""
 _DRAWN, _SIZE, _ROUNDS, _RATE, _DECAY, _BLUR = 400, 256, 20, 6e-4, 0.05, 0.1
@@ -41,6 +43,10 @@ class CalibrationNetwork:
         """What standing got wrong (B, TARGETS), see `simulated.numbers`, and standard deviations (B, TARGETS) of what is left, of inputs (B, INPUTS)."""
         found = forward(self.weights, self.biases, scaled(inputs, self.ins))[-1].astype(float)
         return found[:, :TARGETS], np.exp(np.clip(found[:, TARGETS:], -6.0, 3.0))
+
+    def strange(self, inputs: np.ndarray) -> np.ndarray:
+        """Whether moving (B,) was so unlike what it was learnt from that nothing is to be told of it."""
+        return np.mean(scaled(inputs, self.ins)[:, STANDING_INPUTS:-1] ** 2, -1) > STRANGE
 
     def save(self, path: str | Path) -> None:
         """Write it as an .npz file of half-precision weights."""

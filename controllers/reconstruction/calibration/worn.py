@@ -52,7 +52,7 @@ def calibrated(network: CalibrationNetwork, stood: Stood, places: np.ndarray | N
     """What standing, and moments of moving in pairs of frames if there are any, tell of one person.
 
     places: (F, 2, S, 3) [m] above the room's floor, turns: (F, 2, S, 3, 3), `simulated.BEFORE` frames apart, newest first; those that are not known
-    whole, but for trackers that are not worn, are left out.
+    whole, but for trackers that are not worn, are left out; and all of them where they are like nothing that people do.
     """
     there = stood.there
     if places is None or turns is None:
@@ -62,7 +62,10 @@ def calibrated(network: CalibrationNetwork, stood: Stood, places: np.ndarray | N
         known: np.ndarray = np.isfinite(places).all(-1) & np.isfinite(turns).all((-1, -2))
         heard = np.all(known | ~there[:, None], axis=(1, 2))[None]
         places, turns = np.where(known[..., None], places, 0.0), np.where(known[..., None, None], turns, np.eye(3))
-    found, deviations = network.predict(heard_as(stood, places[None], turns[None], heard))
+    inputs = heard_as(stood, places[None], turns[None], heard)
+    if heard.any() and network.strange(inputs)[0]:
+        return calibrated(network, stood)
+    found, deviations = network.predict(inputs)
     bones, away, turned, floor = told(found[0])
     unsure = told(deviations[0])
     worn = there[0]
