@@ -59,7 +59,7 @@ def calibrated(network: CalibrationNetwork, stood: Stood, places: np.ndarray | N
         places, turns = np.zeros((1, 2, len(WORN), 3)), np.tile(np.eye(3), (1, 2, len(WORN), 1, 1))
         heard = np.zeros((1, 1), bool)
     else:
-        known: np.ndarray = np.isfinite(places).all(-1) & np.isfinite(turns).all((-1, -2))
+        known = np.asarray(np.isfinite(places).all(-1) & np.isfinite(turns).all((-1, -2)))
         heard = np.all(known | ~there[:, None], axis=(1, 2))[None]
         places, turns = np.where(known[..., None], places, 0.0), np.where(known[..., None, None], turns, np.eye(3))
     inputs = heard_as(stood, places[None], turns[None], heard)
