@@ -134,6 +134,8 @@ PLAN = {
                                 "reconstruction.baselines"),
         "reconstruction.trackers": ("compiled files body reconstruction.database reconstruction.regression reconstruction.baselines "
                                     "reconstruction.ours"),
+        "reconstruction.calibration": ("compiled files body reconstruction.regression reconstruction.baselines reconstruction.trackers "
+                                       "reconstruction.live"),
         "reconstruction.evaluation": ("body reconstruction.database reconstruction.regression reconstruction.baselines "
                                       "reconstruction.ours"),
     },

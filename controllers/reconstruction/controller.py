@@ -29,6 +29,8 @@ ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 LEAP = 0.2
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind."""
+FRESH, NEWS = 0.02, 0.15
+"""… and farther than this within so long [s] after points came back that had all been lost: what it knows has changed."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
 _CALMED = 0.5
@@ -54,7 +56,7 @@ class Following:
     frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
-    point was followed. fault: what went wrong.
+    point was followed. news: [s] since points came back that had all been lost. fault: what went wrong.
     """
 
     memory: Any
@@ -67,6 +69,7 @@ class Following:
     rate: np.ndarray
     level: float = 0.0
     lost: float = 0.0
+    news: float = NEWS
     fault: str = ""
 
 
@@ -198,7 +201,8 @@ class Reconstruction(Controller):
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
-        if self.starts is not None and gate.at_odds(self.dt) and spread(points) <= APART:
+        back = following.lost > 0.0 and gate.trusted.any()
+        if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
             return self._anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
         if turns is None or not getattr(self.method, "hears_turns", False):
             memory, pose = self.method.step(following.memory, goals)
@@ -208,8 +212,10 @@ class Reconstruction(Controller):
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
-        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
-        if np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max() <= LEAP:
+        news = 0.0 if back else following.news + self.dt
+        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost, news=news)
+        leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
+        if leap <= (FRESH if news < NEWS else LEAP):
             return after
         # the body goes on as it did, and what it would have leapt fades; less fast each time, or leaps upon leaps
         # would carry it away

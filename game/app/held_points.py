@@ -119,6 +119,8 @@ class HeldPoints:
             elif self.stream is None:
                 lines.append(f"drag the points, wheel or {key('run')} deeper, {key('study_hide')} unseen, "
                              f"{key('study_hands')} let go")
+        if self.stream is not None and self.stream.worn is not None:
+            lines.append(self.stream.worn.said(self.stream.controls.names))
         return tuple(lines)
 
     # --- the pointer

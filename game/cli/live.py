@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -54,10 +54,11 @@ def _clock() -> Any:
     return time.monotonic
 
 
-def record(source: Any, controller: Any, out: Path | None, height: float | None, seconds: float | None, sender: Any = None) -> None:
+def record(source: Any, controller: Callable[[Any], Any], out: Path | None, height: float | None, seconds: float | None, sender: Any = None,
+           calibration: Path | None = None) -> None:
     """Record what trackers say until the time is up or somebody stops it; what there is by then is written.
 
-    out: None to keep nothing. sender: whom each frame is sent to.
+    controller: makes one for a skeleton, or None for the standard one. out: None to keep nothing. sender: whom each frame is sent to. calibration: see `stand`.
     """
     import numpy as np
 
@@ -68,25 +69,33 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
 
     from ..app import sure
 
-    someone = Supervisor({"locomotion": Locomotion.load(), "reconstruction": controller})
+    reconstruction, walker = controller(None), Locomotion.load()
+    someone = Supervisor({"locomotion": walker, "reconstruction": reconstruction})
     someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
     poses, contacts, lost = [], [], 0
     with _stoppable():
         try:
-            source.placement = placement(source, height)
+            stand(source, height, calibration)
+            known = None
             say("recording; Ctrl-C ends it" if out is not None else "sending; Ctrl-C ends it")
             state = None
             for now in _times(source, seconds, sender is not None):
                 seen = source.at(now)
+                if source.worn is not None and source.worn.known is not known:
+                    if known is not None:
+                        moved(source, calibration)
+                    known = source.worn.known
+                    reconstruction = controller(source.worn.skeleton)
+                    someone = Supervisor({"locomotion": walker, "reconstruction": reconstruction})
                 if state is None:
                     if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
                         continue
-                    state = someone.enter(controller.begin(seen, turns=source.turns), Intent())
+                    state = someone.enter(reconstruction.begin(seen, turns=source.turns), Intent())
                 intent = Intent(towards(state, seen), points=seen, turns=source.turns)
                 state, pose = someone.step(state, intent, 1 / FPS)
                 lost += someone.active(state)[0] != "reconstruction"
                 if sender is not None:
-                    sender.send(someone.skeleton, pose, state.ground, now, sure(state))
+                    sender.send(reconstruction.skeleton, pose, state.ground, now, sure(state))
                 if out is not None:
                     poses.append(pose)
                     contacts.append(state.contacts)
@@ -94,7 +103,7 @@ def record(source: Any, controller: Any, out: Path | None, height: float | None,
             pass
         finally:
             if poses and out is not None:
-                write_take(out, out.stem, someone.skeleton, poses, contacts)
+                write_take(out, out.stem, reconstruction.skeleton, poses, contacts)
     if not poses and out is not None:
         raise Mistake(f"{out}: nothing was recorded")
     if lost:
@@ -121,10 +130,40 @@ def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
         yield now
 
 
-def placement(source: Any, height: float | None) -> Any:
-    """Wait until somebody who wears the trackers stands still, and tell from it where floor and body are."""
+def stand(source: Any, height: float | None, calibration: Path | None = None) -> None:
+    """Tell the source where floor and body are: as somebody does who stands still, and if a file is named how trackers are worn, too: as it says if
+    it is there; else it is written then."""
+    from gambol.controllers.reconstruction.calibration import load, save
+
+    if calibration is not None and calibration.exists():
+        source.worn = load(calibration, source.controls)
+        say(source.worn.said(source.controls.names))
+        return
+    if calibration is not None and not calibration.parent.is_dir():
+        raise Mistake(f"{calibration}: there is no folder {calibration.parent}")
+    _stood(source, height, calibration is not None)
+    if source.worn is not None and calibration is not None:
+        say(source.worn.said(source.controls.names))
+        save(calibration, source.worn)
+    elif calibration is not None:
+        say(f"{calibration}: not written: trackers are calibrated that all tell how they are turned, on hips, head, hands and feet")
+
+
+def moved(source: Any, calibration: Path | None) -> None:
+    """Say what five seconds of moving told, and keep it."""
+    from gambol.controllers.reconstruction.calibration import save
+
+    say(source.worn.said(source.controls.names))
+    if calibration is not None:
+        save(calibration, source.worn)
+        say(f"{calibration}: written; with it nobody need stand still the next time")
+
+
+def _stood(source: Any, height: float | None, calibrating: bool) -> None:
+    """Wait until somebody who wears the trackers stands still; where they sit is told, too, if it is asked for."""
     import numpy as np
 
+    from gambol.controllers.reconstruction.calibration import CalibrationNetwork, Wearer, calibratable
     from gambol.controllers.reconstruction.live import Standing, placed
 
     names = source.controls.names
@@ -137,7 +176,10 @@ def placement(source: Any, height: float | None) -> Any:
         standing = standing.watch(now, seen, source.turns)
         if standing.place is not None:
             try:
-                return placed(standing.place, source.controls, height, standing.turn)
+                source.placement = placed(standing.place, source.controls, height, standing.turn)
+                if calibrating and (turn := standing.turn) is not None and calibratable(source.controls, turn):
+                    source.worn = Wearer.standing(source.controls, source.placement, standing.place, turn, CalibrationNetwork.load())
+                return
             except ValueError as error:
                 say(str(error))
                 standing, told = Standing(), now

@@ -29,6 +29,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 host: Annotated[str | None, typer.Option(help="Whom to listen to: 127.0.0.1, programs on this machine, by default; 0.0.0.0, trackers on other machines, too.")] = None,
                 trackers: Annotated[Path | None, typer.Option("--map", help="A TOML file that says which tracker is on which point.")] = None,
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
+                calibration: Annotated[Path | None, typer.Option(help="Trackers are worn anyhow, beside their joints: a TOML file of how, read if it is there, else written once one has stood still, and moved.")] = None,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
                 send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
@@ -40,11 +41,13 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         raise Mistake(f"--stream {stream!r}: only osc is understood")
     heard_again = clip is not None and clip.suffix.lower() == SUFFIX
     listening = (("--port", port), ("--host", host), ("--keep", keep))
-    worn = (("--map", trackers), ("--seconds", seconds), ("--height", height), ("--send", send))
+    worn = (("--map", trackers), ("--seconds", seconds), ("--height", height), ("--calibration", calibration), ("--send", send))
     recorded = (("--noise", noise or None), ("--seed", seed or None), ("--turns", turns or None))
     for option, given in recorded if stream is not None else listening + (recorded if heard_again else worn):
         if given is not None:
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
+    if height is not None and calibration is not None:
+        raise Mistake("--height and --calibration both say how tall one is: give one of them")
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
     if window and (send is None or out is not None or heard_again):
@@ -80,11 +83,11 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     method = method or _usual(names, database)
     with live.heard(worn_on, clip, port, host, keep) as source:
         if out is None and (send is None or window):
-            source.placement = live.placement(source, height)
+            live.stand(source, height, calibration)
             watch(method, names, database, stream=source, send=send)
         else:
             with live.sent(send) as sender:
-                live.record(source, _controller(method, database, names), out, height, seconds, sender)
+                live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration)
 
 
 def _known(method: str) -> None:
@@ -110,15 +113,21 @@ def _named(text: str) -> str:
         raise Mistake(f"--points {text!r}: {error}") from None
 
 
-def _controller(method: str, file: Path | None, points: str) -> Any:
-    """The controller that follows some points, learnt from a database where it has not been yet."""
+def _controller(method: str, file: Path | None, points: str, skeleton: Any = None) -> Any:
+    """The controller that follows some points, learnt from a database where it has not been yet. skeleton: the performer's, for methods that know
+    bodies of other proportions."""
+    from dataclasses import replace
+
     from gambol.controllers.reconstruction import Reconstruction
 
-    from ..world import methods
+    from ..world import SHIPPED, methods
 
     learn([(method, points)], file)
     known = methods(file)
     learnt, controls = known(method, points)
+    if skeleton is not None and method == SHIPPED:
+        own = replace(learnt, skeleton=skeleton)
+        return Reconstruction(own, controls, dt=known.frame_time(method), starts=own, skeleton=skeleton)
     return Reconstruction(learnt, controls, dt=known.frame_time(method), starts=known.starts(method, points))
 
 

@@ -221,6 +221,7 @@ def test_keys_open_hold_and_leave(walker):
 
 def test_a_stream_holds_the_points(walker):
     class Somebody:
+        worn = None
         turns = np.full((4, 3, 3), np.nan)
 
         def at(self, time):

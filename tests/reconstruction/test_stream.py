@@ -239,7 +239,7 @@ def test_usual_trackers_are_on_usual_points():
 def test_a_standing_performer_is_placed(name, arms, heading, size, aside, floor):
     """Any heading, size, place and height of the tracker's floor, in T-pose or with the arms down, comes out right."""
     controls = parse(name, SKELETON)
-    stance = stances(controls)[0][arms]
+    stance = controls.on(*stances())[arms]
     seen = size * stance @ yaw(heading).T + [aside, floor, 1.0]
     assert np.allclose(placed(seen, controls)(seen), stance, atol=1e-6)
     assert np.allclose(placed(seen, controls, height=1.741 * size)(seen), stance, atol=1e-6)
@@ -249,7 +249,7 @@ def test_a_standing_performer_is_placed(name, arms, heading, size, aside, floor)
 def test_points_of_nobody_who_stands_are_refused(wrong):
     controls = parse("4", SKELETON)
     with pytest.raises(ValueError, match="no standing body's"):
-        placed(wrong(stances(controls)[0][0]), controls)
+        placed(wrong(controls.on(*stances())[0]), controls)
 
 
 def test_standing_needs_a_second_without_moving_or_losing_a_point():

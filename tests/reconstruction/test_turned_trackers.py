@@ -36,6 +36,12 @@ def unity_euler(x, y, z):
     return quaternion_product(quaternion_product(about(1, y), about(0, x)), about(2, z))
 
 
+def on(controls):
+    """Where a standing body has points, and how their joints are turned, in both stances."""
+    stood = stances()
+    return controls.on(*stood), stood[1][:, controls.joints]
+
+
 def vmc(serial, place, quaternion, kind="Tra"):
     return message(f"/VMC/Ext/{kind}/Pos", serial, *map(float, place), *map(float, quaternion))
 
@@ -111,7 +117,7 @@ def test_turns_are_placed_as_points_are():
 def test_however_trackers_sit_joints_are_turned_as_they_stand_and_go_on_from_there(seed, arms):
     rng = np.random.default_rng(seed)
     controls, heading = parse("6", SKELETON), rng.uniform(-3.0, 3.0)
-    points, joints = (some[arms] for some in stances(controls))
+    points, joints = (some[arms] for some in on(controls))
     mounts = Rotation.random(len(controls), random_state=rng).as_matrix()
     placement = placed(points @ yaw(heading).T + [0.3, 0.1, -2.0], controls, turns=yaw(heading) @ joints @ mounts)
     later = Rotation.random(len(controls), random_state=rng).as_matrix()
@@ -125,7 +131,7 @@ def test_what_stands_still_without_a_turn_has_none_later():
     assert standing.turn is None
     for k in range(70):
         turns = np.stack([yaw(0.5 + 0.01 * (-1) ** k), np.eye(3), np.full((3, 3), np.nan)])
-        standing = standing.watch(k / 60, stances(controls)[0][0], turns)
+        standing = standing.watch(k / 60, on(controls)[0][0], turns)
     assert np.allclose(standing.turn[0], yaw(0.5), atol=1e-3) and np.isnan(standing.turn[1:]).all()
     told = placed(standing.place, controls, turns=standing.turn).turned(np.tile(yaw(0.5), (3, 1, 1)))
     assert np.allclose(told[0], np.eye(3), atol=1e-3) and np.isnan(told[1:]).all()

@@ -102,6 +102,12 @@ class Gate:
         there = np.isfinite(self.raw).all(-1)
         return int(there.sum()) >= 2 and not self.trusted.any() and bool((self.steady[there] > 1.5 * dt).all())
 
+    @property
+    def doubtful(self) -> bool:
+        """Whether no more than half of the points that go on from where they were, two or more, are believed."""
+        going = self.steady > 0.0
+        return int(going.sum()) >= 2 and 2 * int(self.trusted.sum()) <= int(going.sum())
+
 
 def _length(vectors):
     return np.linalg.norm(vectors, axis=-1)

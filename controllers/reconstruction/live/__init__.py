@@ -4,13 +4,13 @@ where the body goes that is made of them: to programs that show it.
 
 from .osc_stream import HOST, PORT, Replayed, Stream, Trackers
 from .packet_log import SUFFIX, PacketLog, PacketLogError
-from .placing import Standing, placed
+from .placing import SIZES, Placement, Standing, placed, stances
 from .sources import Recorded
 from .timeline import Timeline
 from .tracker_map import StreamError, read_map, usual_map
 from .vmc_sender import Sender, SenderError, address
 
 __all__ = [
-    "HOST", "PORT", "SUFFIX", "PacketLog", "PacketLogError", "Recorded", "Replayed", "Sender", "SenderError", "Standing", "Stream", "StreamError",
-    "Timeline", "Trackers", "address", "placed", "read_map", "usual_map",
+    "HOST", "PORT", "SIZES", "SUFFIX", "PacketLog", "PacketLogError", "Placement", "Recorded", "Replayed", "Sender", "SenderError", "Standing", "Stream", "StreamError",
+    "Timeline", "Trackers", "address", "placed", "read_map", "stances", "usual_map",
 ]

@@ -44,7 +44,8 @@ class Trackers:
     finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
     many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
     turns: (n, 3, 3) how the joints below the trackers are turned, as of when the points were told last; NaN where not known; the
-    trackers' own turns until a placement knows how they are mounted.
+    trackers' own turns until a placement knows how they are mounted. worn: who makes joints of what trackers say, places (n, 3) [m] and turns
+    (n, 3, 3) of the room, instead of the placement (`calibration.Wearer`).
     """
 
     def __init__(self, points: Mapping[str, str], stale: float = STALE):
@@ -52,6 +53,7 @@ class Trackers:
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
         self.stale, self.placement, self.heard, self.broken, self.foreign = stale, Placement(), {}, 0, 0
+        self.worn: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
         self._lines = [Timeline() for _ in points]
         self.turns = np.full((len(points), 3, 3), np.nan)
         self._from = "", -np.inf
@@ -89,6 +91,9 @@ class Trackers:
         for n, line in enumerate(self._lines):
             if now - line.last <= self.stale:
                 places[n], quaternions[n] = (line.at(now), line.turned_at(now)) if evenly else (line.newest, line.newest_turn)
+        if self.worn is not None:
+            told, self.turns = self.worn(places, matrices(quaternions))
+            return told
         self.turns = self.placement.turned(matrices(quaternions))
         return self.placement(places)
 

@@ -86,14 +86,13 @@ class Standing:
         return turns
 
 
-def stances(controls: ControlPoints) -> tuple[np.ndarray, np.ndarray]:
-    """Where a standard body has its points (2, n, 3) [m] that stands at the origin facing +Z: T-pose, arms down; and how their
-    joints are turned (2, n, 3, 3)."""
+def stances() -> tuple[np.ndarray, np.ndarray]:
+    """A standard body that stands at the origin facing +Z, in T-pose and with the arms down: joints (2, J, 3) [m], and how they are
+    turned (2, J, 3, 3)."""
     turns = np.tile(np.eye(3), (2, len(SKELETON), 1, 1))
     for side, down in (("Left", -1.3), ("Right", 1.3)):
         turns[1, SKELETON.index(side + "Arm")] = exp(np.array([0.0, 0.0, down]))
-    positions, orientations = forward_kinematics(SKELETON, np.tile(SKELETON.offsets[0], (2, 1)), turns)
-    return controls.on(positions, orientations), orientations[:, controls.joints]
+    return forward_kinematics(SKELETON, np.tile(SKELETON.offsets[0], (2, 1)), turns)
 
 
 def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = None, turns: np.ndarray | None = None) -> Placement:
@@ -103,7 +102,8 @@ def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = Non
     NaN where not known: however they sit on the joints, joints are turned like the standing body's now.
     ValueError if they are no standing body's.
     """
-    points, orientations = stances(controls)
+    stood = stances()
+    points, orientations = controls.on(*stood), stood[1][:, controls.joints]
     found = [_align(seen, stance, None if height is None else STATURE / height) for stance in points]
     nearest = min(range(len(found)), key=lambda one: found[one][0])
     away, placement = found[nearest]

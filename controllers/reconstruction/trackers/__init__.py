@@ -2,13 +2,14 @@
 contacts, and the most probable pose on the performer's own skeleton.
 """
 
-from .bodies import bodies
+from .bodies import bodies, legs
 from .learning import HIDDEN, SIZE, Learner
 from .network import SHIPPED, Network
-from .samples import Moments, standing, tracks_of
+from .samples import FIRST, LEGS, Moments, moments_kernel, standing, tracks_of
 from .slots import INPUTS, LAGS, PLACES, SLOTS
 from .tracker_poses import Trackers
 
 __all__ = [
-    "HIDDEN", "INPUTS", "LAGS", "PLACES", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "bodies", "standing", "tracks_of",
+    "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "bodies", "legs",
+    "moments_kernel", "standing", "tracks_of",
 ]

@@ -24,7 +24,7 @@ from .wearing import Worn, worn
 FIRST = np.full(len(SKELETON), -1, np.int64)
 FIRST[JOINTS] = 3 * np.arange(len(JOINTS))
 FIRST.setflags(write=False)
-_LEGS = np.array([SKELETON.index(side + name) for side in ("Left", "Right") for name in ("Foot", "Toe")])
+LEGS = np.array([SKELETON.index(side + name) for side in ("Left", "Right") for name in ("Foot", "Toe")])
 _STANDARD = float(legs(SKELETON.offsets))
 EVEN = 0.6
 """A subject is drawn as often as the number of its frames to this power: one who walks for an hour does not fill the batches."""
@@ -83,7 +83,7 @@ class Moments:
         places, turns, there = np.empty((*shape, 3)), np.empty((*shape, 3, 3)), np.empty(shape[:2], np.bool_)
         truth = np.empty((count, WIDTH))
         moments_kernel(self.database.frames, self.database.sound, at, first, 1.0 / self.database.fps, LAGS, SLOTS, people,
-                       legs(people) / _STANDARD, SKELETON.offsets, SKELETON.parents, REFERENCE, FIRST, _LEGS, truth, places, turns, there)
+                       legs(people) / _STANDARD, SKELETON.offsets, SKELETON.parents, REFERENCE, FIRST, LEGS, truth, places, turns, there)
         wearing = worn(count, rng) if wearing is None else wearing
         wearing = wearing.among(there)
         places, turns = wearing.spoilt(places, turns)

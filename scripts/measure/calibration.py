@@ -1,0 +1,146 @@
+"""How far a body is off whose trackers are worn anyhow: as they are, after a standing pose, and after five seconds of moving.
+
+    python scripts/measure/calibration.py LARGE --small FOLDER [--network FILE] [--tuned] [--out docs/reconstruction/calibration.md]
+
+LARGE, FOLDER: as for scripts/build/trackers.py. Performers move as subjects of CMU of whom nothing was learnt, or with --tuned as in takes that
+settings are chosen on, on limbs as long as those of others of CMU's (`_performers`). Trackers are 10 cm and 20° off, in whatever direction. They
+stand in T-pose, arms 6° low, other joints 1.5° off about each axis, then the take's first five seconds are heard, and all of it is judged.
+Beside it: arms as they were asked; trackers right on their joints, for the performer's own proportions; and what exact mounts and bones would
+give. All distances are centimetres in the room over 19 joints.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+import numpy as np
+
+from gambol.controllers.body import Skeleton, contact_height, exp, forward_kinematics, yaw
+from gambol.controllers.reconstruction import SKELETON, parse
+from gambol.controllers.reconstruction.calibration import BEFORE, FRAMES, JOINTS, SHIPPED, STRIDE, WORN, CalibrationNetwork, Stood, calibrated
+from gambol.controllers.reconstruction.database import Database, DatabaseError
+from gambol.controllers.reconstruction.evaluation import small_of, strangers, trials
+from gambol.controllers.reconstruction.live import placed
+from gambol.controllers.reconstruction.trackers import Network, Trackers
+from _performers import people, performing
+from reconstruction_figures import table
+from reconstruction_trackers import FPS, Performance
+
+OFF, TURNED, UNREST = 0.10, np.radians(20.0), np.radians(1.5)
+SETS = {"6": ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightFoot"), "3": ("Head", "LeftHand", "RightHand")}
+CASES = {"10 cm and 20° off, arms 6° low": (OFF, np.radians(6.0)), "10 cm and 20° off, arms as asked": (OFF, 0.0),
+         "on their joints, arms 6° low": (0.0, np.radians(6.0)), "on their joints, arms as asked": (0.0, 0.0)}
+HEAD = ("", "trackers", "places alone", "standing", "standing and 5 s", "exact", "sure of mounts, cm", "mounts off, cm", "bones off, cm")
+ROOM = 0.7, np.array([0.4, 0.01, -0.8])
+"""How the room is turned [rad], and where its middle is [m]; its floor is not quite level with the body's."""
+SEEDS = 3
+TITLE = """# Calibration, measured
+
+    python scripts/measure/calibration.py LARGE --small FOLDER --out docs/reconstruction/calibration.md
+
+"""
+
+
+def standing(skeleton: Skeleton, arms: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Joints (J, 3) [m] and their orientations (J, 3, 3) of somebody in T-pose, arms low, and not quite straight otherwise."""
+    turns = exp(rng.normal(0.0, UNREST, (len(skeleton), 3)))
+    turns[0] = np.eye(3)
+    for side, way in (("Left", -1.0), ("Right", 1.0)):
+        turns[skeleton.index(side + "Arm")] = exp(np.array([0.0, 0.0, way * arms])) @ turns[skeleton.index(side + "Arm")]
+    positions, orientations = forward_kinematics(skeleton, np.zeros(3), turns)
+    toes = [skeleton.index(side + "Toe") for side in ("Left", "Right")]
+    return positions + [0.0, contact_height(skeleton) - positions[toes, 1].min(), 0.0], orientations
+
+
+def off(networks: tuple[Network, CalibrationNetwork], on: Performance, which: tuple[str, ...], case: tuple[float, float], rng: np.random.Generator) -> list[float]:
+    """A row's numbers of one performance."""
+    there = np.array([name in which for name in WORN])
+    mine = JOINTS[there]
+    where, axis = (each / np.linalg.norm(each, axis=-1, keepdims=True) for each in rng.normal(size=(2, len(WORN), 3)))
+    beside, mount = case[0] * where, exp(TURNED * axis)
+
+    def seen(positions, orientations):
+        turns = orientations[..., JOINTS, :, :]
+        places = positions[..., JOINTS, :] + np.einsum("...nij,nj->...ni", turns, beside)
+        return places @ yaw(ROOM[0]).T + ROOM[1], yaw(ROOM[0]) @ turns @ mount
+    stand = standing(on.skeleton, case[1], rng)
+    place, turn = seen(*stand)
+    places, turns = seen(on.positions, on.orientations)
+    truth = on.positions @ yaw(ROOM[0]).T + ROOM[1]
+    stood = Stood.of(place[None], turn[None], there[None])
+    last = min(len(places), int(5 * FPS)) - 1
+    at = np.arange(last, BEFORE, -STRIDE)[:FRAMES]
+    pairs = np.stack([at, at - BEFORE], 1)
+    controls = parse(",".join(which), SKELETON)
+
+    def judged(found):
+        return float(100 * np.linalg.norm(found - truth, axis=-1)[:, 1:][:, on.known[1:]].mean())
+    placement = placed(place[there], controls, turns=turn[there])
+    bodies = played(networks[0], SKELETON, controls, placement(places[:, there]), np.stack([placement.turned(some) for some in turns[:, there]]))
+    found = [judged((bodies - placement.shift) @ yaw(placement.heading) / placement.scale)]
+    for known in (calibrated(networks[1], stood), calibrated(networks[1], stood, places[pairs], turns[pairs])):
+        points, oriented = known.joints(places, turns)
+        bodies = played(networks[0], known.skeleton, controls, points[:, there], oriented[:, there])
+        found.append(judged((bodies + [0.0, known.floor, 0.0]) / known.stood.scale[0]))
+    exact = played(networks[0], on.skeleton, controls, on.positions[:, mine], on.orientations[:, mine])
+    away = known.offsets - known.stood.scale[0] * np.einsum("nij,njk,nk->ni", np.swapaxes(known.stood.mounts[0], -1, -2), np.swapaxes(mount, -1, -2), beside)
+    bones = np.linalg.norm(known.bones / known.stood.scale[0] - on.skeleton.offsets, axis=-1)[1:][on.known[1:]]
+    return [*found, judged(exact @ yaw(ROOM[0]).T + ROOM[1]), 100 * known.unsure[1][there].mean(),
+            100 * np.linalg.norm(away[there], axis=-1).mean(), 100 * bones.mean()]
+
+
+def played(network, skeleton, controls, points, turns):
+    """Joints (T, J, 3) of the body that follows points (T, n, 3) with turns (T, n, 3, 3)."""
+    method = Trackers(network, controls, 1 / FPS, skeleton)
+    memory = method.begin(*method.find(points[0], None, turns[0]))
+    bodies = []
+    for point, turn in zip(points, turns, strict=True):
+        memory, pose = method.step(memory, point, turn)
+        bodies.append(forward_kinematics(skeleton, pose.root, pose.rotations)[0])
+    return np.array(bodies)
+
+
+def main() -> None:
+    """Print the table, and write it down if asked."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("large", type=Path, metavar="LARGE")
+    parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
+    parser.add_argument("--network", type=Path, default=SHIPPED)
+    parser.add_argument("--tuned", action="store_true", help="long takes that settings are chosen on, instead of strangers")
+    parser.add_argument("--cases", type=int, nargs="+", default=list(range(len(CASES))), help="numbers of cases, from 0 on: " + "; ".join(CASES))
+    parser.add_argument("--seeds", type=int, default=SEEDS)
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args()
+    try:
+        networks, large = (Network.load(), CalibrationNetwork.load(options.network)), Database.open(options.large)
+        takes = strangers(large)
+        if options.tuned:
+            small = small_of(large, options.small)
+            takes = tuple(take for take in trials.split(small.only([one for one in small.takes if not one.interpolated])).validation
+                          if take.stop - take.start > 5 * FPS)
+    except (DatabaseError, ValueError) as error:
+        sys.exit(str(error))
+    bodies = people(options.small / "cmu")
+    rows = []
+    for name, case in list(CASES.items()):
+        if list(CASES).index(name) not in options.cases:
+            continue
+        for count, which in SETS.items():
+            found = np.array([off(networks, performing(large, take, bodies[(options.seeds * number + seed) % len(bodies)]), which, case,
+                                  np.random.default_rng([seed, number])) for number, take in enumerate(takes) for seed in range(options.seeds)])
+            rows.append([name, count, *(f"{number:.2f}" for number in found.mean(0))])
+            print(" | ".join(rows[-1]), flush=True)
+    text = (f"{len(takes)} takes, each worn in {options.seeds} ways; the network learnt from {networks[1].people:,} performers.\n\n" + table(HEAD, rows))
+    print(f"\n{text}")
+    if options.out:
+        options.out.write_text(TITLE + text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
