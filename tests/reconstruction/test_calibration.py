@@ -112,8 +112,9 @@ def test_moving_like_nobody_is_not_heard():
 
 
 def test_what_lost_trackers_say_while_moving_is_not_heard():
-    places, turns = worn(np.random.default_rng(3), *moving())
-    stood = Stood.of(STANCES[0][:1], STANCES[1][:1], ALL[None])
+    joints, turned = moving()
+    places, turns = worn(np.random.default_rng(3), np.concatenate([STANCES[0][:1], joints]), np.concatenate([STANCES[1][:1], turned]))
+    stood, places, turns = Stood.of(places[:1], turns[:1], ALL[None]), places[1:], turns[1:]
     lost, wild = pairs(places, turns), pairs(places, turns)
     for some in (lost, wild):
         some[0][3, 0, 2] = np.nan
