@@ -24,29 +24,27 @@ import numpy as np
 
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.baselines import Samples
-from gambol.controllers.reconstruction.database import Database
-from gambol.controllers.reconstruction.database.database import Writer
+from gambol.controllers.reconstruction.database import Database, Writer
 from gambol.controllers.reconstruction.neighbours import Cells, Exact, Segments
-from gambol.controllers.reconstruction.ours.networks import learn
-from gambol.controllers.reconstruction.pose_vector import ANGLES
+from gambol.controllers.reconstruction.ours import learn
 from gambol.controllers.reconstruction.regression import Solver
-from gambol.controllers.reconstruction.trackers.samples import Moments
+from gambol.controllers.reconstruction.trackers import Moments
 
 OFF, KNOTS, K, QUERIES, BATCHES = np.radians(3.0), 30, 100, 40, 60
 
 
 def copied(database: Database, copies: int, path: Path) -> Database:
     """The database and so many copies of it, in a file of their own."""
-    rng = np.random.default_rng(0)
+    rng, angles = np.random.default_rng(0), database.poses.shape[1]
     with Writer(path, database.fps, mirrors=False) as writer:
         for copy in range(1 + copies):
             for take in database.takes:
                 frames = np.array(database.frames[take.start:take.stop])
                 if copy:
-                    knots = rng.uniform(-OFF, OFF, (2 + len(frames) // KNOTS, ANGLES)).astype(np.float32)
+                    knots = rng.uniform(-OFF, OFF, (2 + len(frames) // KNOTS, angles)).astype(np.float32)
                     at = np.arange(len(frames)) / KNOTS
                     low, share = at.astype(int), (at % 1.0)[:, None].astype(np.float32)
-                    frames[:, :ANGLES] += (1 - share) * knots[low] + share * knots[low + 1]
+                    frames[:, :angles] += (1 - share) * knots[low] + share * knots[low + 1]
                 writer.add(f"{copy}/{take.clip}", take.subject, take.action, frames, database.sound[take.start:take.stop], take.interpolated)
     return Database.open(path)
 

@@ -4,8 +4,8 @@ very likely are, and filters for noise.
 
 from .combined import cells, ours
 from .filters import Motion, noise
-from .networks import ANGLE, DISTANCE, layer_kernel, misfit_kernel, placed, seen_from
+from .networks import ANGLE, DISTANCE, layer_kernel, learn, misfit_kernel, placed, seen_from
 
 __all__ = [
-    "ANGLE", "DISTANCE", "Motion", "cells", "layer_kernel", "misfit_kernel", "noise", "ours", "placed", "seen_from",
+    "ANGLE", "DISTANCE", "Motion", "cells", "layer_kernel", "learn", "misfit_kernel", "noise", "ours", "placed", "seen_from",
 ]
