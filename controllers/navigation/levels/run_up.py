@@ -25,7 +25,7 @@ LONG = 1.65
 """Who leaps from a walk leaps so far at least [m]: landing nearer, he would come to a stand."""
 RUN = 1.2
 """So far before the leap he begins to walk to it, at least [m], ..."""
-ROOM = 1.3
+ROOM = 1.8
 """... and has so far to come to a stand behind where he lands [m]."""
 SOON = 0.65
 """So long before he would be at the edge he looks at which of his steps he can leap [s]; then he can still stop."""
