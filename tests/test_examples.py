@@ -43,7 +43,7 @@ def test_each_has_its_test():
 
 
 def test_step_example(capsys):
-    state = example("step").main(seconds=4.0)
+    state = example("step").main(seconds=5.0)
     told = capsys.readouterr().out
     assert re.search(r"\bjump$", told, re.M) and told.rstrip().endswith("locomotion")
     assert 3.0 < np.hypot(*state.ground[:2]) < 5.0 and state.ground[2] > 0.4

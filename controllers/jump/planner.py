@@ -28,6 +28,8 @@ MOST_TURN, MOST_GAIN = 0.7, 2.5
 that turns so may bring it about."""
 BEYOND = 1.7
 """How far the legs reach beyond how a body just came down, at first: it turns about half as far back."""
+TAKES, TAKEN = 6, 2e-5
+"""At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
 COARSE = 3
 """Until then, only every third pose is made."""
 
@@ -176,8 +178,13 @@ class _Draft(Airborne):
             bound = MOST_GAIN * float(np.linalg.norm(spun @ step)) / time
             change *= min(1.0, bound / max(float(np.linalg.norm(change)), 1e-12))
             self.momentum[:] += change
-        spin = np.linalg.solve(spun, self.momentum - still)
-        self._leave(spin)
+        meant, spin = self.momentum.copy(), np.zeros(3)
+        self.momentum[:] = still
+        for _ in range(TAKES):  # nearly linear, but for a leg that is nearly straight
+            spin = spin + np.linalg.solve(spun, meant - self.momentum)
+            self._leave(spin)
+            if np.abs(meant - self.momentum).max() < TAKEN * self.physique.mass * self.physique.size**2:
+                break
         # the legs reach for where this very body comes down, which changes a little how it turns
         landed, beyond, off = wanted, BEYOND, None
         flown = self._flight(landed, 1e-4, COARSE)
