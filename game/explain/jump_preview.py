@@ -31,6 +31,8 @@ FADE = 0.5
 """So long after landing the arc is gone [s]."""
 STRIKES = 0.2
 """So far ahead of its centre of mass a runner's foot strikes [m], at standard height."""
+SINKS = 0.7
+"""So fast a runner's centre of mass sinks as a foot strikes [m/s]."""
 ALIKE = 0.03
 """A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places."""
 
@@ -108,10 +110,10 @@ def _pushing(jump: Jump, start: Start) -> Start:
     ahead = (start.feet[:, :3] - start.centre) @ flat / pace
     if start.single is not None and -ahead[start.single] < FRESH:
         return start
-    foot, feet, rates = int(np.argmax(ahead)), start.feet.copy(), start.feet_rates.copy()
+    foot, feet, rates, velocity = int(np.argmax(ahead)), start.feet.copy(), start.feet_rates.copy(), start.velocity.copy()
     feet[foot, :3] += (STRIKES * jump.physique.height / Physique.height - ahead[foot]) * flat / pace
-    rates[foot] = 0.0
-    return replace(start, single=foot, feet=feet, feet_rates=rates)
+    rates[foot], velocity[1] = 0.0, min(velocity[1], -SINKS)
+    return replace(start, single=foot, feet=feet, feet_rates=rates, velocity=velocity)
 
 
 def _same_way(before: Preview, now: Preview) -> bool:
