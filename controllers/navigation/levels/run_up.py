@@ -17,10 +17,8 @@ from .surfaces import levels_of
 if TYPE_CHECKING:  # who leaps from a walk has planned it
     from ..planning import Plan
 
-PACE, QUICK = 1.35, 1.7
-"""How fast one walks as one leaps on [m/s], and as one leaps far: slower, and both feet push off as from a stand, or one foot speeds up too little."""
-FROM = 1.75
-"""What is farther than this is leapt from a quick walk [m]."""
+PACE = 1.35
+"""How fast one walks as one leaps on [m/s]: slower, and both feet push off as from a stand."""
 FAR, UP = 2.0, 0.1
 """Nobody leaps from a walk farther than this [m], or higher up."""
 LONG = 1.65
@@ -46,17 +44,16 @@ EVERY = 3
 def runs(leap: Crossing, here: np.ndarray, around: Sequence[Any], planes: np.ndarray) -> float:
     """How fast [m/s] somebody at a place (2,) would walk as he leaps; 0 for who leaps from a stand: where there is no room, or it is too far or high."""
     top = float(np.min(-planes[:, 3] / np.maximum(planes[:, 0], 1e-9), initial=np.inf, where=planes[:, 0] > 1e-9))
-    pace = _pace(leap)
-    if top < pace or (leap.ground[:2] - here) @ _ahead(leap) < RUN * pace / PACE:
+    if top < PACE or (leap.ground[:2] - here) @ _ahead(leap) < RUN:
         return 0.0
-    return pace if _room(leap, around) else 0.0
+    return PACE if _room(leap, around) else 0.0
 
 
 def farther(walker: Controller, leap: Crossing, around: Sequence[Any], refusal: Callable[[CharacterState, Intent], str | None]) -> bool:
     """Whether a leap that is too far from a stand could be made from a walk, at most of the steps; what it might touch is not looked at."""
     if not _room(leap, around):
         return False
-    asked = [(state, Leap(np.array([state.ground[0], 0.0, state.ground[1] + leap.asks[0]]))) for state in _walking(walker, _pace(leap))]
+    asked = [(state, Leap(np.array([state.ground[0], 0.0, state.ground[1] + leap.asks[0]]))) for state in _walking(walker)]
     asked = [(state, one) for state, one in asked if walker.precondition(state, Intent(leap=one)) >= READY]
     can, left = 0, len(asked)
     for state, one in asked:
@@ -67,18 +64,13 @@ def farther(walker: Controller, leap: Crossing, around: Sequence[Any], refusal: 
 
 
 @lru_cache(maxsize=8)
-def _walking(walker: Controller, pace: float) -> tuple[CharacterState, ...]:
-    """Somebody on a level floor, who walks along z at a pace [m/s], through two steps: at every third of them."""
+def _walking(walker: Controller) -> tuple[CharacterState, ...]:
+    """Somebody on a level floor, who walks along z, through two steps: at every third of them."""
     state, states = walker.start(), []
     for number in range(STEPS):
-        state, _ = walker.step(state, Intent(np.array([pace, 0.0, 0.0])), 1 / 60)
+        state, _ = walker.step(state, Intent(np.array([PACE, 0.0, 0.0])), 1 / 60)
         states += [state] if number >= STEPS // 2 and number % EVERY == 0 else []
     return tuple(states)
-
-
-def _pace(leap: Crossing) -> float:
-    """How fast [m/s] one walks to a leap."""
-    return PACE if leap.asks[0] <= FROM else QUICK
 
 
 def _ahead(leap: Crossing) -> np.ndarray:
@@ -106,7 +98,7 @@ def onto(leap: Crossing, pace: float) -> np.ndarray:
 def take_off(walker: Controller, state: CharacterState, plan: Plan, time: float, leap: Crossing, intent: Intent, dt: float) -> int | None:
     """After how many steps of dt [s] of a plan, `time` [s] into it, the leap can be made: the last such. None if at none: his walk is played ahead."""
     ahead = _ahead(leap)
-    asked = replace(intent, goal=None, aside=None, leap=Leap(onto(leap, _pace(leap))))
+    asked = replace(intent, goal=None, aside=None, leap=Leap(onto(leap, PACE)))
     states = []
     while (state.ground - leap.ground)[:2] @ ahead < PAST and len(states) < 2.0 * SOON / dt:
         states.append((state, replace(asked, velocity=wish(plan, time, state.ground, state.velocity))))
