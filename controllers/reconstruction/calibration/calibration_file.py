@@ -20,16 +20,15 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...body import exp, log
-from ...files import printable, reason, tables, whole
+from ...files import printable, reason, whole
 from ..control_points import ControlPoints
-from ..live import SIZES, StreamError
+from ..live import SIZES, StreamError, read_tables
 from ..pose_vector import SKELETON
 from .stood import JOINTS, WORN, Stood
 from .wearing_trackers import Wearer, slots
@@ -58,12 +57,7 @@ def save(path: str | Path, wearer: Wearer) -> None:
 
 def load(path: str | Path, controls: ControlPoints) -> Wearer:
     """Who wears trackers on these points as a file says. StreamError, naming file and field, for anything else."""
-    try:
-        table = tables(path)
-    except OSError as error:
-        raise StreamError(f"{path}: can't be read: {reason(error)}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StreamError(f"{path}: {error}") from None
+    table = read_tables(path)
     room, bones, points = (_table(path, table.get(name), name) for name in ("room", "bones", "points"))
     heading, level, floor, size = (float(_numbers(path, f"room.{name}", room.get(name), 1, most)[0])
                                    for name, most in (("heading", 3600.0), ("level", _FAR), ("floor", 1.0), ("size", _FAR)))

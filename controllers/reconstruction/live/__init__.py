@@ -7,10 +7,10 @@ from .packet_log import SUFFIX, PacketLog, PacketLogError
 from .placing import SIZES, Placement, Standing, placed, stances
 from .sources import Recorded
 from .timeline import Timeline
-from .tracker_map import StreamError, read_map, usual_map
+from .tracker_map import StreamError, read_map, read_tables, usual_map
 from .vmc_sender import Sender, SenderError, address
 
 __all__ = [
     "HOST", "PORT", "SIZES", "SUFFIX", "PacketLog", "PacketLogError", "Placement", "Recorded", "Replayed", "Sender", "SenderError", "Standing", "Stream", "StreamError",
-    "Timeline", "Trackers", "address", "placed", "read_map", "stances", "usual_map",
+    "Timeline", "Trackers", "address", "placed", "read_map", "read_tables", "stances", "usual_map",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ...files import printable, reason, tables
 from ..control_points import ControlPoints, parse
@@ -30,18 +31,23 @@ def controls_of(points: Mapping[str, str]) -> ControlPoints:
     return controls
 
 
+def read_tables(path: str | Path) -> dict[str, Any]:
+    """What a TOML file says. StreamError, naming the file and what is wrong with it, for one that can't be read."""
+    try:
+        return tables(path)
+    except OSError as error:
+        raise StreamError(f"{path}: can't be read: {reason(error)}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise StreamError(f"{path}: {error}") from None
+
+
 def read_map(path: str | Path) -> dict[str, str]:
     """Which point each tracker is on, from a TOML file's table [trackers]: "LHR-1A2B3C4D" = "lwrist".
 
     StreamError, naming file and field, for anything else.
     """
     path = Path(path)
-    try:
-        table = tables(path)
-    except OSError as error:
-        raise StreamError(f"{path}: can't be read: {reason(error)}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise StreamError(f"{path}: {error}") from None
+    table = read_tables(path)
     trackers = table.get("trackers")
     if not isinstance(trackers, dict) or not trackers:
         raise StreamError(f'{path}: needs a table [trackers] with lines such as "LHR-1A2B3C4D" = "lwrist"')
