@@ -104,6 +104,8 @@ class Intent:
     look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
     halt: (..., 3) x, z [m], heading [rad] in the world where to come to rest, going there with that velocity; NaN for a heading: as one comes, for a
     place: none; None for none. A walker lets go of the velocity in time for it.
+    towards: (..., 2) the heading in the world [rad] and the speed [m/s] that the velocity leads to in the end: who stands turns there in as few
+    steps as people do; NaN for one who is not told, None for no such wish.
     goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way. aside: (3,) what is added to
     the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
     held: no leap of the way goes off now, as somebody is where it leads.
@@ -123,6 +125,7 @@ class Intent:
     aim: Leap | None = None
     turns: np.ndarray | None = None
     halt: np.ndarray | None = None
+    towards: np.ndarray | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

@@ -140,6 +140,7 @@ class Locomotion(Controller):
         np.clip(wish, -20.0, 20.0, out=wish)
         memory["alert"] = intent.leap is not None
         memory["looks"] = 0
+        _towards(memory, intent.towards, shape)
         if intent.look is not None:
             self._look(memory, intent.look, shape, state.floor)
         _halt(memory, intent.halt, wish, shape)
@@ -197,6 +198,15 @@ class Locomotion(Controller):
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""
         return Status("running")
+
+
+def _towards(memory: np.ndarray, towards: ArrayLike | None, shape: tuple[int, ...]) -> None:
+    """Note which heading and speed (..., 2) characters (N,) are to have in the end; none that is not finite."""
+    memory["heads"] = 0
+    if towards is not None:
+        told = _spread(towards, shape + (2,)).reshape(-1, 2)
+        memory["heads"] = np.isfinite(told).all(-1)
+        memory["towards"] = np.where(memory["heads"][:, None], told, 0.0)
 
 
 def _halt(memory: np.ndarray, halt: ArrayLike | None, wish: np.ndarray, shape: tuple[int, ...]) -> None:

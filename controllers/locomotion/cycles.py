@@ -129,7 +129,7 @@ def cut(track: Track, family: str) -> list[Cycle]:
     lto, lhs = np.flatnonzero(change[:, 0] < 0) + 1, np.flatnonzero(change[:, 0] > 0) + 1
     rto, rhs = np.flatnonzero(change[:, 1] < 0) + 1, np.flatnonzero(change[:, 1] > 0) + 1
     inner = (lhs, rto, rhs) if family == "walk" else (rhs, rto, lhs)
-    labels = _labels(track, feet, family)
+    labels = labels_of(track, feet, family)
     cycles = []
     for a, b in zip(lto[:-1], lto[1:]):
         marks = [x[(x > a) & (x < b)] for x in inner]
@@ -140,7 +140,7 @@ def cut(track: Track, family: str) -> list[Cycle]:
     return cycles
 
 
-def _labels(track: Track, feet: np.ndarray, family: str) -> np.ndarray:
+def labels_of(track: Track, feet: np.ndarray, family: str) -> np.ndarray:
     """How much each point stands (T, 4) in 0 … 1: edges softened over 60 ms, gone in the swing."""
     from scipy.ndimage import uniform_filter1d
 

@@ -20,6 +20,7 @@ from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
 from .last_stride import bring_together
 from .root_motion import SHORTEST, advance, cadence_kernel
+from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
 BESIDE = 0.25
@@ -64,7 +65,7 @@ def room_to_plan(width, joints):
 
 
 @kernel
-def plan_footholds(m, settings, space, table, body, legs, ahead):
+def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
     """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there."""
     for foot in range(2):
         swing = SWING[m.family]
@@ -75,10 +76,15 @@ def plan_footholds(m, settings, space, table, body, legs, ahead):
         lifts = coming and max(m.grip[2 * foot], m.grip[2 * foot + 1]) < 1.0
         if m.settled or not (left < swing or lifts):
             continue
-        later = max(ahead.until[foot] * _slower(m, table, left), SOONEST)
-        ahead.until[foot] = later
-        _foresee(m, foot, later, settings, space, table, body, legs, ahead)
-        _foretell(m, foot, left, legs.paths, ahead)
+        if m.turn != 0.0 and m.turned + left < TURNED:
+            ahead.until[foot] = max(turn_ahead(m, turns, settings.agility, left, ahead.vectors[0]), SOONEST)
+            turned_row(m, turns, m.turned + left, ahead.row)
+            _come_down(m, foot, ahead.until[foot], body, legs, ahead)
+        else:
+            later = max(ahead.until[foot] * _slower(m, table, left), SOONEST)
+            ahead.until[foot] = later
+            _foresee(m, foot, later, settings, space, table, body, legs, ahead)
+            _foretell(m, foot, left, legs.paths, ahead)
         _beside(m, body, foot, ahead)
         bring_together(m, foot, legs.stance)
 
@@ -106,6 +112,13 @@ def _foresee(m, foot, later, settings, space, table, body, legs, ahead):
     for i in range(4):
         ahead.weights[space.vertices[simplex, i]] += (1.0 - stays) * ahead.barycentric[i]
     series_kernel(table, ahead.weights, (SWING[m.family] + 0.5 * foot) % 1.0, ahead.row)
+    _come_down(m, foot, later, body, legs, ahead)
+
+
+@kernel
+def _come_down(m, foot, later, body, legs, ahead):
+    """Write where a foot of the row in `ahead` comes down in `later` seconds, over the ground frame there, into m.coming."""
+    ground = ahead.vectors[0]
     if m.fade > 0.0:
         _fading(m, legs.hip[foot], later, ahead.row)
     pose_kernel(body, ahead.row, ahead.local, ahead.positions, ahead.orientations, ahead.scratch)

@@ -76,7 +76,7 @@ def _stretch(track: Track, reference: np.ndarray, rest: np.ndarray) -> np.ndarra
     if b - a < SHORTEST * RATE or far > LONGEST_STEP:
         return None
     local, root = track.clip.slice(a, b).rotations.copy(), track.clip.root[a:b].copy()
-    turn, shift = _onto(flat.mean(0), _rest_feet(track, reference, rest))
+    turn, shift = onto(flat.mean(0), _rest_feet(track, reference, rest))
     local[:, 0] = rot.yaw(turn) @ local[:, 0]
     root = root @ rot.yaw(turn).T + [shift[0], 0.0, shift[1]]
     chart = rot.continuous(rot.log(np.swapaxes(reference, -1, -2) @ local)).reshape(b - a, -1)
@@ -92,7 +92,7 @@ def _rest_feet(track: Track, reference: np.ndarray, rest: np.ndarray) -> np.ndar
     return contact_points(track.clip.skeleton, *forward_kinematics(track.clip.skeleton, rest[-3:], local))[:, [0, 2]]
 
 
-def _onto(points: np.ndarray, goal: np.ndarray) -> tuple[float, np.ndarray]:
+def onto(points: np.ndarray, goal: np.ndarray) -> tuple[float, np.ndarray]:
     """The turn [rad] and shift (2,) that lay points (N, 2) x, z onto others best."""
     p, g = points - points.mean(0), goal - goal.mean(0)
     turn = float(np.arctan2((p[:, 1] * g[:, 0] - p[:, 0] * g[:, 1]).sum(), (p * g).sum()))

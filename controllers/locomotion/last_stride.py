@@ -51,6 +51,8 @@ LATEST = 3.0
 """No stop takes longer than this [s]."""
 BRAKES = 0.15, 1.5
 """A runner lets go so many seconds of his way before he is as near as braking by this share of his push, twice, would take him."""
+ROUND = 0.35
+"""Who turned on the spot turns so far [rad] over his feet to the end."""
 NO_WISH = 0.02
 """Wishes smaller than this are none [m/s, rad/s]."""
 
@@ -60,7 +62,7 @@ def plan_stop(m, most, stance):
     """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, the place
     where he comes to rest, and how steeply he slows down for it. most: what legs push [m/s²]. stance: where heels and balls are at
     rest (4, 2) [m]."""
-    if m.settled or m.halts < STOPS and abs(m.asked[0]) + abs(m.asked[1]) + abs(m.asked[2]) > NO_WISH:
+    if m.settled or m.halts < STOPS and abs(m.asked[0]) + (0.0 if rounds(m) else abs(m.asked[1])) + abs(m.asked[2]) > NO_WISH:
         m.stop, m.waits = 0.0, 0
         return
     speed = math.hypot(m.command[0], m.command[2])
@@ -76,6 +78,13 @@ def plan_stop(m, most, stance):
         if m.halts < STOPS:
             _choose_place(m, speed, most, stance)
     m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
+
+
+@kernel
+def rounds(m):
+    """Whether somebody whose feet wait after a turn only has his shoulders still to turn, over them."""
+    off = (m.towards[0] - m.ground[2] + math.pi) % (2.0 * math.pi) - math.pi
+    return m.waits and m.heads and m.spot and abs(off) < ROUND
 
 
 @kernel

@@ -54,6 +54,14 @@ class Idle(NamedTuple):
     ends: np.ndarray
 
 
+class Turn(NamedTuple):
+    """How somebody turns from rest in two steps. coefficients: (2, 2, 3, K, 3 J + 11): into a walk and on the spot; the left or the right foot
+    first, to its side; over 1, how far, and its square; uniform cubic B-splines of joints, hips, labels, duration, and of how the
+    ground frame goes: v_f [m/s], turned [rad], v_l [m/s]."""
+
+    coefficients: np.ndarray
+
+
 class Start(NamedTuple):
     """What the first strides from rest have beyond the blend. coefficients: (2, 2, K, 3 J + 3) with the left or the right
     foot first, of a start straight on and for each rad/s that it turns to that side: uniform cubic B-splines."""
@@ -83,6 +91,7 @@ class Library:
     accelerations: dict[str, np.ndarray] = field(default_factory=dict)
     idle: Idle | None = None
     start: Start | None = None
+    turn: Turn | None = None
 
     def family(self, name: str) -> np.ndarray:
         """The numbers of the primitives of one family; "walk" has rest among them."""
@@ -111,6 +120,8 @@ class Library:
             families |= {"idle": self.idle.coefficients.astype(np.float16), "idle_ends": self.idle.ends}
         if self.start is not None:
             families |= {"start": self.start.coefficients.astype(np.float16)}
+        if self.turn is not None:
+            families |= {"turn": self.turn.coefficients.astype(np.float16)}
         np.savez_compressed(file, velocities=self.velocities, reference=self.reference,
                             coefficients=self.coefficients.astype(np.float32), **families,
                             about=np.frombuffer(json.dumps(about).encode(), np.uint8))
@@ -129,7 +140,8 @@ class Library:
                                   file["coefficients"].astype(float), file["reference"], about["provenance"],
                                   _named(file, "bend_"), _named(file, "acceleration_"),
                                   Idle(file["idle"].astype(np.float32), file["idle_ends"]) if "idle" in file.files else None,
-                                  Start(file["start"].astype(np.float32)) if "start" in file.files else None)
+                                  Start(file["start"].astype(np.float32)) if "start" in file.files else None,
+                                  Turn(file["turn"].astype(np.float32)) if "turn" in file.files else None)
         except FileNotFoundError:
             raise LibraryError(f"{path}: no such library; build one with `gambol library build DIR -o {path}`") from None
         except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, EOFError, MemoryError,
@@ -163,6 +175,11 @@ class Library:
             if given.ndim != 4 or given.shape != (2, 2, given.shape[2], 3 * joints + 3) or given.shape[2] < 4 \
                     or not np.isfinite(given).all():
                 raise LibraryError(f"{path}: start must be finite (2, 2, K, {3 * joints + 3}) with K of 4 at least")
+        if self.turn is not None:
+            given = self.turn.coefficients
+            if given.ndim != 5 or given.shape != (2, 2, 3, given.shape[3], 3 * joints + 11) or given.shape[3] < 4 \
+                    or not np.isfinite(given).all():
+                raise LibraryError(f"{path}: turn must be finite (2, 2, 3, K, {3 * joints + 11}) with K of 4 at least")
         if sum(p.family == "rest" for p in self.primitives) != 1:
             raise LibraryError(f"{path}: a library needs one primitive of rest")
 

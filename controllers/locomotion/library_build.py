@@ -20,6 +20,7 @@ from .library import DURATION, LABELS, Library, LibraryError, Primitive, channel
 from .mass_centre import pushable
 from .selection import Choice, neighbours, select
 from .first_stride_build import starts
+from .turning_step_build import turns
 from .velocity_correction import settle
 
 LONE, STRAIGHT = 4, 0.15
@@ -168,7 +169,7 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
     library = replace(library, accelerations=natural_accelerations(found.tracks),
                       idle=idle_of(stills, library.reference, rest))
     library = settle(library, progress)
-    library = replace(library, start=starts(stills, library))
+    library = replace(library, start=starts(stills, library), turn=turns([one for one, _, _ in found.tracks], library))
     return library, found.problems + [f"no cycle for {label}" for label in missing]
 
 

@@ -23,6 +23,7 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
                      query_kernel, series_kernel)
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, cadence_kernel, follow_command, to_world_kernel
+from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
 
 STRETCH_HALFLIFE = 0.08
@@ -38,7 +39,7 @@ STRAIGHT = 0.2
 
 
 @kernel(nogil=True)
-def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, start, tops,
+def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, start, turns, tops,
                 floors, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
@@ -58,15 +59,21 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     for n in range(memory.shape[0]):
         m = memory[n]
         heed_halt(m, wish[n], settings.acceleration * settings.agility, dt)
-        leave_rest(m, wish[n])
-        family, whole = m.family, _share_of_cycle(m, table, settings.agility, dt)
-        lean = leans(m, 0.5 * whole)
-        shape_command(m, wish[n], lean, dt, settings, table, walk, run, legs.stance, p, q)
-        _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
-        advance_phase(m, table, settings.agility, legs.rest, dt, whole if m.family == family else -1.0)
+        begin_turn(m, turns, wish[n], fresh)
+        if m.turn != 0.0:
+            step = lead_turn(m, turns, settings.agility, dt)
+            _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
+            m.phase = (m.phase + until_together(m, step, legs.rest)) % 1.0
+        else:
+            leave_rest(m, wish[n])
+            family, whole = m.family, _share_of_cycle(m, table, settings.agility, dt)
+            lean = leans(m, 0.5 * whole)
+            shape_command(m, wish[n], lean, dt, settings, table, walk, run, legs.stance, p, q)
+            _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)
+            advance_phase(m, table, settings.agility, legs.rest, dt, whole if m.family == family else -1.0)
         start_kernel(m, start, wish[n], dt)
         idle_kernel(m, idle, settings.idle, dt)
-        blend_series(m, settings, table, fresh, legs, dt)
+        blend_series(m, settings, table, turns, fresh, legs, dt)
         add_idle(m, idle, fresh)
         add_start(m, start, fresh)
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
@@ -76,13 +83,13 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         foot_points(body, legs, positions, orientations, m.points)
         stride(m, m.points, positions)
         if settings.footing:
-            plan_footholds(m, settings, walk if m.family == WALK else run, table, body, legs, ahead)
+            plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead)
             place_feet(m, body, legs, ahead, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
                 m.grip[k] = 1.0 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0.0
                 m.standing[k] = 1 if m.grip[k] > 0.5 else 0
-        if at_rest(m, legs):
+        if m.turn == 0.0 and at_rest(m, legs):
             m.settled = 1
         to_world_kernel(m, fresh, root[n], local[n])
         if tops.shape[0] > 0:
@@ -189,9 +196,15 @@ def _run_on(m, table, begin, dt):
 
 
 @kernel
-def blend_series(m, settings, table, fresh, legs, dt):
-    """The series of the weighted primitives, with inertialisation and breath, into `fresh` and m.row."""
-    series_kernel(table, m.weights, m.phase, fresh)
+def blend_series(m, settings, table, turns, fresh, legs, dt):
+    """The series of the weighted primitives, or a turn's row, with inertialisation and breath, into `fresh` and m.row."""
+    if m.turn != 0.0:
+        turned_row(m, turns, m.turned, fresh)
+        end_turn(m)
+    else:
+        series_kernel(table, m.weights, m.phase, fresh)
+        if m.left_turn:
+            after_turn(m, table, fresh, dt)
     for d in range(LABELS_AT):
         m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
                                                       m.fade if d < HIPS_AT else HEAVY * m.fade, dt)

@@ -72,7 +72,7 @@ def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steer
     omega, error = turn_towards(heading, towards, turning, settings)
     free = np.stack(np.broadcast_arrays(speed * (0.5 + 0.5 * np.cos(error)), trust * omega, 0.0), -1)
     if facing is None:
-        return Intent(within(free, settings.reach))
+        return Intent(within(free, settings.reach), towards=np.stack([np.where(speed > settings.fade, towards, np.nan), speed], -1))
 
     facing = np.asarray(facing, float)
     held = np.isfinite(facing)
@@ -81,7 +81,8 @@ def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steer
     strafe = np.stack(np.broadcast_arrays(
         velocity[..., 0] * sine + velocity[..., 1] * cosine, omega,
         velocity[..., 0] * cosine - velocity[..., 1] * sine), -1)
-    return Intent(within(np.where(held[..., None], strafe, free), settings.reach))
+    ends = np.where(held, np.where(speed < settings.fade, facing, np.nan), np.where(speed > settings.fade, towards, np.nan))
+    return Intent(within(np.where(held[..., None], strafe, free), settings.reach), towards=np.stack([ends, np.where(held, 0.0, speed)], -1))
 
 
 def within(velocity, reach: Reach) -> np.ndarray:

@@ -1,0 +1,207 @@
+"""Turning from rest: two steps with a pivot, as recorded people take them, into a walk another way or on the spot.
+
+Who stands and is told which way he will face in the end (`Intent.towards`) turns there in two steps of a primitive of their
+own (`turning_step_build`): shoulders first, then the foot of that side, set down turned most of the way, then the other one.
+It has the gait's phase and ends in it, walking or with both feet together; who is told otherwise meanwhile leaves it at once.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..compiled import kernel
+from .cycles import EVENTS
+from .first_stride import shift_left
+from .kernel import COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, series_kernel
+from .library import Library
+from .root_motion import advance
+from .spline import spline_kernel
+
+WALKS, SPOT = 0, 1
+"""Kinds of turns: into a walk, and on the spot."""
+BEFORE, END = 0.12, 0.92
+"""A turn begins this long before its first toe-off and ends this long after it, in phase: its second foot is down."""
+WAITING, PER_CYCLE = 4, 24
+"""Spline coefficients before the first toe-off, and for each cycle after it."""
+WAY_AT = COLUMNS
+"""After a row's own columns stand v_f [m/s], how far the ground frame has turned [rad], v_l [m/s]."""
+STRIKE = float(EVENTS["walk"][3])
+"""The second foot comes down this long after the first left, in phase."""
+TEMPO = 1.35
+"""So many times as fast as the recorded people, who were in no hurry."""
+SHIFT, HASTE = 0.3, 2.0
+"""Shoulders turn and weight is shifted in this time [s] before the first foot leaves, so many times as fast as those people do."""
+FROM = 0.7, 0.5
+"""Smaller turns than this [rad] are walked and stepped as the gait has them, into a walk and on the spot."""
+GOES, STANDS = 0.5, 0.05
+"""Who will be faster than the first [m/s] turns into a walk, who will be no faster than the second on the spot."""
+OTHERWISE = 0.6
+"""Who is told to face another way than that by more than this [rad] leaves a turn."""
+THERE, STAYS = 0.02, 0.05
+"""Who turns on the spot does so until he is this near [rad] to the way that he is to face; who stands this near stays."""
+ENTRY, LEAVING = 0.1, 0.16
+"""The half-lives [s] of what is left of the pose before a turn, and of a turn after it."""
+PIECES = 4
+"""The way ahead is followed in so many pieces."""
+
+
+class Turning(NamedTuple):
+    """What the step must know: spline coefficients (2, 2, F, K, COLUMNS + 3): into a walk, on the spot; left or right foot first;
+    by each of `features`."""
+
+    coefficients: np.ndarray
+
+
+def features(turn: ArrayLike) -> np.ndarray:
+    """What a turn's coefficients are told over (..., F), of how far it turns (...) [rad]."""
+    turn = np.asarray(turn, float)
+    return np.stack([np.ones_like(turn), turn, turn * turn], -1)
+
+
+def turning(library: Library) -> Turning:
+    """The kernel's view of a library's turns; no coefficients where it has none."""
+    if library.turn is None:
+        return Turning(np.zeros((2, 2, 3, 0, COLUMNS + 3), np.float32))
+    given = library.turn.coefficients
+    joints = len(library.skeleton)
+    table = np.zeros(given.shape[:-1] + (COLUMNS + 3,), np.float32)
+    for axis in range(3):
+        table[..., axis * LANES:axis * LANES + joints] = given[..., axis:3 * joints:3]
+    table[..., HIPS_AT:] = given[..., 3 * joints:]
+    return Turning(table)
+
+
+@kernel
+def begin_turn(m, turns, wish, row):
+    """Begin a turn where somebody who stands is to face another way, and leave one where he is told otherwise; what is left of
+    the pose before fades. wish: (3,), of which he who faces that way already turns no more. row: (COLUMNS,) scratch."""
+    if turns.coefficients.shape[3] == 0:
+        return
+    if m.heads and (m.settled or m.waits) and m.towards[1] < STANDS and abs(_short(m.towards[0] - m.ground[2])) < (STAYS if m.settled else THERE):
+        wish[1] = 0.0
+    if m.turn != 0.0:
+        other = _short(m.towards[0] - m.turns_to)
+        if not m.heads or abs(other) > OTHERWISE or (m.towards[1] > STANDS if m.spot else m.towards[1] < STANDS):
+            leave_turn(m)
+        return
+    if not m.heads or not (m.settled or m.waits or shift_left(m) > 0.0):
+        return
+    m.spot = 1 if m.towards[1] < STANDS else 0
+    turn = _short(m.towards[0] - m.ground[2])
+    if abs(turn) < FROM[m.spot] or not m.spot and m.towards[1] < GOES:
+        return
+    m.turns_to = m.towards[0]
+    m.turn, m.turned, m.first = turn, -BEFORE, 0 if turn > 0.0 else 1
+    m.turn_gain = 1.0
+    whole = turn_kernel(m, turns, WAY_AT + 1, END) - turn_kernel(m, turns, WAY_AT + 1, -BEFORE)
+    m.turn_gain = turn / whole
+    m.phase = 1.0 - BEFORE if m.first == 0 else 0.5 - BEFORE
+    m.settled, m.waits, m.onset = 0, 0, 0.0
+    m.stop = BEFORE + STRIKE if m.spot else 0.0
+    turned_row(m, turns, m.turned, row)
+    for d in range(LABELS_AT):
+        m.blend[d], m.blend_rate[d] = m.row[d] - row[d], m.row_rate[d]
+    m.row[DURATION_AT] = row[DURATION_AT]
+    m.fade = ENTRY
+
+
+@kernel
+def leave_turn(m):
+    """Go on with the gait, from the pose as it is."""
+    m.turn, m.left_turn = 0.0, 1
+    m.stop *= m.waits
+
+
+@kernel
+def end_turn(m):
+    """Leave a turn that is over: its second foot is down."""
+    if m.waits or m.turned >= END - 1e-4:
+        leave_turn(m)
+        m.waits = m.spot
+
+
+@kernel
+def after_turn(m, table, row, dt):
+    """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, fades."""
+    m.left_turn = 0
+    for d in range(LABELS_AT):
+        m.blend[d], m.blend_rate[d] = m.row[d] + m.row_rate[d] * dt - row[d], m.row_rate[d]
+    m.fade = LEAVING
+    later = np.empty(row.shape[0], np.float32)
+    ahead = dt / max(row[DURATION_AT], 0.3)
+    series_kernel(table, m.weights, (m.phase + ahead) % 1.0, later)
+    if not m.waits:
+        for d in range(LABELS_AT):
+            m.blend_rate[d] -= (later[d] - row[d]) / dt
+
+
+@kernel
+def turn_kernel(m, turns, d, since):
+    """Column d of a character's turn, that long after its first toe-off in phase."""
+    at = WAITING + since * PER_CYCLE if since > 0.0 else WAITING * max(1.0 + since / BEFORE, 0.0)
+    size = abs(m.turn)
+    table = turns.coefficients[m.spot, m.first]
+    value = (spline_kernel(table[0], d, at)[0] + size * spline_kernel(table[1], d, at)[0]
+             + size * size * spline_kernel(table[2], d, at)[0])
+    return value * m.turn_gain if d == WAY_AT + 1 else value
+
+
+@kernel
+def turned_row(m, turns, since, row):
+    """Write the row (COLUMNS,) that a character's turn has that long after its first toe-off in phase."""
+    for d in range(COLUMNS):
+        row[d] = turn_kernel(m, turns, d, since)
+    row[DURATION_AT] = turn_time(m, turns, since)
+
+
+@kernel
+def turn_time(m, turns, since):
+    """How long a phase lasts there, at the usual agility [s]."""
+    return SHIFT / BEFORE if since < 0.0 else max(turn_kernel(m, turns, DURATION_AT, since), 0.3) / TEMPO
+
+
+@kernel
+def lead_turn(m, turns, agility, dt):
+    """How far a turn runs on in phase in dt; command and velocity become those of its ground frame meanwhile."""
+    half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
+    step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
+    turned = turn_kernel(m, turns, WAY_AT + 1, m.turned + step) - turn_kernel(m, turns, WAY_AT + 1, m.turned)
+    pace = agility * _tempo(m.turned + 0.5 * step)
+    for i in range(3):
+        before = m.command[i]
+        m.command[i] = turned / dt if i == 1 else pace * turn_kernel(m, turns, WAY_AT + i, m.turned + 0.5 * step)
+        m.velocity[i], m.rate[i], m.asked[i] = m.command[i], (m.command[i] - before) / dt, m.command[i]
+    m.turned += step
+    return step
+
+
+@kernel
+def turn_ahead(m, turns, agility, later, ground):
+    """Where the ground frame (3,) will be once a turn has run on by `later` in phase, and how long that takes [s]."""
+    whole, step = 0.0, later / PIECES
+    for i in range(3):
+        ground[i] = m.ground[i]
+    for k in range(PIECES):
+        since = m.turned + k * step
+        time = step * turn_time(m, turns, since + 0.5 * step) / agility
+        pace = agility * _tempo(since + 0.5 * step)
+        omega = (turn_kernel(m, turns, WAY_AT + 1, since + step) - turn_kernel(m, turns, WAY_AT + 1, since)) / max(time, 1e-6)
+        advance(ground, pace * turn_kernel(m, turns, WAY_AT, since + 0.5 * step), omega, pace * turn_kernel(m, turns, WAY_AT + 2, since + 0.5 * step), time)
+        whole += time
+    return whole
+
+
+@kernel
+def _tempo(since):
+    """How many times as fast as recorded a turn is there."""
+    return HASTE if since < 0.0 else TEMPO
+
+
+@kernel
+def _short(angle):
+    """An angle the short way round [rad]."""
+    return math.pi - (math.pi - angle) % (2.0 * math.pi)
