@@ -80,12 +80,13 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
             ahead.until[foot] = max(turn_ahead(m, turns, settings.agility, left, ahead.vectors[0]), SOONEST)
             turned_row(m, turns, m.turned + left, ahead.row)
             _come_down(m, foot, ahead.until[foot], body, legs, ahead)
+            _beside(m, body, foot, ahead, not m.spot)
         else:
             later = max(ahead.until[foot] * _slower(m, table, left), SOONEST)
             ahead.until[foot] = later
             _foresee(m, foot, later, settings, space, table, body, legs, ahead)
             _foretell(m, foot, left, legs.paths, ahead)
-        _beside(m, body, foot, ahead)
+            _beside(m, body, foot, ahead, True)
         bring_together(m, foot, legs.stance)
 
 
@@ -205,8 +206,9 @@ def _along_paths(first, last, share, paths, phase, foot, out):
 
 
 @kernel
-def _beside(m, body, foot, ahead):
-    """Write into m.land how far aside (2,) of where the blend comes down a foot is set, so that it is a shoe's width from the other."""
+def _beside(m, body, foot, ahead, sides):
+    """Write into m.land how far aside (2,) of where the blend comes down a foot is set, so that it is a shoe's width from the other; and,
+    where feet have sides, on its own."""
     here, there, away = ahead.lines[0], ahead.lines[1], ahead.barycentric
     m.land[foot, 0] = m.land[foot, 1] = 0.0
     if not other_line(m, body, foot, there):
@@ -216,7 +218,7 @@ def _beside(m, body, foot, ahead):
     with_toe(body, here)
     side = 1.0 - 2.0 * foot
     own_side(there, here, side, away)
-    need = min(need_of_room(there, here, side, FADE), BESIDE)
+    need = min(need_of_room(there, here, side, FADE), BESIDE) if sides else 0.0
     away[0], away[1] = need * away[0], need * away[1]
     for _ in range(1 + TRIES):
         for i in range(3):

@@ -16,6 +16,7 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .cycles import EVENTS
 from .foot_points import shown_kernel
+from .kernel import HIPS_AT
 from .memory import WALK
 from .root_motion import cadence_kernel
 
@@ -43,8 +44,8 @@ HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
 OVER, OFF = 0.18, 0.05
 """It comes over its feet with this half-life [s], and rests no farther from their middle than this [m]."""
-BESIDE, DECIDED = 0.08, 0.9
-"""Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second."""
+BESIDE, DECIDED, FADED = 0.08, 0.9, 0.005
+"""Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second, and no offset of the hips larger than the third [m] is left."""
 TOWARDS, PAST = 0.9, 0.25
 """Who goes to a place does so at less than the angle with this cosine; one that is this near, but not ahead, has been passed [m]."""
 LATEST = 3.0
@@ -168,6 +169,12 @@ def bring_together(m, foot, stance):
     if m.stop <= STRIKE and foot == _last(m):
         shown_kernel(m, other, point)
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+        if m.turn != 0.0:  # beside it as the body faces then
+            px, pz = m.ground[0] + c * point[0] + s * point[1], m.ground[1] - s * point[0] + c * point[1]
+            c, s = math.cos(m.turn_ends), math.sin(m.turn_ends)
+            x, z = stance[ball, 0] - stance[other, 0], stance[ball, 1] - stance[other, 1]
+            m.land[foot, 0], m.land[foot, 1] = px + c * x + s * z - m.coming[foot, 1, 0], pz - s * x + c * z - m.coming[foot, 1, 1]
+            return
         x, z = stance[ball, 0] + HALFWAY * (point[0] - stance[other, 0]), point[1] + stance[ball, 1] - stance[other, 1]
         m.land[foot, 0] = m.ground[0] + c * x + s * z - m.coming[foot, 1, 0]
         m.land[foot, 1] = m.ground[1] - s * x + c * z - m.coming[foot, 1, 1]
@@ -214,7 +221,8 @@ def until_together(m, step, rest):
     the spot if one is not in its place then. rest: the number of the rest primitive."""
     if m.waits:
         x, z = m.offset[0, 0] - m.offset[1, 0], m.offset[0, 1] - m.offset[1, 1]
-        if m.weights[rest] >= DECIDED and math.hypot(x, z) > 2.0 * BESIDE:
+        faded = not m.left_turn and abs(m.blend[HIPS_AT]) + abs(m.blend[HIPS_AT + 2]) < FADED
+        if faded and m.weights[rest] >= DECIDED and math.hypot(x, z) > 2.0 * BESIDE:
             m.waits = 0
         return 0.0
     if m.stop <= 0.0:

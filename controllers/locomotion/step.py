@@ -104,7 +104,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     keep = 2.0 ** (-dt / settings.weight_halflife)
     space = walk if m.family == WALK else run
     for i in range(3):
-        c[i] = 0.0 if m.waits else m.command[i]
+        c[i] = 0.0 if m.waits or m.turn != 0.0 and m.spot else m.command[i]
     c[0] = reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
     stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))

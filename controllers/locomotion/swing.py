@@ -80,6 +80,8 @@ def _give_way(m, body, foot, ahead, speed_x, speed_z, height, out):
     moment later, and of what it must later the more the sooner that is."""
     there, here, point = np.empty((3, 2)), np.empty((3, 2)), np.empty(2)
     out[0] = out[1] = 0.0
+    if m.turn != 0.0 and m.spot:  # as recorded, feet pass each other
+        return
     if not other_line(m, body, foot, there):
         return
     side, most = 1.0 - 2.0 * foot, 0.0

@@ -18,8 +18,9 @@ from .cycles import EVENTS
 from .first_stride import shift_left
 from .kernel import COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, series_kernel
 from .library import Library
-from .root_motion import advance
+from .root_motion import SHORTEST, advance
 from .spline import spline_kernel
+from .swing import smooth
 
 WALKS, SPOT = 0, 1
 """Kinds of turns: into a walk, and on the spot."""
@@ -31,12 +32,15 @@ WAY_AT = COLUMNS
 """After a row's own columns stand v_f [m/s], how far the ground frame has turned [rad], v_l [m/s]."""
 STRIKE = float(EVENTS["walk"][3])
 """The second foot comes down this long after the first left, in phase."""
-TEMPO = 1.35
-"""So many times as fast as the recorded people, who were in no hurry."""
-SHIFT, HASTE = 0.3, 2.0
+TEMPO = 1.35, 1.0
+"""So many times as fast as the recorded people, who were in no hurry, into a walk and on the spot."""
+LONGEST = 2.4
+"""No phase lasts longer than this [s]: some of those people stood between their steps."""
+SHIFT, HASTE = 0.3, (2.0, 0.8)
 """Shoulders turn and weight is shifted in this time [s] before the first foot leaves, so many times as fast as those people do."""
-FROM = 0.7, 0.5
-"""Smaller turns than this [rad] are walked and stepped as the gait has them, into a walk and on the spot."""
+FROM, FARTHEST = (0.9, 0.6), (4.0, 2.0)
+"""Smaller turns than the first [rad] are walked and stepped as the gait has them, into a walk and on the spot; larger ones than the second
+are made in two."""
 GOES, STANDS = 0.5, 0.05
 """Who will be faster than the first [m/s] turns into a walk, who will be no faster than the second on the spot."""
 OTHERWISE = 0.6
@@ -45,7 +49,13 @@ THERE, STAYS = 0.02, 0.05
 """Who turns on the spot does so until he is this near [rad] to the way that he is to face; who stands this near stays."""
 ENTRY, LEAVING = 0.1, 0.16
 """The half-lives [s] of what is left of the pose before a turn, and of a turn after it."""
-PIECES = 4
+SMALLEST = 0.0, 1.3
+"""Smaller turns than this [rad] are such ones, whose way is turned less: no smaller ones were recorded."""
+FOLLOWS = 0.04
+"""On the spot shoulders turn by this share of it once both feet stand."""
+SHIFTED = 0.6
+"""On the spot the body goes back to where it stood until so long after its first foot left, in phase."""
+PIECES = 8
 """The way ahead is followed in so many pieces."""
 
 
@@ -95,10 +105,18 @@ def begin_turn(m, turns, wish, row):
     if abs(turn) < FROM[m.spot] or not m.spot and m.towards[1] < GOES:
         return
     m.turns_to = m.towards[0]
+    if abs(turn) > FARTHEST[m.spot]:
+        turn *= 0.5
+    m.turn_ends = m.ground[2] + turn
     m.turn, m.turned, m.first = turn, -BEFORE, 0 if turn > 0.0 else 1
     m.turn_gain = 1.0
-    whole = turn_kernel(m, turns, WAY_AT + 1, END) - turn_kernel(m, turns, WAY_AT + 1, -BEFORE)
-    m.turn_gain = turn / whole
+    m.stray[0] = m.stray[1] = 0.0
+    whole = turn_kernel(m, turns, WAY_AT + 1, STRIKE if m.spot else END) - turn_kernel(m, turns, WAY_AT + 1, -BEFORE)
+    m.turn_gain = (1.0 - FOLLOWS * m.spot) * turn / whole
+    if m.spot:
+        ends = np.empty(3)
+        turn_ahead(m, turns, 1.0, BEFORE + STRIKE, ends)
+        m.stray[0], m.stray[1] = m.ground[0] - ends[0], m.ground[1] - ends[1]
     m.phase = 1.0 - BEFORE if m.first == 0 else 0.5 - BEFORE
     m.settled, m.waits, m.onset = 0, 0, 0.0
     m.stop = BEFORE + STRIKE if m.spot else 0.0
@@ -132,7 +150,7 @@ def after_turn(m, table, row, dt):
         m.blend[d], m.blend_rate[d] = m.row[d] + m.row_rate[d] * dt - row[d], m.row_rate[d]
     m.fade = LEAVING
     later = np.empty(row.shape[0], np.float32)
-    ahead = dt / max(row[DURATION_AT], 0.3)
+    ahead = dt / max(row[DURATION_AT], SHORTEST)
     series_kernel(table, m.weights, (m.phase + ahead) % 1.0, later)
     if not m.waits:
         for d in range(LABELS_AT):
@@ -143,7 +161,7 @@ def after_turn(m, table, row, dt):
 def turn_kernel(m, turns, d, since):
     """Column d of a character's turn, that long after its first toe-off in phase."""
     at = WAITING + since * PER_CYCLE if since > 0.0 else WAITING * max(1.0 + since / BEFORE, 0.0)
-    size = abs(m.turn)
+    size = max(abs(m.turn), SMALLEST[m.spot])
     table = turns.coefficients[m.spot, m.first]
     value = (spline_kernel(table[0], d, at)[0] + size * spline_kernel(table[1], d, at)[0]
              + size * size * spline_kernel(table[2], d, at)[0])
@@ -161,7 +179,7 @@ def turned_row(m, turns, since, row):
 @kernel
 def turn_time(m, turns, since):
     """How long a phase lasts there, at the usual agility [s]."""
-    return SHIFT / BEFORE if since < 0.0 else max(turn_kernel(m, turns, DURATION_AT, since), 0.3) / TEMPO
+    return SHIFT / BEFORE if since < 0.0 else min(max(turn_kernel(m, turns, DURATION_AT, since), SHORTEST) / TEMPO[m.spot], LONGEST)
 
 
 @kernel
@@ -170,13 +188,22 @@ def lead_turn(m, turns, agility, dt):
     half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
     step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
     turned = turn_kernel(m, turns, WAY_AT + 1, m.turned + step) - turn_kernel(m, turns, WAY_AT + 1, m.turned)
-    pace = agility * _tempo(m.turned + 0.5 * step)
+    pace = agility * _tempo(m, m.turned + 0.5 * step)
     for i in range(3):
         before = m.command[i]
         m.command[i] = turned / dt if i == 1 else pace * turn_kernel(m, turns, WAY_AT + i, m.turned + 0.5 * step)
         m.velocity[i], m.rate[i], m.asked[i] = m.command[i], (m.command[i] - before) / dt, m.command[i]
+    _back(m, m.ground, m.turned, m.turned + step)
     m.turned += step
     return step
+
+
+@kernel
+def _back(m, ground, since, until):
+    """Lead a ground frame (3,) by what a turn on the spot goes back by between two phases."""
+    share = smooth(until / SHIFTED) - smooth(since / SHIFTED)
+    ground[0] += share * m.stray[0]
+    ground[1] += share * m.stray[1]
 
 
 @kernel
@@ -188,17 +215,18 @@ def turn_ahead(m, turns, agility, later, ground):
     for k in range(PIECES):
         since = m.turned + k * step
         time = step * turn_time(m, turns, since + 0.5 * step) / agility
-        pace = agility * _tempo(since + 0.5 * step)
+        pace = agility * _tempo(m, since + 0.5 * step)
         omega = (turn_kernel(m, turns, WAY_AT + 1, since + step) - turn_kernel(m, turns, WAY_AT + 1, since)) / max(time, 1e-6)
         advance(ground, pace * turn_kernel(m, turns, WAY_AT, since + 0.5 * step), omega, pace * turn_kernel(m, turns, WAY_AT + 2, since + 0.5 * step), time)
+        _back(m, ground, since, since + step)
         whole += time
     return whole
 
 
 @kernel
-def _tempo(since):
+def _tempo(m, since):
     """How many times as fast as recorded a turn is there."""
-    return HASTE if since < 0.0 else TEMPO
+    return HASTE[m.spot] if since < 0.0 else TEMPO[m.spot]
 
 
 @kernel

@@ -19,13 +19,13 @@ from .idle import onto
 from .library import HIPS, Library, Turn
 from .turning_step import BEFORE, END, PER_CYCLE, SPOT, WAITING, WALKS, features
 
-SHIFTS = {WALKS: 0.65, SPOT: 0.45}
+SHIFTS = {WALKS: 0.65, SPOT: 0.25}
 """For this long [s] before their first foot leaves people turn their shoulders and shift their weight, into a walk and on the spot."""
-STILL = {WALKS: 0.4, SPOT: 0.2}
+STILL = {WALKS: 0.4, SPOT: 0.25}
 """Both feet stood for this long [s] before, and after a turn on the spot."""
 LEAVES, STAYS = 0.45, 0.3
 """Who is faster than the first [m/s] after two steps walks, who has moved no farther than the second [m] is on the spot."""
-LEAST, MOST = {WALKS: -0.3, SPOT: 0.5}, 3.3
+LEAST, MOST = {WALKS: -0.3, SPOT: 0.5}, {WALKS: 3.3, SPOT: 2.1}
 """Turns smaller than the first [rad] are none: those into a walk begin with walks straight on; nor are larger ones than the second."""
 SMOOTH = 0.08
 """The standard deviation [s] of the filter that takes what shakes from the ground frame's way."""
@@ -130,7 +130,7 @@ def _told(track: Track, feet: np.ndarray, library: Library, at: np.ndarray, firs
     turn = float(side * (frame[-1, 2] - frame[0, 2]))
     speed = np.linalg.norm(frame[-1, :2] - frame[-9, :2]) / max(at[-1] - at[-9], 1) * RATE
     moved = np.linalg.norm(frame[-1, :2] - frame[0, :2])
-    if not LEAST[kind] < turn < MOST or (speed < LEAVES if kind == WALKS else moved > STAYS):
+    if not LEAST[kind] < turn < MOST[kind] or (speed < LEAVES if kind == WALKS else moved > STAYS):
         return None
     local = track.clip.slice(int(at.min()), int(at.max()) + 1).rotations[at - at.min()].copy()
     local[:, 0] = np.swapaxes(rot.yaw(frame[:, 2]), -1, -2) @ local[:, 0]

@@ -84,13 +84,15 @@ def feet(walker: Locomotion) -> None:
 def rest(walker: Locomotion) -> None:
     """Compile what a step needs before it places the feet."""
     memory, body, legs, places, turns, local, dt = _some(walker)
-    _, _, walk, run, table, changes, _, start = walker.tables
+    _, _, walk, run, table, changes, _, start, turning = walker.tables
     settings, row, three = walker.settings, np.zeros(COLUMNS, np.float32), np.zeros(3)
     _compile(step._weigh, memory, settings, dt, walk, run, table, changes, row, np.zeros(4), three, three, three)
     _compile(step.shape_command, memory, three, dt, dt, settings, table, walk, run, legs.stance, three, three)
-    _compile(step.plan_footholds, memory, settings, walk, table, body, legs, step.room_to_plan(memory["weights"].size, len(local)))
-    _compile(step.blend_series, memory, settings, table, row, legs, dt)
+    _compile(step.plan_footholds, memory, settings, walk, table, turning, body, legs, step.room_to_plan(memory["weights"].size, len(local)))
+    _compile(step.blend_series, memory, settings, table, turning, row, legs, dt)
     _compile(step.pose_kernel, body, row, local, places, turns, np.zeros(SCRATCH, np.float32))
+    _compile(step.begin_turn, memory, turning, three, row)
+    _compile(step.lead_turn, memory, turning, dt, dt)
     _compile(step.start_kernel, memory, start, three, dt)
     _compile(step.add_start, memory, start, row)
     _compile(step.follow_command, memory, dt)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Intent
+from gambol.controllers.contract import CharacterState, Intent, but
 from gambol.controllers.navigation import Steering, steer
 
 from .wish import Wish, in_view
@@ -41,7 +41,7 @@ class Command:
     def intent(self, state: CharacterState, settings: Steering = STEERING) -> Intent:
         """The same as an intent of the character in `state`."""
         wanted = steer(state.ground, np.array(self.velocity), self.facing, state.velocity[1], settings)
-        return Intent(wanted.velocity + np.array([0.0, self.turn, 0.0]))
+        return but(wanted, velocity=wanted.velocity + np.array([0.0, self.turn, 0.0]), towards=None if self.turn else wanted.towards)
 
 
 @dataclass(frozen=True)

@@ -63,12 +63,12 @@ def test_feet_pass_each_other_at_a_distance(locomotion, before, after):
 
 
 @kernel
-def _ways(memory, settings, space, table, body, legs, joints):
+def _ways(memory, settings, space, table, turns, body, legs, joints):
     ahead = room_to_plan(memory["weights"].shape[1], joints)
     until, shares = np.empty((len(memory), 2)), np.empty((len(memory),) + ahead.shares.shape)
     way = np.empty((len(memory),) + ahead.way.shape)
     for n in range(len(memory)):
-        plan_footholds(memory[n], settings, space, table, body, legs, ahead)
+        plan_footholds(memory[n], settings, space, table, turns, body, legs, ahead)
         until[n], shares[n], way[n] = ahead.until, ahead.shares, ahead.way
     return until, shares, way
 
@@ -77,7 +77,7 @@ def test_in_steady_walks_the_way_of_the_blend_s_foot_is_foretold(locomotion):
     motion = play(locomotion, hold(6, (1.3, 0, 0), (0.7, 0, 0), (0.5, 0, 0.3), (0, 0, 0.4), (0.9, 0.6, 0)))
     now = 4 * FPS
     memory, tables = np.array(motion.states[now].memory), locomotion.tables
-    until, shares, way = _ways(memory, locomotion.settings, tables.walk, tables.series, tables.body, tables.legs, len(locomotion.skeleton))
+    until, shares, way = _ways(memory, locomotion.settings, tables.walk, tables.series, tables.turns, tables.body, tables.legs, len(locomotion.skeleton))
     places = np.array([_on_floor(s.memory) for s in motion.states[now:now + FPS]])
     off = []
     for n, foot, k in zip(*np.nonzero((shares > 0.0) & (shares < 1.0))):
