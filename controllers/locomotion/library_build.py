@@ -169,7 +169,7 @@ def build_library(folder: str | Path, recipe: str | Path | None = None,
     library = replace(library, accelerations=natural_accelerations(found.tracks),
                       idle=idle_of(stills, library.reference, rest))
     library = settle(library, progress)
-    library = replace(library, start=starts(stills, library), turn=turns([one for one, _, _ in found.tracks], library))
+    library = replace(library, start=starts(stills, library), turn=turns(stills, [one for one, source, _ in found.tracks if source.families[0] == "walk"], library))
     return library, found.problems + [f"no cycle for {label}" for label in missing]
 
 

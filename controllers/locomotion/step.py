@@ -73,7 +73,12 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
             advance_phase(m, table, settings.agility, legs.rest, dt, whole if m.family == family else -1.0)
         start_kernel(m, start, wish[n], dt)
         idle_kernel(m, idle, settings.idle, dt)
-        blend_series(m, settings, table, turns, fresh, legs, dt)
+        if m.turn != 0.0:
+            turned_row(m, turns, m.turned, fresh)
+            end_turn(m)
+            show_row(m, settings, fresh, legs, dt)
+        else:
+            blend_series(m, settings, table, fresh, legs, dt)
         add_idle(m, idle, fresh)
         add_start(m, start, fresh)
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
@@ -196,15 +201,17 @@ def _run_on(m, table, begin, dt):
 
 
 @kernel
-def blend_series(m, settings, table, turns, fresh, legs, dt):
-    """The series of the weighted primitives, or a turn's row, with inertialisation and breath, into `fresh` and m.row."""
-    if m.turn != 0.0:
-        turned_row(m, turns, m.turned, fresh)
-        end_turn(m)
-    else:
-        series_kernel(table, m.weights, m.phase, fresh)
-        if m.left_turn:
-            after_turn(m, table, fresh, dt)
+def blend_series(m, settings, table, fresh, legs, dt):
+    """The series of the weighted primitives, with inertialisation and breath, into `fresh` and m.row."""
+    series_kernel(table, m.weights, m.phase, fresh)
+    if m.left_turn:
+        after_turn(m, table, fresh, dt)
+    show_row(m, settings, fresh, legs, dt)
+
+
+@kernel
+def show_row(m, settings, fresh, legs, dt):
+    """Add to a row (COLUMNS,) what is left of an offset, and breath, and remember it as m.row."""
     for d in range(LABELS_AT):
         m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
                                                       m.fade if d < HIPS_AT else HEAVY * m.fade, dt)

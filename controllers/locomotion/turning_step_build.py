@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body import compose, contact_points, forward_kinematics, mirror_index, relative, rotations as rot, screw
-from .cycles import RATE, Track, labels_of
+from .cycles import EVENTS, RATE, Track, labels_of
 from .first_stride_build import steps, strides
 from .idle import onto
 from .library import HIPS, Library, Turn
@@ -21,18 +21,20 @@ from .turning_step import BEFORE, END, PER_CYCLE, SPOT, WAITING, WALKS, features
 
 SHIFTS = {WALKS: 0.65, SPOT: 0.25}
 """For this long [s] before their first foot leaves people turn their shoulders and shift their weight, into a walk and on the spot."""
-STILL = {WALKS: 0.4, SPOT: 0.25}
+STILL = {WALKS: 0.77, SPOT: 0.25}
 """Both feet stood for this long [s] before, and after a turn on the spot."""
 LEAVES, STAYS = 0.45, 0.3
-"""Who is faster than the first [m/s] after two steps walks, who has moved no farther than the second [m] is on the spot."""
+"""Who is faster ahead than the first [m/s] after two steps, and than twice to the side, walks, who has moved no farther than the second [m] is on the spot."""
 LEAST, MOST = {WALKS: -0.3, SPOT: 0.5}, {WALKS: 3.3, SPOT: 2.1}
-"""Turns smaller than the first [rad] are none: those into a walk begin with walks straight on; nor are larger ones than the second."""
+"""Turns smaller than the first [rad] are none; nor are larger ones than the second."""
 SMOOTH = 0.08
 """The standard deviation [s] of the filter that takes what shakes from the ground frame's way."""
-UNTIL = {WALKS: 0.0, SPOT: 0.03}
-"""The second foot, and on the spot the first one, too, is told to stand until so long before the first leaves, in phase."""
+LIFTS = 0.03
+"""On the spot feet do not swivel while they stand: the first is told to stand until so long before it leaves, in phase."""
 ASIDE = np.array([-1.0, 1.0, 1.0])
 """Left and right exchanged."""
+ALIKE = 0.35
+"""Turns as alike as this [rad] count as one together, so that those of all sizes count alike."""
 NEARLY_NONE = 0.5
 """Turns of which none is smaller than this [rad] are told by a line only, since smaller ones are made of it, too."""
 FEWEST = 6
@@ -55,9 +57,10 @@ def grid() -> np.ndarray:
     return np.where(x < WAITING, (x / WAITING - 1.0) * BEFORE, (x - WAITING) / PER_CYCLE)
 
 
-def turns(tracks: Sequence[Track], library: Library) -> Turn | None:
-    """The turning primitives of some tracks' people, None where there are too few turns of either kind."""
-    kinds = [[sample for track in tracks for sample in samples(track, library, kind)] for kind in (WALKS, SPOT)]
+def turns(stills: Sequence[Track], tracks: Sequence[Track], library: Library) -> Turn | None:
+    """The turning primitives of some tracks' people, None where there are too few turns of either kind. stills: the tracks of whom
+    standing and setting off are from."""
+    kinds = [[sample for track in group for sample in samples(track, library, kind)] for kind, group in ((WALKS, stills), (SPOT, tracks))]
     if min(map(len, kinds)) < FEWEST:
         return None
     return Turn(np.stack([np.stack([fitted(np.stack([s.rows[foot] for s in found]), np.array([s.turn for s in found])) for foot in range(2)])
@@ -72,7 +75,8 @@ def fitted(rows: np.ndarray, turned: np.ndarray) -> np.ndarray:
     if not turned.min() < NEARLY_NONE:
         told = told[:, :2]
     line = np.zeros((3,) + rows.shape[1:])
-    line[:told.shape[-1]] = np.linalg.lstsq(told, rows.reshape(len(rows), -1), rcond=None)[0].reshape((-1,) + rows.shape[1:])
+    weight = 1.0 / np.sqrt((np.abs(turned[:, None] - turned) < ALIKE).sum(1))[:, None]
+    line[:told.shape[-1]] = np.linalg.lstsq(weight * told, weight * rows.reshape(len(rows), -1), rcond=None)[0].reshape((-1,) + rows.shape[1:])
     count = WAITING + int(np.ceil(END * PER_CYCLE))
     x = np.arange(len(grid())) * 0.25
     return make_lsq_spline(x, np.moveaxis(line, 1, 0), np.arange(-3.0, count + 4.0), k=3).c.swapaxes(0, 1)
@@ -81,7 +85,7 @@ def fitted(rows: np.ndarray, turned: np.ndarray) -> np.ndarray:
 def samples(track: Track, library: Library, kind: int) -> list[Sample]:
     """The turns of one track: from standing, two steps, the first with the foot of that side; then walking on, or standing."""
     feet, result = steps(track), []
-    both = feet.all(1)
+    both = np.asarray(feet.all(1), bool)
     for frames, phases in strides(feet):
         for k in range(len(frames) - 3):
             first = int(phases[k] % 1.0 > 0.25)
@@ -128,16 +132,16 @@ def _told(track: Track, feet: np.ndarray, library: Library, at: np.ndarray, firs
     frame[:, 2] = np.unwrap(frame[:, 2])
     side = 1.0 - 2.0 * first
     turn = float(side * (frame[-1, 2] - frame[0, 2]))
-    speed = np.linalg.norm(frame[-1, :2] - frame[-9, :2]) / max(at[-1] - at[-9], 1) * RATE
+    ahead, _, aside = screw(frame[-9], frame[-1], seconds[-1] - seconds[-9])
     moved = np.linalg.norm(frame[-1, :2] - frame[0, :2])
-    if not LEAST[kind] < turn < MOST[kind] or (speed < LEAVES if kind == WALKS else moved > STAYS):
+    if not LEAST[kind] < turn < MOST[kind] or (ahead < max(LEAVES, 2.0 * abs(aside)) if kind == WALKS else moved > STAYS):
         return None
     local = track.clip.slice(int(at.min()), int(at.max()) + 1).rotations[at - at.min()].copy()
     local[:, 0] = np.swapaxes(rot.yaw(frame[:, 2]), -1, -2) @ local[:, 0]
     rest = _beside_joints(track, feet, at, seconds, frame, first, kind)
     mirror = local[:, mirror_index(library.skeleton)] * np.outer(ASIDE, ASIDE)
     other = rest[:, [0, 1, 2, 5, 6, 3, 4, 7, 8, 9, 10]] * [-1, 1, 1, 1, 1, 1, 1, 1, 1, -1, -1]
-    rows = [np.concatenate([_chart(library, l), r], -1) for l, r in ((local, rest), (mirror, other))]
+    rows = [np.concatenate([_chart(library, part), r], -1) for part, r in ((local, rest), (mirror, other))]
     return Sample(np.stack(rows if first == 0 else rows[::-1]), turn, track.clip.name, float(at[0] / RATE))
 
 
@@ -158,8 +162,10 @@ def _beside_joints(track: Track, feet: np.ndarray, at: np.ndarray, seconds: np.n
     duration = np.gradient(seconds, u)
     duration[u <= 0.0] = duration[u > 0.0][0]
     labels = labels_of(track, feet, "walk")[at]
-    stands = np.s_[2 - 2 * first:4 - 2 * first] if kind == WALKS else np.s_[:]
-    labels[u < -UNTIL[kind], stands] = 1.0
+    one, other = labels[:, 2 * first:2 * first + 2], labels[:, 2 - 2 * first:4 - 2 * first]
+    other[u < 0.0] = 1.0
+    if kind == SPOT:
+        one[u < -LIFTS] = one[u > EVENTS["walk"][2]] = other[u < EVENTS["walk"][1]] = 1.0
     way = np.stack([ahead, frame[:, 2] - frame[0, 2], aside], -1)
     return np.concatenate([place[:, :1], root[:, 1:2], place[:, 1:2], labels, duration[:, None], way], -1)
 

@@ -1,0 +1,92 @@
+"""Turns from rest are made in as few steps as people take: two into a walk, two or four on the spot, which end where they began."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import feet_apart, forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.navigation import steer
+
+FPS = 60
+
+
+def turned(locomotion, degrees, speed, seconds=3.0, rate=FPS):
+    """States of characters that stand and then go or look another way each."""
+    angle = np.radians(degrees)
+    way = speed * np.stack([np.sin(angle), np.cos(angle)], -1)
+    state, states = locomotion.start(np.zeros((len(angle), 3))), []
+    for _ in range(round(seconds * rate)):
+        wish = steer(state.ground, way, None if speed else angle, state.velocity[:, 1])
+        state, _ = locomotion.step(state, wish, 1 / rate)
+        states.append(state)
+    return states
+
+
+def strikes(states):
+    """When feet come down: (T - 1, N) how many in each step."""
+    feet = np.array([state.contacts.reshape(-1, 2, 2).any(-1) for state in states]).astype(int)
+    return (np.diff(feet, axis=0) > 0).sum(-1)
+
+
+def off(states, degrees):
+    """How far (T, N) everybody still is from the way that he is to face [rad]."""
+    heading = np.array([state.ground[:, 2] for state in states])
+    return np.abs((heading - np.radians(degrees) + np.pi) % (2 * np.pi) - np.pi)
+
+
+def test_who_goes_another_way_turns_there_in_two_steps(locomotion):
+    degrees = np.array([70.0, 90, 135, 178, -70, -90, -135, -178])
+    states = turned(locomotion, degrees, 1.3)
+    left = off(states, degrees) > 0.12
+    facing = len(left) - left[::-1].argmax(0)
+    assert (facing < 1.25 * FPS).all()
+    assert all(strikes(states[:facing[n]])[:, n].sum() <= 2 for n in range(len(degrees)))
+    assert (off(states, degrees)[-1] < 0.05).all()
+    assert np.allclose([np.hypot(*state.velocity[:, [0, 2]].T) for state in states[-6:]], 1.3, atol=0.05)
+
+
+def test_turns_on_the_spot_take_two_steps_and_end_where_they_began(locomotion):
+    degrees = np.array([45.0, 90, 110, -45, -90, -110, 150, -175])
+    states = turned(locomotion, degrees, 0.0, 4.0)
+    assert (strikes(states).sum(0)[:6] == 2).all() and (strikes(states).sum(0) <= 4).all()
+    assert (off(states, degrees)[-1] < 0.06).all()
+    assert np.hypot(*states[-1].ground[:, :2].T).max() < 0.15
+    assert (states[-1].memory["settled"] == 1).all()
+
+
+def test_feet_keep_apart_as_they_turn(locomotion):
+    for speed in (1.3, 0.0):
+        states = turned(locomotion, np.array([60.0, 90, 135, 180, -60, -90, -135, -175]), speed)
+        motion = forward_kinematics(locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
+        assert feet_apart(locomotion.skeleton, *motion).min() > 0.06
+
+
+def test_who_is_told_otherwise_leaves_a_turn(locomotion):
+    """Whenever the stick comes back, the body goes on smoothly, and ahead."""
+    state = locomotion.start(np.zeros((24, 3)))
+    places = []
+    for k in range(3 * FPS):
+        back = k > 2 * np.arange(24)
+        way = np.where(back[:, None], [0.0, 1.3], [-1.3, -0.2])
+        state, pose = locomotion.step(state, steer(state.ground, way, None, state.velocity[:, 1]), 1 / FPS)
+        places.append(pose.root)
+    speed = np.linalg.norm(np.diff(places, axis=0), axis=-1) * FPS
+    assert np.abs(np.diff(speed, axis=0)).max() < 0.35
+    assert (state.memory["turn"] == 0.0).all() and (state.velocity[:, 0] > 1.2).all()
+
+
+def test_turns_do_not_depend_on_the_rate_nor_on_who_is_beside(locomotion):
+    degrees = np.array([90.0, -150.0])
+    for speed in (1.3, 0.0):
+        ends = [turned(locomotion, degrees, speed, 2.5, rate)[-1].ground for rate in (30, 144)]
+        assert np.hypot(*(ends[0] - ends[1])[:, :2].T).max() < 0.05
+    alone = turned(locomotion, degrees[1:], 1.3)[-1]
+    np.testing.assert_array_equal(alone.pose.rotations[0], turned(locomotion, degrees, 1.3)[-1].pose.rotations[1])
+
+
+@pytest.mark.parametrize("towards", [(np.nan, 1.0), (0.0, np.nan), (np.inf, 0.0)])
+def test_a_heading_that_is_no_number_is_none(locomotion, towards):
+    state = locomotion.start()
+    for _ in range(30):
+        state, pose = locomotion.step(state, Intent(np.zeros(3), towards=np.array(towards)), 1 / FPS)
+    assert state.memory["turn"] == 0.0 and np.isfinite(pose.rotations).all()
