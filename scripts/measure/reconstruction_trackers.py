@@ -23,7 +23,7 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 import numpy as np
 
 from gambol.controllers.body import Skeleton, contact_height, contact_points, detect_contacts, forward_kinematics, point_speeds
-from gambol.controllers.mocap import MotionFileError, calibrate, load, retarget
+from gambol.controllers.mocap import MotionFileError, calibrate, hinged, load, retarget
 from gambol.controllers.reconstruction import SKELETON, encode, parse
 from gambol.controllers.reconstruction.database import Database, DatabaseError, Take
 from gambol.controllers.reconstruction.evaluation import foreign, metrics, small_of, strangers, trials
@@ -70,7 +70,7 @@ def raw(folder: Path, take: Take) -> Performance:
     paths = [path, *[other for other in sorted(path.parent.glob(f"*{path.suffix}")) if other != path][:_BESIDE]]
     clips = [clip.resample(FPS) if clip.frame_time < 0.99 / FPS else clip for clip in map(load, paths)]
     known = calibrate(clips)
-    ours = retarget(clips[0], calibration=known)
+    ours = hinged(retarget(clips[0], calibration=known))
     theirs, _ = clips[0].kinematics()
     rotations = ours.rotations
     _, turned = ours.kinematics()
