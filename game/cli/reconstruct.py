@@ -30,6 +30,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 trackers: Annotated[Path | None, typer.Option("--map", help="A TOML file that says which tracker is on which point.")] = None,
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
                 calibration: Annotated[Path | None, typer.Option(help="Trackers are worn anyhow, beside their joints: a TOML file of how, read if it is there, else written once one has stood still, and moved.")] = None,
+                poses: Annotated[bool, typer.Option("--poses", help="With --calibration: be asked to stand in eight poses, which tells most of how trackers are worn.")] = False,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
                 send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
@@ -48,6 +49,8 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
     if height is not None and calibration is not None:
         raise Mistake("--height and --calibration both say how tall one is: give one of them")
+    if poses and (calibration is None or calibration.exists()):
+        raise Mistake("--poses goes with --calibration FILE" + (f": {calibration} is there already, and says how trackers are worn" if calibration else ""))
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
     if window and (send is None or out is not None or heard_again):
@@ -81,11 +84,11 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     method = method or _usual(names, database)
     with live.heard(worn_on, clip, port, host, keep) as source:
         if out is None and (send is None or window):
-            live.stand(source, height, calibration)
+            live.stand(source, height, calibration, poses)
             watch(method, names, database, stream=source, send=send)
         else:
             with live.sent(send) as sender:
-                live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration)
+                live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration, poses)
 
 
 def _known(method: str) -> None:
