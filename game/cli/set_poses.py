@@ -11,8 +11,8 @@ from .base import say
 
 MOST = 20.0
 """So long [s] a pose is waited for."""
-MOVED, AGAIN = 0.15, 4.0
-"""It is another pose than the one before where a tracker has moved so far [m]; whoever wears none on the hands has so long [s] for it."""
+MOVED = 0.15
+"""It is another pose than the one before where a tracker has moved so far [m]; poses that move none farther than twice that are not asked for."""
 LEAST = 3
 """Fewer poses tell too little."""
 _TELL = 5.0
@@ -23,14 +23,17 @@ def worn(source: Any, placement: Any, place: np.ndarray, turn: np.ndarray, times
 
     source: whose points are the room's. times: [s] to ask it at, as they come.
     """
-    from gambol.controllers.reconstruction.calibration import POSES, Wearer, stance
+    from gambol.controllers.reconstruction.calibration import POSES, Wearer, apart, stance
 
     first = stance(source.controls, place, turn)
     found = [(place, turn, first)]
-    asked = [number for number in range(len(POSES)) if number != first]
-    for count, number in enumerate(asked, 2):
+    asked = [first]
+    for number in range(len(POSES)):
+        if number != first and apart(source.controls.joints, asked[-1], number) > 2.0 * MOVED:
+            asked.append(number)
+    for count, number in enumerate(asked[1:], 2):
         words = list(POSES)[number]
-        say(f"{count} of {len(POSES)}: {words}; hold still for a second ({MOST:.0f} s)")
+        say(f"{count} of {len(asked)}: {words}; hold still for a second ({MOST:.0f} s)")
         seen = _held(source, times, found[-1][0], words)
         if seen is not None:
             found.append((*seen, number))
@@ -53,7 +56,7 @@ def _held(source: Any, times: Iterator[float], before: np.ndarray, words: str) -
         began = now if began is None else began
         standing = standing.watch(now, source.at(now), source.turns)
         if (place := standing.place) is not None and (turn := standing.turn) is not None and np.isfinite(turn).all() and (
-                np.linalg.norm(place - before, axis=-1).max() > MOVED or now - began > AGAIN):
+                np.linalg.norm(place - before, axis=-1).max() > MOVED):
             return place, turn
         if now - began > MOST:
             say(f"left out: {words}")

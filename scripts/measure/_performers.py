@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gambol.controllers.body import Skeleton, contact_height, contact_points, exp, forward_kinematics, heading_of, yaw
+from gambol.controllers.body import Skeleton, contact_height, contact_points, exp, forward_kinematics, yaw
 from gambol.controllers.mocap import MotionFileError, load, roles, zero_positions
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.database import Database, Take
@@ -69,7 +69,7 @@ def posing(skeleton: Skeleton, asked: np.ndarray, arms: float, unrest: float, rn
     _, orientations = forward_kinematics(skeleton, np.zeros((len(asked), 3)), rotations)
     for side in ("Left", "Right"):
         shin, foot, toe = (skeleton.index(side + name) for name in ("Leg", "Foot", "Toe"))
-        rotations[:, foot] = np.swapaxes(orientations[:, shin], -1, -2) @ yaw(heading_of(orientations[:, foot]))
+        rotations[:, foot] = np.swapaxes(orientations[:, shin], -1, -2) @ yaw(np.arctan2(orientations[:, foot, 0, 2], orientations[:, foot, 2, 2]))
         rotations[:, toe] = np.eye(3)
     positions, orientations = forward_kinematics(skeleton, np.zeros((len(asked), 3)), rotations)
     up = contact_height(skeleton) - contact_points(skeleton, positions, orientations)[..., 1].min(-1)

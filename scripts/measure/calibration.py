@@ -129,6 +129,8 @@ def main() -> None:
                           if take.stop - take.start > 5 * FPS)
     except (DatabaseError, ValueError) as error:
         sys.exit(str(error))
+    if not takes:
+        sys.exit(f"{options.small}: has no take of five seconds that settings are chosen on")
     bodies = people(options.small / "cmu")
     rows = []
     for name, case in list(CASES.items()):

@@ -60,6 +60,14 @@ POSES = {
 _KNEELING = len(POSES) - 1
 
 
+def apart(joints: np.ndarray, one: int, other: int) -> float:
+    """How far [m] the farthest of some joints (n,) is in one of `POSES` from where it is in another, on a standard body whose feet stay."""
+    asked = np.stack([list(POSES.values())[one], list(POSES.values())[other]])[None]
+    places = _kinematics(SKELETON.offsets[None], asked, np.zeros((1, 2, 3)))[0][0]
+    places = places - places[:, _FEET].mean(1, keepdims=True)
+    return float(np.linalg.norm(places[0, joints] - places[1, joints], axis=-1).max())
+
+
 def fitted(stood: Stood, places: np.ndarray, turns: np.ndarray, poses: Sequence[int]) -> Calibration:
     """What somebody who stood (`stood`, alone) and then in K set poses tells.
 
