@@ -39,6 +39,13 @@ TITLE = """# The network for trackers, measured
     python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --out docs/reconstruction/trackers.md
 
 """
+TUNED = """# The network for trackers, on what its settings were chosen on
+
+    python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --tuned --only 1 --out docs/reconstruction/validation.md
+
+No figure to be told: the same for the takes that are tested is in [its own page](trackers.md).
+
+"""
 FPS, MOST, HALF, FAR = 60.0, 600, 30, 20.0
 _BESIDE = 3  # more clips of a folder that its skeletons are calibrated by
 
@@ -182,7 +189,7 @@ def main() -> None:
         parts.append(f"## {name[0].upper()}{name[1:]}\n\n{table(HEAD, rows)}")
         print(f"\n{parts[-1]}", flush=True)
     if options.out:
-        options.out.write_text(TITLE + "\n\n".join(parts) + "\n", encoding="utf-8")
+        options.out.write_text((TUNED if options.tuned else TITLE) + "\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
