@@ -35,8 +35,9 @@ from reconstruction_trackers import FPS, Performance
 
 OFF, TURNED, UNREST, RESTLESS = 0.10, np.radians(20.0), np.radians(1.5), np.radians(4.0)
 SETS = {"6": ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightFoot"), "3": ("Head", "LeftHand", "RightHand")}
-CASES = {"10 cm and 20° off, arms 6° low": (OFF, np.radians(6.0)), "10 cm and 20° off, arms as asked": (OFF, 0.0),
-         "on their joints, arms 6° low": (0.0, np.radians(6.0)), "on their joints, arms as asked": (0.0, 0.0)}
+CASES = {"10 cm and 20° off, arms 6° low": (OFF, np.radians(6.0), RESTLESS), "10 cm and 20° off, arms as asked": (OFF, 0.0, RESTLESS),
+         "on their joints, arms 6° low": (0.0, np.radians(6.0), RESTLESS), "on their joints, arms as asked": (0.0, 0.0, RESTLESS),
+         "10 cm and 20° off, arms 12° low, poses twice as careless": (OFF, np.radians(12.0), 2.0 * RESTLESS)}
 HEAD = ("", "trackers", "places alone", "standing", "standing and 5 s", "eight poses", "exact", "sure of mounts, cm", "mounts off, cm", "bones off, cm")
 ROOM = 0.7, np.array([0.4, 0.01, -0.8])
 """How the room is turned [rad], and where its middle is [m]; its floor is not quite level with the body's."""
@@ -59,7 +60,7 @@ def standing(skeleton: Skeleton, arms: float, rng: np.random.Generator) -> tuple
     return positions + [0.0, contact_height(skeleton) - positions[toes, 1].min(), 0.0], orientations
 
 
-def off(networks: tuple[Network, CalibrationNetwork], on: Performance, which: tuple[str, ...], case: tuple[float, float], rng: np.random.Generator) -> list[float]:
+def off(networks: tuple[Network, CalibrationNetwork], on: Performance, which: tuple[str, ...], case: tuple[float, float, float], rng: np.random.Generator) -> list[float]:
     """A row's numbers of one performance."""
     there = np.array([name in which for name in WORN])
     mine = JOINTS[there]
@@ -85,7 +86,7 @@ def off(networks: tuple[Network, CalibrationNetwork], on: Performance, which: tu
     placement = placed(place[there], controls, turns=turn[there])
     bodies = played(networks[0], SKELETON, controls, placement(places[:, there]), np.stack([placement.turned(some) for some in turns[:, there]]))
     found = [judged((bodies - placement.shift) @ yaw(placement.heading) / placement.scale)]
-    shown = posing(on.skeleton, np.array(list(POSES.values())[1:]), case[1], RESTLESS, rng)
+    shown = posing(on.skeleton, np.array(list(POSES.values())[1:]), case[1], case[2], rng)
     posed = tuple(np.concatenate([first[None], rest]) for first, rest in zip((place, turn), seen(*shown), strict=True))
     for known in (calibrated(networks[1], stood), calibrated(networks[1], stood, places[pairs], turns[pairs]), fitted(stood, *posed, range(len(POSES)))):
         points, oriented = known.joints(places, turns)
