@@ -15,13 +15,13 @@ import math
 
 import numpy as np
 
-from ..body import spring_kernel
+from ..body import relative_kernel, spring_kernel
 from ..compiled import kernel
 from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
 from .kernel import LABELS_AT
 from .last_stride import BESIDE
-from .legs import REACH, leg_kernel, leg_length, localise_kernel, tilt_kernel, toe_kernel
+from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .short_leg import give_way
 from .swing import SWING, swing_kernel, swing_progress
 from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
@@ -99,9 +99,9 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         leg_kernel(positions, orientations, hip, ankle[foot], work)
         toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)
         toe_kernel(body, hip + 2, toes + lift[foot], positions, orientations, local, work)
-        localise_kernel(orientations, 0, hip, local)
-        localise_kernel(orientations, hip, hip + 1, local)
-        localise_kernel(orientations, hip + 1, hip + 2, local)
+        relative_kernel(orientations[0], orientations[hip], local[hip])
+        relative_kernel(orientations[hip], orientations[hip + 1], local[hip + 1])
+        relative_kernel(orientations[hip + 1], orientations[hip + 2], local[hip + 2])
 
 
 @kernel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..body import two_bone_kernel
+from ..body import relative_kernel, two_bone_kernel
 from ..compiled import kernel
 from .kernel import joint_kernel
 
@@ -142,15 +142,4 @@ def toe_kernel(body, a, height, positions, orientations, local, work):
             for i in range(3):
                 for k in range(3):
                     orientations[t, i, k] = turned[i, k]
-    localise_kernel(orientations, a, t, local)
-
-
-@kernel
-def localise_kernel(orientations, parent, joint, local):
-    """Write a joint's local rotation from its own and its parent's orientation."""
-    for i in range(3):
-        for k in range(3):
-            total = 0.0
-            for a in range(3):
-                total += orientations[parent, a, i] * orientations[joint, a, k]
-            local[joint, i, k] = total
+    relative_kernel(orientations[a], orientations[t], local[t])

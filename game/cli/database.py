@@ -8,10 +8,13 @@ from typing import Annotated
 
 import typer
 
-from .base import app, plainly, progress_bar, say
+from .base import Mistake, app, plainly, progress_bar, say
 
-database = typer.Typer(no_args_is_help=True, help="Motion databases: build one from motion capture, look at one.")
+database = typer.Typer(no_args_is_help=True, help="Motion databases: build one from motion capture, look at one, teach a network from one.")
 app.add_typer(database, name="database")
+
+_KEPT = 250
+"""Batches between two checkpoints."""
 
 
 @database.command()
@@ -36,6 +39,40 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
         say(f"{len(made.problems)} files or folders left out")
     for line in _in_words(made.database):
         say(line)
+
+
+@database.command()
+@plainly
+def tune(file: Annotated[Path, typer.Argument(help="A .gambolmotion file of one's own motion, 60 frames a second.")],
+         out: Annotated[Path, typer.Option("-o", "--out", help="The .npz file to write: one's own network.")] = Path("network.npz"),
+         batches: Annotated[int, typer.Option(min=10, max=1_000_000, help="How much is learnt; 3000 take some minutes on one core.")] = 3000,
+         share: Annotated[float, typer.Option(min=0.0, max=1.0, help="How much of it is used: 0 is the network as it was; the more, the less it knows of others' motion.")] = 0.5,
+         seed: Annotated[int, typer.Option(min=0, help="Of what is drawn.")] = 0,
+         network: Annotated[Path | None, typer.Option(help="The network to go on from; the one that ships by default.")] = None) -> None:
+    """Teach the network for trackers one's own motion; cut off, it goes on from its last checkpoint."""
+    from gambol.controllers.reconstruction.database import FPS, Database
+    from gambol.controllers.reconstruction.trackers import SHIPPED, Moments, Network, Tuner
+
+    from ..files import named, output_file, whole
+
+    output_file(out, ".npz")
+    opened, began = Database.open(file), Network.load(network or SHIPPED)
+    if opened.fps != FPS:
+        raise Mistake(f"{file}: has {opened.fps:g} frames a second; a network is taught from {FPS:g}: gambol database build FOLDER --fps {FPS:g}")
+    if not opened.sound.any():
+        raise Mistake(f"{file}: has no sound frame to learn from")
+    tuner = Tuner(began, Moments.of(opened), batches, seed, share)
+    checkpoint = out.with_name(f"{out.stem}-learning{out.suffix}")
+    if checkpoint.exists():
+        tuner.resume(checkpoint)
+        say(f"{checkpoint}: going on from batch {tuner.batch}")
+    with progress_bar() as bar, named(out):
+        task = bar.add_task("learning", total=batches, completed=tuner.batch)
+        tuner.learn(checkpoint, _KEPT, lambda done, total, loss: bar.update(task, completed=done))
+        with whole(out) as own:
+            tuner.network().save(own)
+    checkpoint.unlink(missing_ok=True)
+    say(f"{out}: taught from {len(opened):,} frames; gambol reconstruct --network {out}")
 
 
 @database.command()

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from . import set_poses
 from .base import Mistake, say
 
 FPS = 60
@@ -55,10 +56,10 @@ def _clock() -> Any:
 
 
 def record(source: Any, controller: Callable[[Any], Any], out: Path | None, height: float | None, seconds: float | None, sender: Any = None,
-           calibration: Path | None = None) -> None:
+           calibration: Path | None = None, posing: bool = False) -> None:
     """Record what trackers say until the time is up or somebody stops it; what there is by then is written.
 
-    controller: makes one for a skeleton, or None for the standard one. out: None to keep nothing. sender: whom each frame is sent to. calibration: see `stand`.
+    controller: makes one for a skeleton, or None for the standard one. out: None to keep nothing. sender: whom each frame is sent to. calibration, posing: see `stand`.
     """
     import numpy as np
 
@@ -75,7 +76,7 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
     poses, contacts, lost = [], [], 0
     with _stoppable():
         try:
-            stand(source, height, calibration)
+            stand(source, height, calibration, posing)
             known = None
             say("recording; Ctrl-C ends it" if out is not None else "sending; Ctrl-C ends it")
             state = None
@@ -130,9 +131,9 @@ def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
         yield now
 
 
-def stand(source: Any, height: float | None, calibration: Path | None = None) -> None:
+def stand(source: Any, height: float | None, calibration: Path | None = None, posing: bool = False) -> None:
     """Tell the source where floor and body are: as somebody does who stands still, and if a file is named how trackers are worn, too: as it says if
-    it is there; else it is written then."""
+    it is there; else it is written then. posing: whether set poses are asked for."""
     from gambol.controllers.reconstruction.calibration import load, save
 
     if calibration is not None and calibration.exists():
@@ -141,7 +142,7 @@ def stand(source: Any, height: float | None, calibration: Path | None = None) ->
         return
     if calibration is not None and not calibration.parent.is_dir():
         raise Mistake(f"{calibration}: there is no folder {calibration.parent}")
-    _stood(source, height, calibration is not None)
+    _stood(source, height, calibration is not None, posing)
     if source.worn is not None and calibration is not None:
         say(source.worn.said(source.controls.names))
         save(calibration, source.worn)
@@ -159,7 +160,7 @@ def moved(source: Any, calibration: Path | None) -> None:
         say(f"{calibration}: written; with it nobody need stand still the next time")
 
 
-def _stood(source: Any, height: float | None, calibrating: bool) -> None:
+def _stood(source: Any, height: float | None, calibrating: bool, posing: bool) -> None:
     """Wait until somebody who wears the trackers stands still; where they sit is told, too, if it is asked for."""
     import numpy as np
 
@@ -171,14 +172,17 @@ def _stood(source: Any, height: float | None, calibrating: bool) -> None:
     if live:
         say(f"listening at {source.host}, port {source.port}: stand upright for a second, in T-pose or with the arms down")
     standing, told = Standing(), -_TELL / 2
-    for now in _times(source, None, False):
+    times = _times(source, None, False)
+    for now in times:
         seen = source.at(now)
         standing = standing.watch(now, seen, source.turns)
         if standing.place is not None:
             try:
-                source.placement = placed(standing.place, source.controls, height, standing.turn)
+                placement = placed(standing.place, source.controls, height, standing.turn)
                 if calibrating and (turn := standing.turn) is not None and calibratable(source.controls, turn):
-                    source.worn = Wearer.standing(source.controls, source.placement, standing.place, turn, CalibrationNetwork.load())
+                    worn = set_poses.worn(source, placement, standing.place, turn, times) if posing else None
+                    source.worn = worn or Wearer.standing(source.controls, placement, standing.place, turn, CalibrationNetwork.load())
+                source.placement = placement
                 return
             except ValueError as error:
                 say(str(error))

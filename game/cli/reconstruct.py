@@ -20,7 +20,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 points: Annotated[str | None, typer.Option(help="Points on the body, with commas: lwrist,rwrist,lankle,rankle, or a set of the paper, 2 … 6. 4 by default.")] = None,
                 out: Annotated[Path | None, typer.Option("-o", "--out", help="A .bvh file of the motion, or a .glb file of the body in motion; a window shows it by default.")] = None,
                 method: Annotated[str | None, typer.Option(help="trackers, the network that ships, by default; ours, learnt from --database; or one that these are measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = None,
-                database: Annotated[Path | None, typer.Option(help="A motion database to learn from; Gambol's own motion by default.")] = None,
+                database: Annotated[Path | None, typer.Option("--database", "--network", help="A motion database to learn from, Gambol's own motion by default; or the network, .npz, that gambol database tune taught.")] = None,
                 noise: Annotated[float, typer.Option(min=0.0, max=100.0, help="Blur the clip's points by so many centimetres.")] = 0.0,
                 seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
                 turns: Annotated[bool, typer.Option("--turns", help="Tell how the clip's points are turned, too, as trackers of 6 degrees of freedom do.")] = False,
@@ -30,6 +30,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 trackers: Annotated[Path | None, typer.Option("--map", help="A TOML file that says which tracker is on which point.")] = None,
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
                 calibration: Annotated[Path | None, typer.Option(help="Trackers are worn anyhow, beside their joints: a TOML file of how, read if it is there, else written once one has stood still, and moved.")] = None,
+                poses: Annotated[bool, typer.Option("--poses", help="With --calibration: be asked to stand in eight poses, which tells most of how trackers are worn.")] = False,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
                 send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
@@ -48,6 +49,8 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
     if height is not None and calibration is not None:
         raise Mistake("--height and --calibration both say how tall one is: give one of them")
+    if poses and (calibration is None or calibration.exists()):
+        raise Mistake("--poses goes with --calibration FILE" + (f": {calibration} is there already, and says how trackers are worn" if calibration else ""))
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
     if window and (send is None or out is not None or heard_again):
@@ -65,9 +68,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     if method is not None:
         _known(method)
     if database is not None:  # what is wrong with it is best said before anything is learnt
-        from gambol.controllers.reconstruction.database import Database
-
-        Database.open(database)
+        _sound(database, method)
     if clip is not None and not heard_again:
         names = _named("4" if points is None else points)
         method = method or _usual(names, database)
@@ -83,11 +84,11 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     method = method or _usual(names, database)
     with live.heard(worn_on, clip, port, host, keep) as source:
         if out is None and (send is None or window):
-            live.stand(source, height, calibration)
+            live.stand(source, height, calibration, poses)
             watch(method, names, database, stream=source, send=send)
         else:
             with live.sent(send) as sender:
-                live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration)
+                live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration, poses)
 
 
 def _known(method: str) -> None:
@@ -95,6 +96,21 @@ def _known(method: str) -> None:
 
     if method not in METHODS:
         raise Mistake(f"--method {method!r}: there is no such method; choose from {', '.join(METHODS)}")
+
+
+def _sound(file: Path, method: str | None) -> None:
+    """DatabaseError or ArraysError for a file that is neither a database nor a network; Mistake for a network with a method that has none."""
+    from gambol.controllers.reconstruction.database import Database
+    from gambol.controllers.reconstruction.trackers import Network
+
+    from ..world import SHIPPED, taught
+
+    if not taught(file):
+        Database.open(file)
+        return
+    Network.load(file)
+    if method not in (None, SHIPPED):
+        raise Mistake(f"--network {file}: goes with --method {SHIPPED}; {method} learns from a database")
 
 
 def _usual(points: str, database: Path | None) -> str:
@@ -164,13 +180,13 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
 
 def _performance(path: Path) -> Any:
     """A motion file at 60 frames a second on the standard human. MotionFileError, naming it, if it can't be used."""
-    from gambol.controllers.mocap import MotionFileError, load, retarget
+    from gambol.controllers.mocap import MotionFileError, hinged, load, retarget
 
     clip = load(path)
     if len(clip) < 4:
         raise MotionFileError(f"{path}: {len(clip)} frames are too few; a performance needs 4")
     try:
-        return retarget(clip).resample(FPS)
+        return hinged(retarget(clip)).resample(FPS)
     except ValueError as error:
         raise MotionFileError(f"{path}: {error}") from None
 

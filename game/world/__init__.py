@@ -7,7 +7,7 @@ from .courtesy import avoiding
 from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
-from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, Learning, Methods, methods, usual
+from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, Learning, Methods, methods, taught, usual
 from .primitive import nearest, posed
 from .recorded import Recorded
 from .solid import stopped
@@ -19,6 +19,6 @@ __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "SHIPPED", "STAGES", "TINTS", "Character", "Embodied", "Errors",
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
     "figures", "follower_of",
-    "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "stopped", "switched",
+    "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "stopped", "switched", "taught",
     "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "watches_of",
 ]

@@ -34,6 +34,8 @@ NAMES = {"trackers": "trackers", "ours": "ours", "lpcr": "local PCR", "lpca": "l
 """What each is called in the picture."""
 SHIPPED = "trackers"
 """The one that needs no database."""
+NETWORK = ".npz"
+"""A file that ends so is somebody's own network, which `gambol database tune` taught, in the place of a database."""
 PROGRESS = re.compile(r"(.+): (\d+) of (\d+)")
 
 Progress = Callable[[str, int, int], None]
@@ -41,9 +43,9 @@ Progress = Callable[[str, int, int], None]
 
 
 class Methods:
-    """The methods over one database; Gambol's own motion where no file is named.
+    """The methods over one database; Gambol's own motion where no file is named, or a network is.
 
-    DatabaseError for a file that is no database, once it is needed.
+    DatabaseError for a file that is no database, ArraysError for one that is no network, once it is needed.
     """
 
     def __init__(self, file: str | Path | None = None):
@@ -68,7 +70,7 @@ class Methods:
         controls = parse(points, SKELETON)
         if (name, points) not in self._known:
             if name == SHIPPED:
-                self._known[name, points] = shipped(controls)
+                self._known[name, points] = shipped(controls, self.network)
             else:
                 self.starts(name, points)
                 self._known[name, points] = learnt(name, self.database(progress), controls, progress)
@@ -85,6 +87,11 @@ class Methods:
             self._starts[points] = Starts.of(self.database(), parse(points, SKELETON))
         return self._starts[points]
 
+    @property
+    def network(self) -> Path | None:
+        """The file of somebody's own network."""
+        return self.file if taught(self.file) else None
+
     def frame_time(self, name: str) -> float:
         """Seconds between a method's frames."""
         return 1 / 60 if name == SHIPPED else 1 / self.database().fps
@@ -96,7 +103,7 @@ class Methods:
         if self._database is None:
             told = progress or _silent
             told("the database", 0, 1)
-            self._database = default_database() if self.file is None else Database.open(self.file)
+            self._database = default_database() if self.file is None or taught(self.file) else Database.open(self.file)
             told("the database", 1, 1)
         return self._database
 
@@ -117,22 +124,27 @@ def learnt(name: str, database: Database, controls: ControlPoints, progress: Pro
     return method
 
 
-def shipped(controls: ControlPoints) -> Any:
-    """The method that ships, for some points, ready."""
+def taught(file: str | Path | None) -> bool:
+    """Whether a file is named like somebody's own network, not like a database."""
+    return file is not None and Path(file).suffix.lower() == NETWORK
+
+
+def shipped(controls: ControlPoints, own: Path | None = None) -> Any:
+    """The method that ships, for some points, ready. own: the file of somebody's own network in its place. ArraysError if that is none."""
     from gambol.controllers.reconstruction.trackers import Network, Trackers
 
-    method = Trackers(Network.load(), controls)
+    method = Trackers(Network.load() if own is None else Network.load(own), controls)
     rehearse(method, controls)
     return method
 
 
 def usual(points: str, file: str | Path | None = None) -> str:
-    """The method that is taken where none is named: what ships where all the points are on or beside joints that it knows and no
-    database is given, else ours."""
+    """The method that is taken where none is named: what ships, or is taught, where all the points are on or beside joints that it knows
+    and no database is given, else ours."""
     from gambol.controllers.reconstruction import SKELETON, parse
     from gambol.controllers.reconstruction.trackers import SLOTS
 
-    return SHIPPED if file is None and set(parse(points, SKELETON).joints) <= set(SLOTS) else "ours"
+    return SHIPPED if (file is None or taught(file)) and set(parse(points, SKELETON).joints) <= set(SLOTS) else "ours"
 
 
 def _silent(what: str, done: int, total: int) -> None:

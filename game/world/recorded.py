@@ -51,13 +51,13 @@ class Recorded(Controller):
     @staticmethod
     def load(path: str | Path, walker: Any) -> Recorded:
         """A .bvh or .amc file on the standard human, feet on the floor. MotionFileError, naming it, if it can't be used."""
-        from gambol.controllers.mocap import MotionFileError, load, retarget
+        from gambol.controllers.mocap import MotionFileError, hinged, load, retarget
 
         clip = load(path)
         if len(clip) < 4:
             raise MotionFileError(f"{path}: {len(clip)} frames are too few; a performance needs 4")
         try:
-            clip = retarget(clip)
+            clip = hinged(retarget(clip))
         except ValueError as error:
             raise MotionFileError(f"{path}: {error}") from None
         return Recorded(clip.resample(FPS), walker)

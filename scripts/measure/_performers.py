@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gambol.controllers.body import Skeleton, contact_height, contact_points, forward_kinematics
+from gambol.controllers.body import Skeleton, contact_height, contact_points, exp, forward_kinematics, yaw
 from gambol.controllers.mocap import MotionFileError, load, roles, zero_positions
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.database import Database, Take
@@ -50,6 +50,30 @@ def proportions(source: Skeleton) -> Skeleton:
     offsets[[mine[name] for name in ("Spine", "Spine1", "Spine2")]] *= trunk
     offsets[[mine[name] for name in ("Neck", "Head")]] *= neck
     return Skeleton(SKELETON.names, SKELETON.parents, offsets, SKELETON.end_parents, SKELETON.end_offsets)
+
+
+def posing(skeleton: Skeleton, asked: np.ndarray, arms: float, unrest: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Joints (K, J, 3) [m] and orientations (K, J, 3, 3) of somebody who stands in poses (K, J, 3, 3), soles flat, not quite as asked: arms that are raised
+    too low by `arms` [rad], always; joints off by `unrest` [rad] about each axis, trunk and legs by half of it; bent knees by 15° more or less."""
+    rotations = np.array(asked)
+    half = np.array([0.5 if any(part in name for part in ("Spine", "Leg", "Shoulder", "Hips")) else 1.0 for name in skeleton.names])
+    rotations = rotations @ exp(unrest * half[:, None] * rng.normal(size=(*rotations.shape[:2], 3)))
+    rotations[:, 0] = yaw(rng.normal(0.0, 0.1, len(rotations)))
+    for k, deeper in enumerate(np.radians(rng.normal(0.0, 15.0, len(rotations)))):
+        for side, way in (("Left", 1.0), ("Right", -1.0)):
+            arm, thigh, shin = (skeleton.index(side + name) for name in ("Arm", "UpLeg", "Leg"))
+            down = np.cross(asked[k, arm] @ [way, 0.0, 0.0], [0.0, -1.0, 0.0])
+            rotations[k, arm] = exp(arms * down) @ rotations[k, arm]  # not at all where it hangs
+            if np.trace(asked[k, shin]) < 2.5:
+                rotations[k, thigh], rotations[k, shin] = exp([-0.5 * deeper, 0.0, 0.0]) @ rotations[k, thigh], exp([deeper, 0.0, 0.0]) @ rotations[k, shin]
+    _, orientations = forward_kinematics(skeleton, np.zeros((len(asked), 3)), rotations)
+    for side in ("Left", "Right"):
+        shin, foot, toe = (skeleton.index(side + name) for name in ("Leg", "Foot", "Toe"))
+        rotations[:, foot] = np.swapaxes(orientations[:, shin], -1, -2) @ yaw(np.arctan2(orientations[:, foot, 0, 2], orientations[:, foot, 2, 2]))
+        rotations[:, toe] = np.eye(3)
+    positions, orientations = forward_kinematics(skeleton, np.zeros((len(asked), 3)), rotations)
+    up = contact_height(skeleton) - contact_points(skeleton, positions, orientations)[..., 1].min(-1)
+    return positions + np.stack([rng.normal(0.0, 0.05, len(up)), up, rng.normal(0.0, 0.05, len(up))], -1)[:, None], orientations
 
 
 def performing(database: Database, take: Take, body: Skeleton) -> Performance:

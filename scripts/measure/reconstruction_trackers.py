@@ -23,7 +23,7 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 import numpy as np
 
 from gambol.controllers.body import Skeleton, contact_height, contact_points, detect_contacts, forward_kinematics, point_speeds
-from gambol.controllers.mocap import MotionFileError, calibrate, load, retarget
+from gambol.controllers.mocap import MotionFileError, calibrate, hinged, load, retarget
 from gambol.controllers.reconstruction import SKELETON, encode, parse
 from gambol.controllers.reconstruction.database import Database, DatabaseError, Take
 from gambol.controllers.reconstruction.evaluation import foreign, metrics, small_of, strangers, trials
@@ -37,6 +37,13 @@ HEAD = ("", "takes", "cm", "joint deg", "worst cm", "beyond 20 cm, %", "first fr
 TITLE = """# The network for trackers, measured
 
     python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --out docs/reconstruction/trackers.md
+
+"""
+TUNED = """# The network for trackers, on what its settings were chosen on
+
+    python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --tuned --only 1 --out docs/reconstruction/validation.md
+
+No figure to be told: the same for the takes that are tested is in [its own page](trackers.md).
 
 """
 FPS, MOST, HALF, FAR = 60.0, 600, 30, 20.0
@@ -70,7 +77,7 @@ def raw(folder: Path, take: Take) -> Performance:
     paths = [path, *[other for other in sorted(path.parent.glob(f"*{path.suffix}")) if other != path][:_BESIDE]]
     clips = [clip.resample(FPS) if clip.frame_time < 0.99 / FPS else clip for clip in map(load, paths)]
     known = calibrate(clips)
-    ours = retarget(clips[0], calibration=known)
+    ours = hinged(retarget(clips[0], calibration=known))
     theirs, _ = clips[0].kinematics()
     rotations = ours.rotations
     _, turned = ours.kinematics()
@@ -182,7 +189,7 @@ def main() -> None:
         parts.append(f"## {name[0].upper()}{name[1:]}\n\n{table(HEAD, rows)}")
         print(f"\n{parts[-1]}", flush=True)
     if options.out:
-        options.out.write_text(TITLE + "\n\n".join(parts) + "\n", encoding="utf-8")
+        options.out.write_text((TUNED if options.tuned else TITLE) + "\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...body import Pose, Skeleton
+from ...body import Pose, Skeleton, relative_kernel
 from ...compiled import kernel
 from ..obstacles import is_box, is_pillar, slope
 from ..routes import distance
@@ -118,13 +118,7 @@ def draw_kernel(root, local, parents, offsets, chains, ground, things, thick):
             for k in range(3):
                 _turn_point(axis / length, angle, places[shoulder], points[k])
             moved = True
-        p = parents[shoulder]
-        for i in range(3):
-            for k in range(3):
-                value = 0.0
-                for m in range(3):
-                    value += turned[p, m, i] * turned[shoulder, m, k]
-                local[shoulder, i, k] = value
+        relative_kernel(turned[parents[shoulder]], turned[shoulder], local[shoulder])
     return moved
 
 

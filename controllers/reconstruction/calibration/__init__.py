@@ -3,12 +3,13 @@
 from .calibration_file import load, save
 from .calibration_network import SHIPPED, CalibrationNetwork, learnt
 from .moved import BEFORE
+from .set_poses import POSES, apart, fitted
 from .simulated import FRAMES, STRIDE
 from .stood import JOINTS, WORN, Stood
-from .wearing_trackers import Wearer, calibratable
+from .wearing_trackers import Wearer, calibratable, stance
 from .worn import Calibration, calibrated
 
 __all__ = [
-    "BEFORE", "FRAMES", "JOINTS", "SHIPPED", "STRIDE", "WORN", "Calibration", "CalibrationNetwork", "Stood", "Wearer", "calibratable", "calibrated",
-    "learnt", "load", "save",
+    "BEFORE", "FRAMES", "JOINTS", "POSES", "SHIPPED", "STRIDE", "WORN", "Calibration", "CalibrationNetwork", "Stood", "Wearer", "apart", "calibratable", "calibrated",
+    "fitted", "learnt", "load", "save", "stance",
 ]

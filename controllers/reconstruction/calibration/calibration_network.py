@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
 from .... import assets
-from ...files import reason
+from ...files import ArraysError, arrays
 from ..baselines import Adam, backward, forward, starting
 from ..trackers import Moments
 from .simulated import INPUTS, TARGETS, drawn
@@ -50,33 +49,25 @@ class CalibrationNetwork:
 
     def save(self, path: str | Path) -> None:
         """Write it as an .npz file of half-precision weights."""
-        arrays = {f"weights{i}": w.astype(np.float16) for i, w in enumerate(self.weights)}
-        arrays |= {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
+        layers = {f"weights{i}": w.astype(np.float16) for i, w in enumerate(self.weights)}
+        layers |= {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
         with Path(path).open("wb") as file:
-            np.savez_compressed(file, version=VERSION, worn=np.array(WORN), ins=self.ins.astype(np.float32), people=self.people, **arrays)  # type: ignore[arg-type]
+            np.savez_compressed(file, version=VERSION, worn=np.array(WORN), ins=self.ins.astype(np.float32), people=self.people, **layers)  # type: ignore[arg-type]
 
     @staticmethod
     def load(path: str | Path = SHIPPED) -> CalibrationNetwork:
-        """Read what `save` wrote. ValueError, naming the file and what is wrong with it, for anything else."""
-        try:
-            with np.load(path, allow_pickle=False) as file:
-                arrays = {name: file[name] for name in file.files}
-        except OSError as error:
-            raise ValueError(f"{path}: can't be read: {reason(error)}") from None
-        except (ValueError, AttributeError, EOFError, BadZipFile):
-            raise ValueError(f"{path}: is no network of a calibration, or damaged") from None
-        if int(arrays.get("version", 0)) != VERSION or tuple(arrays.get("worn", np.empty(0)).tolist()) != WORN:
-            raise ValueError(f"{path}: is of another version of Gambol; scripts/build/calibration.py makes one")
+        """Read what `save` wrote. ArraysError, naming the file and what is wrong with it, for anything else."""
+        found = arrays(path, "network of a calibration", {"version": VERSION, "worn": [*WORN]}, "scripts/build/calibration.py")
         wanted = {"ins": (2, INPUTS), "people": ()}
         for i, shape in enumerate(zip(WIDTHS, WIDTHS[1:], strict=False)):
             wanted |= {f"weights{i}": shape, f"biases{i}": shape[1:]}
         for name, shape in wanted.items():
-            if name not in arrays or arrays[name].shape != shape:
-                raise ValueError(f"{path}: {name} of shape {arrays[name].shape if name in arrays else None}, expected {shape}")
-            if not np.isfinite(arrays[name]).all():
-                raise ValueError(f"{path}: {name} has numbers that are not finite")
-        weights, biases = (tuple(arrays[f"{kind}{i}"].astype(np.float32) for i in range(len(WIDTHS) - 1)) for kind in ("weights", "biases"))
-        return CalibrationNetwork(weights, biases, arrays["ins"].astype(float), int(arrays["people"]))
+            if name not in found or found[name].shape != shape:
+                raise ArraysError(f"{path}: {name} of shape {found[name].shape if name in found else None}, expected {shape}")
+            if not np.isfinite(found[name]).all():
+                raise ArraysError(f"{path}: {name} has numbers that are not finite")
+        weights, biases = (tuple(found[f"{kind}{i}"].astype(np.float32) for i in range(len(WIDTHS) - 1)) for kind in ("weights", "biases"))
+        return CalibrationNetwork(weights, biases, found["ins"].astype(float), int(found["people"]))
 
 
 def scaled(inputs: np.ndarray, ins: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...body import contact_height, exp, log, yaw
 from ..pose_vector import REFERENCE, SKELETON, WIDTH
-from ..trackers import FIRST, LEGS, Moments, bodies, legs, moments_kernel
+from ..trackers import FIRST, LEGS, PARTS, Moments, bodies, legs, moments_kernel
 from .moved import BEFORE, MOVING, told as told_by_moving
 from .stood import JOINTS, STANDING_INPUTS, WORN, Stood
 
@@ -47,6 +47,11 @@ INPUTS = STANDING_INPUTS + MOVING + 1
 """… and of what is heard for it."""
 SCALES = np.concatenate([np.full(_BONES, 0.01), np.full(3 * len(WORN), 0.03), np.full(3 * len(WORN), 0.1), [0.01]])
 """What each is told over [m, rad]."""
+
+
+def likely() -> tuple[np.ndarray, np.ndarray]:
+    """The offsets (J, 3) [m] of a likely body, and how far each number of them lies off in others, a standard deviation."""
+    return SKELETON.offsets * (1.0 + _LIKE * (_LONGER[:, None] - 1.0)), np.maximum(1.2 * PARTS[:, None] * np.abs(SKELETON.offsets), 0.012)
 
 
 def numbers(offsets: np.ndarray, away: np.ndarray, turns: np.ndarray, floor: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from ..control_points import ControlPoints
 from ..live import Placement
 from .calibration_network import CalibrationNetwork
 from .moved import BEFORE
+from .set_poses import fitted
 from .simulated import FRAMES, STRIDE
 from .stood import JOINTS, WORN, Stood
 from .worn import Calibration, calibrated
@@ -29,6 +30,12 @@ def calibratable(controls: ControlPoints, turns: np.ndarray) -> bool:
             and len(set(controls.joints)) == len(controls))
 
 
+def stance(controls: ControlPoints, places: np.ndarray, turns: np.ndarray) -> int:
+    """Which of `stood.STANCES`, and of the first of `POSES`, somebody stands in with trackers at places (n, 3) [m] with turns (n, 3, 3) of the room."""
+    wide = _wide(slots(controls), 0.0, places, turns)
+    return int(Stood.of(wide[0][None], wide[1][None], np.isin(JOINTS, controls.joints)[None]).which[0])
+
+
 class Wearer:
     """Whoever wears trackers on `controls`. known: how they are worn. ground: (3,) how the world lies to the room: x, z, lengths as of a standard body, and
     heading [rad]. level: [m] the room's floor. network: to hear them move with; none, where that is over."""
@@ -43,12 +50,21 @@ class Wearer:
     @staticmethod
     def standing(controls: ControlPoints, placement: Placement, places: np.ndarray, turns: np.ndarray, network: CalibrationNetwork) -> Wearer:
         """Who stood with trackers at places (n, 3) [m] and turns (n, 3, 3) of the room, which `placement` carries to the origin; see `calibratable`."""
-        floor = -placement.shift[1] / placement.scale
-        level = floor if abs(floor) > LEVELLED else 0.0
+        level = _level(placement)
         there = np.isin(JOINTS, controls.joints)
         wide = _wide(slots(controls), level, places, turns)
         known = calibrated(network, Stood.of(wide[0][None], wide[1][None], there[None]))
         return Wearer(controls, known, np.array([placement.shift[0], placement.shift[2], placement.heading]), level, network)
+
+    @staticmethod
+    def posed(controls: ControlPoints, placement: Placement, places: np.ndarray, turns: np.ndarray, poses: Sequence[int]) -> Wearer:
+        """Who stood in set poses, numbers of `POSES`, with trackers at places (K, n, 3) [m] and turns (K, n, 3, 3) of the room; the first is the one that
+        `placement` carries to the origin."""
+        level, there = _level(placement), np.isin(JOINTS, controls.joints)
+        wide = [_wide(slots(controls), level, *one) for one in zip(places, turns, strict=True)]
+        points, turned = np.array([one[0] for one in wide]), np.array([one[1] for one in wide])
+        stood = Stood.of(points[:1], turned[:1], there[None])
+        return Wearer(controls, fitted(stood, points, turned, poses), np.array([placement.shift[0], placement.shift[2], placement.heading]), level)
 
     @property
     def skeleton(self) -> Skeleton:
@@ -99,6 +115,12 @@ class Wearer:
         self._before, self._eased = self.known, 0
         self.known = calibrated(self._network, self.known.stood, places[pairs], turns[pairs])
         self._network, self._heard = None, []
+
+
+def _level(placement: Placement) -> float:
+    """The room's floor [m], where it is not levelled."""
+    floor = -placement.shift[1] / placement.scale
+    return floor if abs(floor) > LEVELLED else 0.0
 
 
 def slots(controls: ControlPoints) -> np.ndarray:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...body import Clip
-from ...mocap import MotionFileError, calibrate, load, retarget
+from ...mocap import MotionFileError, calibrate, elbows, hinged, load, retarget
 from ..pose_vector import ANGLES, FORWARD, HEIGHT, JOINTS, LEFTWARD, PITCH, ROLL, encode
 from .database import FPS, Database, DatabaseError, Writer
 
@@ -107,8 +107,9 @@ def _on_our_skeleton(clips, known, folder, problems) -> Iterator[tuple[Path, Cli
         except ValueError as error:
             problems.append(f"{group[0][0].parent}: {len(group)} files left out: {error}")
             continue
-        for path, clip in group:
-            yield path, retarget(clip, calibration=calibration)
+        ours = [retarget(clip, calibration=calibration) for _, clip in group]
+        rolls = elbows(ours)
+        yield from ((path, hinged(clip, rolls)) for (path, _), clip in zip(group, ours, strict=True))
 
 
 def sound(clip: Clip, frames: np.ndarray) -> np.ndarray:

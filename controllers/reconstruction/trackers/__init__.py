@@ -2,14 +2,15 @@
 contacts, and the most probable pose on the performer's own skeleton.
 """
 
-from .bodies import bodies, legs
+from .bodies import PARTS, bodies, legs
 from .learning import HIDDEN, SIZE, Learner
 from .network import SHIPPED, Network
 from .samples import FIRST, LEGS, Moments, moments_kernel, standing, tracks_of
 from .slots import INPUTS, LAGS, PLACES, SLOTS
 from .tracker_poses import Trackers
+from .tuning import BATCHES, SHARE, Tuner
 
 __all__ = [
-    "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "bodies", "legs",
-    "moments_kernel", "standing", "tracks_of",
+    "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PARTS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
+    "legs", "moments_kernel", "standing", "tracks_of",
 ]

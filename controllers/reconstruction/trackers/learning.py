@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ...compiled import kernel
+from ...files import ArraysError, arrays
 from ..baselines import backward, forward, starting
 from ..ours import ANGLE, DISTANCE, misfit_kernel
 from ..pose_vector import ANGLES, JOINTS, REFERENCE, SKELETON, WIDTH
@@ -85,6 +86,9 @@ class Learner:
     seed: of all that is drawn. hidden: the widths of the layers between.
     """
 
+    rate, of = RATE, ""
+    """Of learning; and what a checkpoint must be of, beside seed, size and widths."""
+
     def __init__(self, moments: Moments, batches: int, seed: int = 0, hidden: tuple[int, ...] = HIDDEN, size: int = SIZE):
         self.moments, self.batches, self.seed, self.size, self.batch = moments, batches, seed, size, 0
         self.count = len(hidden) + 1
@@ -102,13 +106,17 @@ class Learner:
         out[:, :WIDTH] = out[:, :WIDTH] * self.outs[1] + self.outs[0]
         total, slopes = loss(out, batch)
         slopes[:, :WIDTH] *= self.outs[1]
-        rate = RATE * min(1.0, (self.batch + 1) / min(WARMING, 0.1 * self.batches)) * 0.5 * (1.0 + math.cos(math.pi * min(self.batch / self.batches, 1.0)))
+        rate = self.rate * self.share()
         self.batch += 1
         share, scale = np.float32(rate / (1.0 - 0.9 ** self.batch)), np.float32(1.0 / (1.0 - 0.999 ** self.batch))
         slopes = backward(self.values[:self.count], found, slopes.astype(np.float32))
         for value, slope, first, second, mean in zip(self.values, slopes, self.first, self.second, self.means, strict=True):
             adam_kernel(value.reshape(-1), np.ascontiguousarray(slope).reshape(-1), first.reshape(-1), second.reshape(-1), share, scale, mean.reshape(-1))
         return total
+
+    def share(self) -> float:
+        """What the rate is now, as a share of what it is at most."""
+        return min(1.0, (self.batch + 1) / min(WARMING, 0.1 * self.batches)) * 0.5 * (1.0 + math.cos(math.pi * min(self.batch / self.batches, 1.0)))
 
     def learn(self, path: Path, every: int, progress: Callable[[int, int, float], None] | None = None) -> None:
         """Go on to the last batch, with a checkpoint at path after `every` batches and at the end.
@@ -129,36 +137,46 @@ class Learner:
         arrays = {f"{kind}{i}": value for kind in ("values", "first", "second", "means") for i, value in enumerate(getattr(self, kind))}
         own = path.with_name(f"{path.name}.{os.getpid()}.part")
         with own.open("wb") as file:
-            np.savez(file, batch=self.batch, seed=self.seed, size=self.size, outs=self.outs, **arrays)
+            np.savez(file, batch=self.batch, seed=self.seed, of=self.of, size=self.size, outs=self.outs, **arrays)
         os.replace(own, path)
 
     def resume(self, path: Path) -> None:
-        """Go on from a checkpoint. ValueError if it is of another seed, batch or network."""
-        with np.load(path) as file:
-            there = [file[f"values{i}"].shape for i in range(sum(name.startswith("values") for name in file))]
-            if (int(file["seed"]), int(file["size"])) != (self.seed, self.size) or there != [value.shape for value in self.values]:
-                raise ValueError(f"{path}: is of another seed, batch size or width; give another folder to begin anew")
-            for kind in ("values", "first", "second", "means"):
-                setattr(self, kind, [file[f"{kind}{i}"] for i in range(len(there))])
-            self.batch, self.outs = int(file["batch"]), file["outs"]
+        """Go on from a checkpoint. ArraysError if it is of another seed, batch or network, or none."""
+        file = {"of": np.array("")} | arrays(path, "checkpoint", {}, "")
+        there = [file[f"values{i}"].shape for i in range(sum(name.startswith("values") for name in file))]
+        if not {"seed", "size", "batch", "outs"} <= set(file) or (int(file["seed"]), int(file["size"]), str(file["of"])) != (self.seed, self.size, self.of) or there != [value.shape for value in self.values]:
+            raise ArraysError(f"{path}: is of another seed, batch size or width, or of other motion; move it away to begin anew")
+        for kind in ("values", "first", "second", "means"):
+            setattr(self, kind, [file[f"{kind}{i}"] for i in range(len(there))])
+        self.batch, self.outs = int(file["batch"]), file["outs"]
 
     def network(self) -> Network:
         """The network as it is now: the weights' mean without its first steps, and how far off it is with some trackers."""
-        bare = Network(tuple(self.means[:self.count]), tuple(self.means[self.count:]), self.outs, np.empty(0), np.empty(0), np.empty(0),
-                       *self._range(), self.batch)
+        used = self.used()
+        bare = Network(tuple(used[:self.count]), tuple(used[self.count:]), self.outs, np.empty(0), np.empty(0), np.empty(0),
+                       *self.range(), self.batch)
         kinds, factors, rests = [], [], []
         for text in KINDS:
             placed = members(text)
             for turned in (np.zeros_like(placed), placed):
                 batch = self.moments.draw(_JUDGED, self.seed, _STANDARD + 1, exactly(_JUDGED, placed, turned))
                 errors = bare.predict(batch.inputs)[0] - batch.truth
-                factor, rest = reduced(errors.T @ errors / len(errors))
+                factor, rest = reduced(self.believed(errors.T @ errors / len(errors), placed, turned))
                 kinds.append(np.concatenate([placed, turned]))
                 factors.append(factor)
                 rests.append(rest)
         return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.batch)
 
-    def _range(self):
+    def used(self) -> list[np.ndarray]:
+        """Weights, then biases, as a network has them."""
+        return self.means
+
+    def believed(self, covariance: np.ndarray, placed: np.ndarray, turned: np.ndarray) -> np.ndarray:
+        """What is believed of errors (WIDTH, WIDTH) with trackers placed and turned (S,) bool that had this covariance on what was learnt from."""
+        return covariance
+
+    def range(self) -> tuple[np.ndarray, np.ndarray]:
+        """The range of joints' rotation vectors (ANGLES,) each [rad] in what is learnt from."""
         frames = self.moments.database.frames[np.sort(self.moments.which[::max(1, len(self.moments) // 200_000)])]
         low, high = np.quantile(frames[:, :ANGLES].astype(float), (_RARE, 1.0 - _RARE), axis=0)
         return low - _WIDER, high + _WIDER

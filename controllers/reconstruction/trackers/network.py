@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
 from .... import assets
-from ...files import reason
+from ...files import ArraysError, arrays
 from ..ours import layer_kernel
 from ..pose_vector import ANGLES, WIDTH
 from .slots import INPUTS, PLACES
@@ -62,50 +61,42 @@ class Network:
 
     def save(self, path: str | Path) -> None:
         """Write it as an .npz file of half-precision numbers."""
-        arrays: dict[str, Any] = {f"weights{i}": w.astype(np.float16) for i, w in enumerate(self.weights)}
-        arrays |= {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
+        layers: dict[str, Any] = {f"weights{i}": w.astype(np.float16) for i, w in enumerate(self.weights)}
+        layers |= {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
         with Path(path).open("wb") as file:
             np.savez_compressed(file, version=VERSION, places=np.array(PLACES), outs=self.outs.astype(np.float32), kinds=self.kinds,
                                 factors=self.factors.astype(np.float32), rests=self.rests.astype(np.float32),
-                                lower=self.lower.astype(np.float32), upper=self.upper.astype(np.float32), learnt=self.learnt, **arrays)
+                                lower=self.lower.astype(np.float32), upper=self.upper.astype(np.float32), learnt=self.learnt, **layers)
 
     @staticmethod
     def load(path: str | Path = SHIPPED) -> Network:
-        """Read what `save` wrote. ValueError, naming the file and what is wrong with it, for anything else."""
+        """Read what `save` wrote. ArraysError, naming the file and what is wrong with it, for anything else."""
+        found = arrays(path, "network of trackers", {"version": VERSION, "places": [*PLACES]}, "`gambol database tune`")
+        count = sum(name.startswith("weights") for name in found)
         try:
-            with np.load(path, allow_pickle=False) as file:
-                arrays = {name: file[name] for name in file.files}
-        except OSError as error:
-            raise ValueError(f"{path}: can't be read: {reason(error)}") from None
-        except (ValueError, AttributeError, EOFError, BadZipFile):
-            raise ValueError(f"{path}: is no network of trackers, or damaged") from None
-        if int(arrays.get("version", 0)) != VERSION or tuple(arrays.get("places", np.empty(0)).tolist()) != PLACES:
-            raise ValueError(f"{path}: is of another version of Gambol; scripts/build/trackers.py makes one")
-        count = sum(name.startswith("weights") for name in arrays)
-        try:
-            weights, biases = (tuple(arrays[f"{kind}{i}"].astype(np.float32) for i in range(count)) for kind in ("weights", "biases"))
-            outs, factors, rests, lower, upper = (arrays[name].astype(float) for name in ("outs", "factors", "rests", "lower", "upper"))
-            made = Network(weights, biases, outs, arrays["kinds"], factors, rests, lower, upper, int(arrays["learnt"]))
+            weights, biases = (tuple(found[f"{kind}{i}"].astype(np.float32) for i in range(count)) for kind in ("weights", "biases"))
+            outs, factors, rests, lower, upper = (found[name].astype(float) for name in ("outs", "factors", "rests", "lower", "upper"))
+            made = Network(weights, biases, outs, found["kinds"], factors, rests, lower, upper, int(found["learnt"]))
         except KeyError as error:
-            raise ValueError(f"{path}: lacks {error}") from None
+            raise ArraysError(f"{path}: lacks {error}") from None
         made.check(path)
         return made
 
     def check(self, path: str | Path) -> None:
-        """ValueError, naming the file and the array, for one of the wrong shape or with numbers that are none."""
+        """ArraysError, naming the file and the array, for one of the wrong shape or with numbers that are none."""
         width = INPUTS
         for number, (weights, biases) in enumerate(zip(self.weights, self.biases, strict=True)):
             if weights.ndim != 2 or weights.shape[0] != width or biases.shape != weights.shape[1:]:
-                raise ValueError(f"{path}: weights{number} of shape {weights.shape}, expected ({width}, …) and as many biases")
+                raise ArraysError(f"{path}: weights{number} of shape {weights.shape}, expected ({width}, …) and as many biases")
             width = weights.shape[1]
         if width != OUTPUTS:
-            raise ValueError(f"{path}: has {width} outputs, expected {OUTPUTS}")
+            raise ArraysError(f"{path}: has {width} outputs, expected {OUTPUTS}")
         kinds = len(self.kinds)
         for name, value, shape in (("outs", self.outs, (2, WIDTH)), ("kinds", self.kinds, (kinds, 2 * len(PLACES))),
                                    ("rests", self.rests, (kinds, WIDTH)), ("lower", self.lower, (ANGLES,)),
                                    ("upper", self.upper, (ANGLES,)), ("factors", self.factors, (kinds, *self.factors.shape[1:2], WIDTH))):
             if value.shape != shape or not kinds:
-                raise ValueError(f"{path}: {name} of shape {value.shape}, expected {shape}")
+                raise ArraysError(f"{path}: {name} of shape {value.shape}, expected {shape}")
         for value in (*self.weights, *self.biases, self.outs, self.factors, self.rests, self.lower, self.upper):
             if not np.isfinite(value).all():
-                raise ValueError(f"{path}: has numbers that are not finite")
+                raise ArraysError(f"{path}: has numbers that are not finite")

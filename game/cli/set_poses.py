@@ -1,0 +1,67 @@
+"""Who wears trackers is asked to stand in one pose after the other, so that it is known how they are worn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from .base import say
+
+MOST = 20.0
+"""So long [s] a pose is waited for."""
+MOVED = 0.15
+"""It is another pose than the one before where a tracker has moved so far [m]; poses that move none farther than twice that are not asked for."""
+LEAST = 3
+"""Fewer poses tell too little."""
+_TELL = 5.0
+
+
+def worn(source: Any, placement: Any, place: np.ndarray, turn: np.ndarray, times: Iterator[float]) -> Any:
+    """A `Wearer` who stood with trackers at a place (n, 3) [m] with turns (n, 3, 3) of the room, and then as asked; None if too few poses were seen.
+
+    source: whose points are the room's. times: [s] to ask it at, as they come.
+    """
+    from gambol.controllers.reconstruction.calibration import POSES, Wearer, apart, stance
+
+    first = stance(source.controls, place, turn)
+    found = [(place, turn, first)]
+    asked = [first]
+    for number in range(len(POSES)):
+        if number != first and apart(source.controls.joints, asked[-1], number) > 2.0 * MOVED:
+            asked.append(number)
+    for count, number in enumerate(asked[1:], 2):
+        words = list(POSES)[number]
+        say(f"{count} of {len(asked)}: {words}; hold still for a second ({MOST:.0f} s)")
+        seen = _held(source, times, found[-1][0], words)
+        if seen is not None:
+            found.append((*seen, number))
+    if len(found) < LEAST:
+        say("too few poses were seen: move about instead")
+        return None
+    places, turns, numbers = (list(some) for some in zip(*found, strict=True))
+    wearer = Wearer.posed(source.controls, placement, np.array(places), np.array(turns), numbers)
+    left_out = len(found) - wearer.known.heard
+    say(f"{wearer.known.heard} poses were seen" + (f", {left_out} more were not as asked and don't count" if left_out else ""))
+    return wearer
+
+
+def _held(source: Any, times: Iterator[float], before: np.ndarray, words: str) -> tuple[np.ndarray, np.ndarray] | None:
+    """Places (n, 3) [m] and turns (n, 3, 3) of somebody who stands still, otherwise than `before`; None if nobody does in time."""
+    from gambol.controllers.reconstruction.live import Standing
+
+    standing, began, told = Standing(), None, 0.0
+    for now in times:
+        began = now if began is None else began
+        standing = standing.watch(now, source.at(now), source.turns)
+        if (place := standing.place) is not None and (turn := standing.turn) is not None and np.isfinite(turn).all() and (
+                np.linalg.norm(place - before, axis=-1).max() > MOVED):
+            return place, turn
+        if now - began > MOST:
+            say(f"left out: {words}")
+            return None
+        if now - began > told + _TELL:
+            told += _TELL
+            say(f"{words}: {MOST - told:.0f} s left")
+    return None
