@@ -53,7 +53,8 @@ class _Draft(Airborne):
         assert way.push is not None  # a fall has none, and is no `_Draft`
         self.planted, self.off, self.push = planted, way.wind_up, way.push
         leave = self.off + self.push.duration
-        self.events = np.array([0.0, self.off, leave, leave + way.airtime])
+        self.sinks = max(self.off - way.dip, 0.0)  # nobody bows who has not begun to go down
+        self.events = np.array([self.sinks, self.off, leave, leave + way.airtime])
         self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
         super().__init__(physique, start, way, landing, leave, self.due, way.keys[:3 * BETWEEN + 1, :LEGS])
 
@@ -93,7 +94,7 @@ class _Draft(Airborne):
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
         self.forces = np.concatenate([a - self.gravity, self.push.force(pushing)])
         self._along_the_floor()
-        self.angles = self.carriage(self.times)
+        self.angles = self.carriage(np.maximum(self.times, self.sinks))
         self._differ(self.angles[0])
         self.offsets = self._left_over(self.times)
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
