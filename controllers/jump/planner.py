@@ -105,7 +105,7 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
-        risen = HEEL_UP * late**2 * (1.5 - 0.5 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
+        risen = (HEEL_UP if start.single is None else RUNNERS_HEEL[1]) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))

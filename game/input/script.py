@@ -34,6 +34,7 @@ class Jump:
 
     within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
     take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming. heading: [rad] in which it lands; None: as it went off.
+    hop: instead of a place, so far ahead [m] of where its feet stand.
     """
 
     place: tuple[float, float, float] | None = None
@@ -42,6 +43,7 @@ class Jump:
     slow: float = 1.0
     aims: float = 0.0
     heading: float | None = None
+    hop: float | None = None
 
 
 @dataclass(frozen=True)
@@ -170,7 +172,9 @@ class Script:
         now = jumping(state)
         if self.jumped or now is not None and not now.landed:  # one that has landed gets up for the next
             return replace(self, jumped=True), Intent()
-        place = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place)
+        place, onward = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place), jump.place
+        if jump.hop is not None:
+            place = onward = hopped(state, now, jump.hop)
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         if move.runs:
@@ -184,7 +188,7 @@ class Script:
             ready = True
         if not ready:
             return self, intent
-        leap = Leap(None if jump.place is None else place, jump.airtime, heading=jump.heading)
+        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading)
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         return replace(self, asked=self.asked + 1), replace(intent, leap=leap)
@@ -194,6 +198,14 @@ def jumping(state: CharacterState) -> Any:
     """What somebody who jumps remembers of it; None for everybody else, and for who crouches first."""
     memory = state.memory.memory if state.active == "jump" else None
     return memory if isinstance(memory, Jumping) else None
+
+
+def hopped(state: CharacterState, now: Jumping | None, ahead: float) -> np.ndarray:
+    """The place (3,) [m] so far `ahead` [m] of the feet of somebody who stands, or who has just landed from a jump."""
+    x, z, heading = state.ground
+    if now is not None:
+        (x, _, z), heading = now.plan.feet[:, :3].mean(0), now.plan.path.heading + now.plan.path.turn
+    return np.array([x + ahead * math.sin(heading), float(state.floor), z + ahead * math.cos(heading)])
 
 
 def _way(move: Move, state: CharacterState) -> Status | None:
