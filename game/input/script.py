@@ -78,6 +78,7 @@ class Script:
 
     steps: made of the current move. path, progress: along it. asked: for how many steps its jump was
     asked for; aimed: for how many it was aimed at; jumped: whether it began. refused: why jumps were not made and places not reached, so far.
+    hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
     """
 
     moves: tuple[Move, ...]
@@ -89,6 +90,8 @@ class Script:
     aimed: int = 0
     jumped: bool = False
     refused: tuple[str, ...] = ()
+    hops: tuple[float, float, float] | None = None
+    hopped: tuple[float, float, float] | None = None
 
     @property
     def done(self) -> bool:
@@ -131,7 +134,7 @@ class Script:
         goal, way = self.moves[self.index].goal, _way(self.moves[self.index], state)
         if goal is not None and way is not None and way.reason:
             refused = (*refused, "no way to ({:g}, {:g}): {}".format(*goal.place, way.reason))
-        return Script(self.moves, self.index + 1, refused=refused)
+        return Script(self.moves, self.index + 1, refused=refused, hopped=self.hops if self.jumped else None)
 
     def _over(self, state: CharacterState, dt: float) -> bool:
         move = self.moves[self.index]
@@ -174,7 +177,8 @@ class Script:
             return replace(self, jumped=True), Intent()
         place, onward = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place), jump.place
         if jump.hop is not None:
-            place = onward = hopped(state, now, jump.hop)
+            before = self.hopped or (state.ground[0], state.ground[1], float(state.ground[2]))
+            place = onward = np.array([before[0] + jump.hop * math.sin(before[2]), float(state.floor), before[1] + jump.hop * math.cos(before[2])])
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         if move.runs:
@@ -191,21 +195,14 @@ class Script:
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading)
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
-        return replace(self, asked=self.asked + 1), replace(intent, leap=leap)
+        hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
+        return replace(self, asked=self.asked + 1, hops=hops), replace(intent, leap=leap)
 
 
 def jumping(state: CharacterState) -> Any:
     """What somebody who jumps remembers of it; None for everybody else, and for who crouches first."""
     memory = state.memory.memory if state.active == "jump" else None
     return memory if isinstance(memory, Jumping) else None
-
-
-def hopped(state: CharacterState, now: Jumping | None, ahead: float) -> np.ndarray:
-    """The place (3,) [m] so far `ahead` [m] of the feet of somebody who stands, or who has just landed from a jump."""
-    x, z, heading = state.ground
-    if now is not None:
-        (x, _, z), heading = now.plan.feet[:, :3].mean(0), now.plan.path.heading + now.plan.path.turn
-    return np.array([x + ahead * math.sin(heading), float(state.floor), z + ahead * math.cos(heading)])
 
 
 def _way(move: Move, state: CharacterState) -> Status | None:

@@ -28,8 +28,11 @@ SOONEST = 10
 """The force over the way down (s = t / T) is A (1 − (1 − s)^SOONEST − c s²): it begins at nothing and is nearly level after a tenth of T."""
 EASES, HARD = 0.3, 0.7
 """c at most; it is as much where a level force would be heavier than the body by the second, times its weight, and less in softer landings."""
-SLOWEST = 4.0
-"""Rate of the spring with which a body that hardly fell stands up [1/s]."""
+RISES, EASIEST = 5.6, 0.85
+"""But c is so much that at the lowest point no more than some seven times its weight is left, lest the body be thrown up; and at most."""
+SLOWEST, LIGHT = 4.0, 6.5
+"""Rate of the spring with which a body that hardly fell stands up [1/s]; the square of that rate at most, times how deep it is over gravity: the
+floor can't pull."""
 ADULT = 0.975
 """How high the centre of mass of a standard body stands [m]."""
 DEEPEST = 0.45
@@ -69,7 +72,8 @@ class Landing:
     def down(self) -> tuple[float, float, float]:
         """How long [s] the body sinks, the force over mass [m/s²] that the way down is scaled by, A, and how it eases, c."""
         fall, g, n = max(-float(self.velocity[1]), 0.0), self.gravity, SOONEST + 1.0
-        eases = EASES * min(fall**2 / (2.0 * g * self.deep * HARD), 1.0)
+        hard = fall**2 / (2.0 * g * self.deep)
+        eases = max(EASES * min(hard / HARD, 1.0), min(1.0 - RISES / (1.0 + hard), EASIEST))
         # with A from the velocity, w + g T = A T m0, the way d = w T + ½ g T² − A T² n0 is quadratic in T; n0 < ½ m0
         whole, way = 1.0 - 1.0 / n - eases / 3.0, 0.5 - 1.0 / n + 1.0 / (n * (n + 1.0)) - eases / 12.0
         share = way / whole
@@ -89,7 +93,8 @@ class Landing:
         way = level * lasts**2 * (0.5 * s**2 - s / n + (1.0 - left ** (n + 1.0)) / (n * (n + 1.0)) - eases * s**4 / 12.0)
         fall, under = min(float(self.velocity[1]), 0.0), float(self.offset[1]) - self.deep
         ends = level * (1.0 - eases) - self.gravity
-        up = sprung(np.maximum(t - lasts, 0.0), max(np.sqrt(max(ends, 0.0) / max(-under, 1e-3)), SLOWEST), under, 0.0, ends)
+        stands = max(np.sqrt(max(ends, 0.0) / -under), min(SLOWEST, np.sqrt(LIGHT * self.gravity / -under)))
+        up = sprung(np.maximum(t - lasts, 0.0), stands, under, 0.0, ends)
         sinking = (self.offset[1] + fall * t - 0.5 * self.gravity * t**2 + way, fall - self.gravity * t + rate, force - self.gravity)
         for part, before, after in zip(found, sinking, up):
             part[:, 1] = np.where(t < lasts, before, after)
