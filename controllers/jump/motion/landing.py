@@ -16,8 +16,8 @@ TIME = 1.35
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
-STRIDE, STIFF = 0.25, 0.8
-"""Rate of that spring where one runs on on one foot [1/s], whose leg sinks by this share of how far two sink: 0.14 m,
+STRIDE, STIFF = 0.25, 0.66
+"""Rate of that spring where one runs on on one foot [1/s], whose leg sinks by this share of how far two sink: 0.14 m at 2 m/s,
 as recorded."""
 GRIP = 0.8
 """The friction of soles that a body which passes over its feet counts on."""
