@@ -53,7 +53,8 @@ class _Draft(Airborne):
         assert way.push is not None  # a fall has none, and is no `_Draft`
         self.planted, self.off, self.push = planted, way.wind_up, way.push
         leave = self.off + self.push.duration
-        self.events = np.array([0.0, self.off, leave, leave + way.airtime])
+        self.sinks = max(self.off - way.dip, 0.0)  # nobody bows who has not begun to go down
+        self.events = np.array([self.sinks, self.off, leave, leave + way.airtime])
         self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
         super().__init__(physique, start, way, landing, leave, self.due, way.keys[:3 * BETWEEN + 1, :LEGS])
 
@@ -93,7 +94,7 @@ class _Draft(Airborne):
         self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
         self.forces = np.concatenate([a - self.gravity, self.push.force(pushing)])
         self._along_the_floor()
-        self.angles = self.carriage(self.times)
+        self.angles = self.carriage(np.maximum(self.times, self.sinks))
         self._differ(self.angles[0])
         self.offsets = self._left_over(self.times)
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
@@ -104,7 +105,7 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
-        risen = HEEL_UP * late**2 * (1.5 - 0.5 * late) if start.single is None else RUNNERS_HEEL[1] * late**2
+        risen = (HEEL_UP if start.single is None else RUNNERS_HEEL[1]) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))

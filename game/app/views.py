@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import zip_longest
 from typing import Any
 
-from ..explain import Preview, broken, explained, led, pointed, preview, stepping
+from ..explain import Preview, broken, explained, ghosts, led, pointed, preview, stepping
 from ..scene import Camera, Overlays, Scene
 from ..session import Log, SessionState, replay, strayed
 from ..world import RATE, figures
@@ -33,6 +33,7 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     aimed = previews(moment) if aimed is None else aimed
     people = explained(figures(before, after, fraction), before, after, fraction, overlays, aimed)
     people = stepping(led(pointed(people, before, after, fraction, overlays), after, overlays, len(moment.players)), after, overlays)
+    people += ghosts(aimed, people, after) if overlays.jump else ()
     text = tuple(text) or ((),) * len(cameras)
     text = tuple((*lines, *broken(f"no jump: {seen.why}")) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))

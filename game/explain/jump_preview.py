@@ -8,15 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import FRESH, RUNNING, Jump, Physique
 from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
+from gambol.controllers.jump.reach import Touch
 from gambol.controllers.navigation import floor_at
 
 from ..input import Aim, jumping, landing, leaving
-from ..scene import Dot, Goal, Line, Patch, Prop, Sketch
-from ..world import Character, jump_of
+from ..scene import Dot, Figure, Goal, Line, Patch, Prop, Sketch
+from ..world import Character, World, jump_of
 
 CAN, CANNOT, SEEN = (0.02, 0.52, 0.16), (0.80, 0.05, 0.02), (0.02, 0.24, 0.80)
 """Colours of a jump that can be made, of one that can't, of one that is being made."""
@@ -25,6 +27,10 @@ LIFT = 0.012
 """How high over a floor things lie [m]."""
 RING = 0.26
 """Where somebody lands [m]: its radius."""
+TOUCHED = 0.07
+"""How large is marked what a jump would touch [m]."""
+GHOST, CLEAR = (0.80, 0.06, 0.03), 0.55
+"""Tint and opacity of a body as it would lie in what it would touch."""
 BEAT = 0.1
 """From one bead of an arc to the next [s]."""
 FADE = 0.5
@@ -36,6 +42,9 @@ SINKS = 0.7
 ALIKE = 0.03
 """A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places."""
 
+HITS = "would hit"
+"""What is said of jumps in which something is touched."""
+
 
 @dataclass(frozen=True, eq=False)
 class Preview:
@@ -44,6 +53,7 @@ class Preview:
     stand, place: (3,) [m] the middle of the feet, and where it is to land. arc, beads: (N, 3), (M, 3) [m] where the centre
     of mass goes, and where it is on every beat. fault: why it can't be made; empty if it can. nearest: (3,) [m] the place
     nearest to it that can be reached; None where there is none. heading: [rad] in which it is to land, None where nobody said so.
+    planned: whether it was planned and swept, not only looked at; touch: what it would touch then, and how the body would lie in it.
     """
 
     stand: np.ndarray
@@ -53,6 +63,8 @@ class Preview:
     fault: str
     nearest: np.ndarray | None = None
     heading: float | None = None
+    planned: bool = False
+    touch: Touch | None = None
 
     @property
     def why(self) -> str:
@@ -84,12 +96,25 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
         return None
     solid, state = [prop for prop in props if not isinstance(prop, Goal)], jump.landing(character.controller.active(character.state)[1])
     seen = previewed(jump, state, leap, solid)
-    if not seen.fault or aim.moving or leap.place is None:
+    if aim.moving or leap.place is None:
+        return seen
+    start, floor = _pushing(jump, jump.start_of(state, leap)), float(state.floor)
+    if solid and np.linalg.norm(start.velocity[[0, 2]]) < RUNNING:  # a runner's feet move on in every frame
+        seen = _swept(jump, start, leap, floor, solid, seen) if before is None or not before.planned or _moved(before, seen) else \
+            replace(seen, fault=seen.fault or before.fault, planned=True, touch=before.touch)
+    if not seen.fault:
         return seen
     if before is not None and _same_way(before, seen):
         return replace(seen, nearest=before.nearest)
-    start = _pushing(jump, jump.start_of(state, leap))
-    return replace(seen, nearest=jump.nearest(start, seen.place, float(state.floor), leap.airtime, solid))
+    return replace(seen, nearest=jump.nearest(start, seen.place, floor, leap.airtime, solid))
+
+
+def _swept(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[Prop], seen: Preview) -> Preview:
+    """The same preview once the leap has been planned and swept: with what it touches, if it can't be made for that."""
+    seen, found = replace(seen, planned=True), jump.touching(start, seen.place, floor, leap.airtime, solid)
+    if found is None or not seen.fault and jump.attempt(start, seen.place, floor, leap.airtime, solid)[0] is not None:
+        return seen
+    return replace(seen, fault=found.reason, touch=found) if not seen.fault or HITS in seen.fault else seen
 
 
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
@@ -114,6 +139,11 @@ def _pushing(jump: Jump, start: Start) -> Start:
     feet[foot, :3] += (STRIKES * jump.physique.height / Physique.height - ahead[foot]) * flat / pace
     rates[foot], velocity[1] = 0.0, min(velocity[1], -SINKS)
     return replace(start, single=foot, feet=feet, feet_rates=rates, velocity=velocity)
+
+
+def _moved(before: Preview, now: Preview) -> bool:
+    """Whether a jump is another one than a moment ago."""
+    return bool(np.linalg.norm(before.place - now.place) > ALIKE or np.linalg.norm(before.stand - now.stand) > ALIKE)
 
 
 def _same_way(before: Preview, now: Preview) -> bool:
@@ -144,7 +174,19 @@ def aimed(seen: Preview, props: Sequence[Prop]) -> list[Sketch]:
         drawn += arrow(seen.place, seen.heading, tint)
     if seen.nearest is not None:
         drawn += ring(seen.nearest, CAN)
+    if seen.touch is not None:
+        drawn.append(Dot("jump", seen.touch.place, CANNOT, TOUCHED))
     return [*_shadow(seen, props, tint), *(replace(sketch, through=True) for sketch in drawn)]
+
+
+def ghosts(previews: Sequence[Preview | None], figures: Sequence[Figure], world: World) -> tuple[Figure, ...]:
+    """The bodies of those who aim where they would touch something, as they would lie in it. figures: how those in a world are drawn."""
+    drawn = []
+    for seen, figure, one in zip(previews, figures, world.characters):
+        if seen is not None and seen.touch is not None:
+            placed = forward_kinematics(one.controller.skeleton, seen.touch.root, seen.touch.local)
+            drawn.append(Figure(*placed, GHOST, body=figure.body, opacity=CLEAR))
+    return tuple(drawn)
 
 
 def _shadow(seen: Preview, props: Sequence[Prop], tint) -> list[Sketch]:

@@ -34,6 +34,7 @@ class Jump:
 
     within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
     take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming. heading: [rad] in which it lands; None: as it went off.
+    hop: instead of a place, so far ahead [m] of where its feet stand.
     """
 
     place: tuple[float, float, float] | None = None
@@ -42,6 +43,7 @@ class Jump:
     slow: float = 1.0
     aims: float = 0.0
     heading: float | None = None
+    hop: float | None = None
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,7 @@ class Script:
 
     steps: made of the current move. path, progress: along it. asked: for how many steps its jump was
     asked for; aimed: for how many it was aimed at; jumped: whether it began. refused: why jumps were not made and places not reached, so far.
+    hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
     """
 
     moves: tuple[Move, ...]
@@ -87,6 +90,8 @@ class Script:
     aimed: int = 0
     jumped: bool = False
     refused: tuple[str, ...] = ()
+    hops: tuple[float, float, float] | None = None
+    hopped: tuple[float, float, float] | None = None
 
     @property
     def done(self) -> bool:
@@ -129,7 +134,7 @@ class Script:
         goal, way = self.moves[self.index].goal, _way(self.moves[self.index], state)
         if goal is not None and way is not None and way.reason:
             refused = (*refused, "no way to ({:g}, {:g}): {}".format(*goal.place, way.reason))
-        return Script(self.moves, self.index + 1, refused=refused)
+        return Script(self.moves, self.index + 1, refused=refused, hopped=self.hops if self.jumped else None)
 
     def _over(self, state: CharacterState, dt: float) -> bool:
         move = self.moves[self.index]
@@ -170,7 +175,10 @@ class Script:
         now = jumping(state)
         if self.jumped or now is not None and not now.landed:  # one that has landed gets up for the next
             return replace(self, jumped=True), Intent()
-        place = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place)
+        place, onward = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place), jump.place
+        if jump.hop is not None:
+            before = self.hopped or (state.ground[0], state.ground[1], float(state.ground[2]))
+            place = onward = np.array([before[0] + jump.hop * math.sin(before[2]), float(state.floor), before[1] + jump.hop * math.cos(before[2])])
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         if move.runs:
@@ -184,10 +192,11 @@ class Script:
             ready = True
         if not ready:
             return self, intent
-        leap = Leap(None if jump.place is None else place, jump.airtime, heading=jump.heading)
+        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading)
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
-        return replace(self, asked=self.asked + 1), replace(intent, leap=leap)
+        hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
+        return replace(self, asked=self.asked + 1, hops=hops), replace(intent, leap=leap)
 
 
 def jumping(state: CharacterState) -> Any:

@@ -95,4 +95,4 @@ class ActorTable(Table):
 
     def script(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Script:
         """What it does, among props."""
-        return Script(tuple(move.move(jumper, props) for move in self.moves))
+        return Script(tuple(step for move in self.moves for step in move.moves(jumper, props)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -17,12 +18,12 @@ from ..scene import Prop
 from .fields import Airtime, Degrees, Length, Pace, Place, Point, Seconds, Table, Velocity
 
 
-KINDS = ("velocity", "walk_to", "go_to", "path", "stop", "jump_to", "jump")
+KINDS = ("velocity", "walk_to", "go_to", "path", "stop", "jump_to", "jump", "hops")
 """What a move may be."""
 
 
 class MoveTable(Table):
-    """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to and jump. Angles in degrees.
+    """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump and hops. Angles in degrees.
 
     walk_to: x, z [m], straight there. go_to: x, z [m] as people go there, round what stands about, to stand there with a `heading`, by
     default as it comes; arrive: no later than this after the move began [s]. A jump may have a `heading` to land in, too: then nobody turns to
@@ -31,6 +32,8 @@ class MoveTable(Table):
     jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
     velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
     [m] it jumps. airtime: [s]; by default of the least effort. aim: so long [s] one crouches before a jump without a run-up.
+
+    hops: how many hops on both feet, each off the landing of the one before, and each so `far` ahead [m] (0: on the spot); airtime: of each.
     """
 
     seconds: Seconds | None = Field(None, alias="for")
@@ -46,6 +49,8 @@ class MoveTable(Table):
     jump: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)] | None = None
     airtime: Airtime | None = None
     within: Length | None = None
+    hops: Annotated[int, Field(ge=1, le=100)] | None = None
+    far: Annotated[float, Field(ge=0, le=5, allow_inf_nan=False)] | None = None
     aim: Seconds | None = None
     speed: Pace | None = None
     facing: Degrees | None = None
@@ -57,9 +62,10 @@ class MoveTable(Table):
         if len(kinds) != 1 and not (len(kinds) == 2 and "jump_to" in kinds and feet):
             raise ValueError(f"needs exactly one of {', '.join(KINDS)}, or jump_to with a run-up; "
                              f"has {' and '.join(kinds) or 'none'}")
-        walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump")
-        for name, fits, with_ in (("aim", jumps and not feet, "jump or jump_to without a run-up"),
-                                  ("airtime", self.jump_to is not None, "jump_to; a jump has its height"),
+        walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump", "hops")
+        for name, fits, with_ in (("aim", jumps and not feet, "jump, hops or jump_to without a run-up"),
+                                  ("airtime", self.jump_to is not None or self.hops is not None, "jump_to or hops; a jump has its height"),
+                                  ("far", self.hops is not None, "hops: how far ahead each goes"),
                                   ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
             if getattr(self, name) is not None and not fits:
                 raise ValueError(f"`{name}` goes with {with_}")
@@ -75,7 +81,7 @@ class MoveTable(Table):
             raise ValueError("`facing` goes with walk_to, path or stop; who jumps faces where it goes, or lands with a `heading`")
         if self.facing is not None and self.go_to is not None:
             raise ValueError("`facing` goes with walk_to, path or stop; who goes to a place turns as people do, and stands there with a `heading`")
-        if self.heading is not None and self.go_to is None and not jumps:
+        if self.heading is not None and self.go_to is None and (not jumps or self.hops is not None):
             raise ValueError("`heading` goes with go_to, jump_to or jump: how one stands there, or lands")
         if self.arrive is not None and self.go_to is None:
             raise ValueError("`arrive` goes with go_to")
@@ -86,8 +92,14 @@ class MoveTable(Table):
                                  f"got v_t = {value[0]:g}, v_l = {value[2]:g}")
         return self
 
+    def moves(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> tuple[Move, ...]:
+        """The same in SI units, for somebody who jumps among props: one move, or one for each hop."""
+        made = self.move(jumper, props)
+        again = made if made.jump is None else replace(made, jump=replace(made.jump, aims=0.0))
+        return (made, *[again] * ((self.hops or 1) - 1))
+
     def move(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Move:
-        """The same in SI units, for somebody who jumps among props."""
+        """The same in SI units, for somebody who jumps among props; of hops the first."""
         points = self.path or ((self.walk_to,) if self.walk_to is not None else ())
         leap, heading = None, None if self.heading is None else math.radians(self.heading)
         if self.jump is not None:
@@ -97,6 +109,8 @@ class MoveTable(Table):
             y = self.jump_to[1] if len(self.jump_to) == 3 else floor_at(x, z, props)
             leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]), self.aim or 0.0, heading)
             points = (*points, (x, z)) if points else ()
+        elif self.hops is not None:
+            leap = Jump(airtime=self.airtime, aims=self.aim or 0.0, hop=self.far or 0.0)
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
                     until=None if self.until is None else _forward(self.until),

@@ -1,27 +1,20 @@
-"""Jumps from end to end: scripts that jump, refusals, logs with jumps, what is drawn of them. One library, one run each."""
-
-from dataclasses import replace
+"""Scenarios that jump, from end to end: where they land, refusals, what is drawn of them. One library, one run each."""
 
 import numpy as np
 import pytest
 
-from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.contract import Intent
 from gambol.controllers.jump import Crouching, Physique
 from gambol.controllers.person import person
-from gambol.game.app.views import previews
 from gambol.game.explain.forces import pushed
 from gambol.game.explain.jump import LAYERS, explained
-from gambol.game.explain.jump_preview import CAN, CANNOT, aimed, previewed
 from gambol.game.input.script import jumping
-from gambol.game.input.wish import Wish
 from gambol.game.output.pose_strip import strip
 from gambol.game.render.sketches import sketched
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import ScenarioError, load
-from gambol.game.scene.scene import Camera, Line, Overlays, Patch
-from gambol.game.session.state import begin, opening
-from gambol.game.session.tick import Timeline, advance, refused
-from gambol.game.world.world import Character, World, figures
+from gambol.game.scene.scene import Camera, Line, Overlays
+from gambol.game.world.world import Character, figures
 from scenarios import tells, written
 
 TEXT = """
@@ -137,9 +130,11 @@ FAULTS = [
     ("{ jump = 0.2 }", "{ jump = 0.2, airtime = 0.5 }", "actors[0].moves[3]: `airtime` goes with jump_to"),
     ("{ jump = 0.2 }", "{ jump = 0.2, velocity = [1, 0, 0], for = 1 }", "actors[0].moves[3]: needs exactly one of"),
     ("{ jump_to = [0, 1.4] }", "{ jump_to = [0, 1.4], within = 1 }", "actors[0].moves[1]: `within` goes with jump_to and a run-up"),
-    ("jump_to = [-3, 6], for = 6", "jump_to = [-3, 6], for = 6, aim = 1", "actors[2].moves[0]: `aim` goes with jump or jump_to without a run-up"),
+    ("jump_to = [-3, 6], for = 6", "jump_to = [-3, 6], for = 6, aim = 1", "actors[2].moves[0]: `aim` goes with jump, hops or jump_to without a run-up"),
     ("{ jump_to = [0, 1.4] }", "{ jump_to = [0, 1.4], facing = 3 }", "actors[0].moves[1]: `facing` goes with"),
     ("jump_to = [-3, 6], for = 6", "jump_to = [-3, 6]", "actors[2].moves[0]: velocity needs `for`"),
+    ("{ jump = 0.2 }", "{ hops = 0 }", "actors[0].moves[3].hops: input should be greater than or equal to 1, got 0"),
+    ("{ jump = 0.2 }", "{ jump = 0.2, far = 1 }", "actors[0].moves[3]: `far` goes with hops"),
     ("mass = 24", "mass = 0", "actors[1].body.mass: input should be greater than or equal to 5, got 0"),
     ("height = 1.2", "height = nan", "actors[1].body.height:"),
     ("gravity = 1.62", "gravity = -9.81", "actors[2].gravity: input should be greater than or equal to 0.2, got -9.81"),
@@ -152,41 +147,6 @@ def test_a_fault_is_one_line_that_names_the_field(tmp_path, old, new, says):
     tells(tmp_path, TEXT, old, new, says)
 
 
-def hands(seconds):
-    """Up, ahead, and at a run."""
-    held, still = Wish(jump=True), Wish()
-    ahead, run = Wish(jump=True, move=(0.0, 1.0)), Wish(move=(0.0, 1.0), run=1.0)
-    plan = [(held, 20), (still, 150), (ahead, 40), (still, 150), (run, 90), (Wish(move=(0.0, 1.0), run=1.0, jump=True), 10), (run, 140)]
-    return [wish.rounded() for wish, ticks in plan for _ in range(ticks)][:seconds * 60]
-
-
-def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
-    ends, jumped = [], 0
-    for _ in range(2):
-        timeline, before = Timeline(opening(somebody)), None
-        for wish in hands(10):
-            timeline.advance((wish,))
-            now = jumping(timeline.now.after.characters[0].state)
-            jumped += now is not None and before is None
-            before = now
-        ends.append(timeline.now.after.characters[0].state)
-    assert jumped == 6, "three jumps, twice"
-    assert np.array_equal(ends[0].pose.rotations, ends[1].pose.rotations) and np.array_equal(ends[0].ground, ends[1].ground)
-    assert ends[0].floor == 0.0 and np.isfinite(ends[0].pose.root).all()
-
-
-def test_who_holds_the_button_crouches_and_is_off_soon_after_letting_go(somebody):
-    """In play; who taps it winds up as ever."""
-    took, held = [], Wish(jump=True)
-    for wishes in ([Wish(jump=True, move=(0.0, 1.0)).rounded()] * 25 + [held] * 50, [held] * 2):
-        timeline = Timeline(opening(somebody))
-        for wish in wishes + [Wish()] * 4:
-            timeline.advance((wish,))
-        made = jumping(timeline.now.after.characters[0].state).plan
-        took.append(made.take_off)
-    assert took[0] < 0.36 < 0.5 < took[1]
-
-
 def test_an_actor_aims_for_as_long_as_the_script_says(tmp_path, somebody):
     text = 'title = "Aim"\nduration = 2.4\n[[actors]]\nname = "A"\nmoves = [{ for = 0.2, stop = true }, { jump_to = [0, 0.8], aim = 0.9 }]\n'
     frames = list(film.run(load(written(tmp_path, text)), somebody))
@@ -195,70 +155,6 @@ def test_an_actor_aims_for_as_long_as_the_script_says(tmp_path, somebody):
     first, begins = crouches.index(True), next(k for k, state in enumerate(people) if jumping(state) is not None)
     assert frames[begins].time - frames[first].time == pytest.approx(0.9, abs=0.05) and all(crouches[first:begins])
     assert people[begins - 1].pose.root[1] < people[0].pose.root[1] - 0.06 and jumping(people[begins]).plan.take_off < 0.34
-
-
-@pytest.fixture(scope="module")
-def beyond(somebody):
-    """Somebody who aims farther than it can jump, and what it sees of that."""
-    timeline = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1))
-    for wish in [Wish(jump=True)] * 10 + [Wish(jump=True, move=(0.0, 1.0))] * 110:
-        timeline.advance((wish.rounded(),))
-    return timeline, previews(timeline.now)[0]
-
-
-def test_where_a_jump_is_refused_the_nearest_place_is_one_that_can_be_jumped_to(beyond, somebody):
-    timeline, seen = beyond
-    who, jump = timeline.now.after.characters[0], somebody.parts["jump"]
-    state = who.controller.active(who.state)[1]
-    assert seen.fault and seen.nearest is not None
-    assert not previewed(jump, state, Leap(seen.nearest), ()).fault
-    assert previewed(jump, state, Leap(seen.nearest + 0.1 * (seen.place - seen.nearest)), ()).fault
-    far, near = (np.linalg.norm((place - seen.stand)[[0, 2]]) for place in (seen.place, seen.nearest))
-    assert seen.why == f"{far - near:.1f} m farther than this body can jump"
-    rings = {sketch.tint for sketch in aimed(seen, ()) if isinstance(sketch, Patch)}
-    assert rings == {CAN, CANNOT}
-
-
-def test_the_nearest_place_is_not_sought_anew_while_one_aims_the_same_way(beyond, somebody, monkeypatch):
-    timeline, seen = beyond
-    sought = []
-    monkeypatch.setattr(type(somebody.parts["jump"]), "nearest", lambda jump, start, place, *_: sought.append(place))
-    again, = previews(timeline.now, (seen,))
-    assert again.nearest is seen.nearest and not sought
-    turned = replace(seen, nearest=seen.stand + [0.5, 0.0, 1.5])
-    previews(timeline.now, (replace(turned, place=seen.stand + [0.6, 0.0, 1.8]),))
-    assert len(sought) == 1
-
-
-def test_who_lets_go_is_told_why_not_without_coordinates(beyond):
-    timeline, seen = beyond
-    moment, told = timeline.now, []
-    for _ in range(60):
-        after = advance(moment, (Wish(),))
-        told += refused(moment, after)
-        moment = after
-    assert told == [f"no jump: {seen.why}"]
-
-
-def test_a_runner_sees_one_arc_through_all_of_a_stride(somebody):
-    timeline, lengths = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1)), []
-    run = Wish(move=(0.0, 1.0), run=1.0)
-    for wish in [run] * 150 + [replace(run, jump=True)] * 50:
-        timeline.advance((wish.rounded(),))
-        if wish.jump:
-            seen, = previews(timeline.now)
-            assert not seen.fault
-            lengths.append(float(np.linalg.norm((seen.arc[-1] - seen.arc[0])[[0, 2]])))
-    assert min(lengths) > 0.5 * max(lengths)
-
-
-def test_cameras_follow_a_jumper_without_a_jerk(somebody):
-    timeline, eyes = Timeline(opening(somebody)), []
-    for wish in hands(10):
-        timeline.advance((wish,))
-        eyes.append(timeline.now.players[0].camera.target[1])
-    assert np.abs(np.diff(eyes)).max() < 0.03 and np.ptp(eyes) > 0.05
-    assert np.ptp(eyes[-45:]) < 0.05
 
 
 def test_what_is_drawn_is_drawn_for_the_overlays_that_show_it(played):
@@ -332,20 +228,3 @@ def test_the_ground_s_push_does_not_tremble_and_is_the_same_after_going_back(som
     assert turns / (len(steady) / 60) < 10.0 and np.abs(np.diff(steady)).max() < 0.15
     once, again = (walker.step(walk, 301).centre_of_mass for _ in range(2))
     assert np.array_equal(once.acceleration, again.acceleration)
-
-
-def test_pressed_in_the_air_it_aims_from_where_it_will_land_and_goes_off_again_from_the_landing(somebody):
-    """The ring is drawn meanwhile, and the second jump lands in it."""
-    timeline, plans, rings = Timeline(opening(somebody)), [], []
-    for step in range(260):
-        now = jumping(timeline.now.after.characters[0].state)
-        if now is not None and (not plans or now.plan is not plans[-1]):
-            plans.append(now.plan)
-        flies = now is not None and len(plans) == 1 and now.plan.take_off + 0.05 < now.time < now.plan.touch_down - 0.05
-        timeline.advance([Wish(jump=20 < step < 60 or flies, move=(0.0, 1.0) if 30 < step < 60 or flies else (0.0, 0.0))])
-        seen = previews(timeline.now, ())[0] if flies else None
-        rings += [] if seen is None else [seen.place]
-    assert len(plans) == 2 and plans[1].take_off < 0.45
-    middles = [plan.feet[:, [0, 2]].mean(0) for plan in plans]
-    assert len(rings) > 10 and np.linalg.norm(rings[0][[0, 2]] - middles[0]) < 0.1
-    assert np.linalg.norm(rings[-1][[0, 2]] - middles[1]) < 0.1 < np.linalg.norm(middles[1] - middles[0])

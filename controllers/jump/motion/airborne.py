@@ -24,7 +24,7 @@ FREE = -1.0
 """A foot's freedom (see `planted_pose.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 RUNS_ON = 0.06, 0.14
 """Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
-PLANT = 0.09
+PLANT = 0.07
 """From the toes' landing to the heels' [s]."""
 HEEL = 0.03
 """A heel that is raised by more has left the floor [rad]."""

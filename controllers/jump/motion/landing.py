@@ -1,12 +1,14 @@
-"""The landing: legs give like a critically damped spring whose force begins at nothing, until the body stands again.
+"""The landing: legs push back nearly as hard all the way down, from nothing at touch-down, then bring the body up to stand.
 
-Feet first (Ha 2012 without the roll): toes, then heels, knees absorbing. Along the floor the body
+Feet first (Ha 2012 without the roll): toes, then heels, knees absorbing. A fall of speed v that is stopped over s takes a force of
+1 + v²/(2 g s) body weights at least, if it is level; a spring's peak is a third more. Along the floor the body
 comes to rest over its feet if it can; the margin says whether it could.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,24 +16,29 @@ TIME = 1.35
 """From touch-down until the body stands [s]."""
 HOLD, PASS = 4.2, 1.0
 """Rate of the spring that brings the body to rest over its feet, and of one that lets it pass over them [1/s]."""
-STRIDE, STIFF = 0.25, 0.8
-"""Rate of that spring where one runs on on one foot [1/s], whose leg sinks by this share of how far two sink: 0.14 m,
+STRIDE, STIFF = 0.25, 0.66
+"""Rate of that spring where one runs on on one foot [1/s], whose leg sinks by this share of how far two sink: 0.14 m at 2 m/s,
 as recorded."""
 GRIP = 0.8
 """The friction of soles that a body which passes over its feet counts on."""
-SINKS = 0.045, 0.0765, 0.42
-"""How deep [m] legs give to a body that hardly falls, how much deeper for each m/s that it falls, and at most: as recorded, at standard
-height."""
-SLOWEST = 4.0
-"""Rate of the spring with which a body that hardly fell stands up [1/s]."""
-LIGHT = 0.0
-"""However fast a body stands up, so much of its weight stays on its feet at least: the floor can't pull."""
+SINKS = 0.04, 0.085, 0.42
+"""How deep [m] legs give to a body that hardly falls, how much deeper for each m/s that it falls, and at most: a tenth deeper than recorded
+for fast falls, at standard height."""
+SOONEST = 10
+"""The force over the way down (s = t / T) is A (1 − (1 − s)^SOONEST − c s²): it begins at nothing and is nearly level after a tenth of T."""
+EASES, HARD = 0.3, 0.7
+"""c at most; it is as much where a level force would be heavier than the body by the second, times its weight, and less in softer landings."""
+RISES, EASIEST = 5.6, 0.85
+"""But c is so much that at the lowest point no more than some seven times its weight is left, lest the body be thrown up; and at most."""
+SLOWEST, LIGHT = 4.0, 6.5
+"""Rate of the spring with which a body that hardly fell stands up [1/s]; the square of that rate at most, times how deep it is over gravity: the
+floor can't pull."""
 ADULT = 0.975
 """How high the centre of mass of a standard body stands [m]."""
-TIMES = np.linspace(0.0, 1.2, 121)
-"""When a landing is looked at [s]."""
-DEEPEST, STIFFEST = 0.45, 20.0
-"""How far a body sinks at most, as a share of its standing height; how stiff legs are at most [1/s]."""
+DEEPEST = 0.45
+"""How far a body sinks at most, as a share of its standing height."""
+LEAST = 0.02
+"""And at least, likewise."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
 OVER = 0.04
@@ -40,14 +47,16 @@ OVER = 0.04
 
 @dataclass(frozen=True, eq=False)
 class Landing:
-    """The centre of mass after touch-down: rates (3,) [1/s] of the springs, `offset` (3,) [m] from where it
-    comes to rest, `velocity` (3,) [m/s] and `falls` (3,) [m/s²] with which it landed, `goal` (3,) [m]. passes: it can't stop here."""
+    """The centre of mass after touch-down: rate [1/s] of the springs along the floor, `offset` (3,) [m] from where it
+    comes to rest, `velocity` (3,) [m/s] with which it landed, `gravity` [m/s²], `goal` (3,) [m]. deep: how far [m] it sinks. passes: it
+    can't stop here."""
 
-    rates: np.ndarray
+    rate: float
     offset: np.ndarray
     velocity: np.ndarray
-    falls: np.ndarray
+    gravity: float
     goal: np.ndarray
+    deep: float
     passes: bool = False
 
     def until(self, times: np.ndarray) -> float:
@@ -59,13 +68,46 @@ class Landing:
         beyond = (place - self.goal) @ ahead > OVER
         return float(times[int(np.argmax(beyond))]) if beyond.any() else np.inf
 
+    @cached_property
+    def down(self) -> tuple[float, float, float]:
+        """How long [s] the body sinks, the force over mass [m/s²] that the way down is scaled by, A, and how it eases, c."""
+        fall, g, n = max(-float(self.velocity[1]), 0.0), self.gravity, SOONEST + 1.0
+        hard = fall**2 / (2.0 * g * self.deep)
+        eases = max(EASES * min(hard / HARD, 1.0), min(1.0 - RISES / (1.0 + hard), EASIEST))
+        # with A from the velocity, w + g T = A T m0, the way d = w T + ½ g T² − A T² n0 is quadratic in T; n0 < ½ m0
+        whole, way = 1.0 - 1.0 / n - eases / 3.0, 0.5 - 1.0 / n + 1.0 / (n * (n + 1.0)) - eases / 12.0
+        share = way / whole
+        half = 0.5 * fall * (1.0 - share)
+        lasts = self.deep / (half + np.sqrt(half**2 + g * (0.5 - share) * self.deep))
+        return float(lasts), float((fall / lasts + g) / whole), float(eases)
+
     def motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Place, velocity, acceleration (N, 3) at times (N,) [s] after touch-down."""
-        t, r = np.asarray(time, float)[:, None], self.rates
-        a, b = self.velocity + r * self.offset, 0.5 * (self.falls + 2.0 * r * self.velocity + r**2 * self.offset)
-        fade, way = np.exp(-r * t), self.offset + a * t + b * t**2
-        rate, bend = a + 2.0 * b * t, 2.0 * b
-        return self.goal + fade * way, fade * (rate - r * way), fade * (bend - 2.0 * r * rate + r**2 * way)
+        t = np.asarray(time, float)
+        found = sprung(t[:, None], self.rate, self.offset, self.velocity, np.array([0.0, -self.gravity, 0.0]))
+        lasts, level, eases = self.down
+        s, n = np.minimum(t / lasts, 1.0), SOONEST + 1.0
+        left = 1.0 - s
+        force = level * (1.0 - left**SOONEST - eases * s**2)
+        rate = level * lasts * (s - (1.0 - left**n) / n - eases * s**3 / 3.0)
+        way = level * lasts**2 * (0.5 * s**2 - s / n + (1.0 - left ** (n + 1.0)) / (n * (n + 1.0)) - eases * s**4 / 12.0)
+        fall, under = min(float(self.velocity[1]), 0.0), float(self.offset[1]) - self.deep
+        ends = level * (1.0 - eases) - self.gravity
+        stands = max(np.sqrt(max(ends, 0.0) / -under), min(SLOWEST, np.sqrt(LIGHT * self.gravity / -under)))
+        up = sprung(np.maximum(t - lasts, 0.0), stands, under, 0.0, ends)
+        sinking = (self.offset[1] + fall * t - 0.5 * self.gravity * t**2 + way, fall - self.gravity * t + rate, force - self.gravity)
+        for part, before, after in zip(found, sinking, up):
+            part[:, 1] = np.where(t < lasts, before, after)
+        return self.goal + found[0], found[1], found[2]
+
+
+def sprung(t, r, offset, velocity, gains):
+    """Place, velocity and acceleration at times t [s] of what a spring of three equal rates r [1/s] brings to 0, from an offset, a velocity and an
+    acceleration `gains`."""
+    a, b = velocity + r * offset, 0.5 * (gains + 2.0 * r * velocity + r**2 * offset)
+    fade, way = np.exp(-r * t), offset + a * t + b * t**2
+    rate, bend = a + 2.0 * b * t, 2.0 * b
+    return fade * way, fade * (rate - r * way), fade * (bend - 2.0 * r * rate + r**2 * way)
 
 
 def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float, striding: bool = False) -> Landing:
@@ -85,18 +127,7 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         passes = bool(capture > ((support - goal) @ ahead).max())
     # soles don't slip: a spring of rate r brakes with 2 r v at first
     rate = STRIDE if striding else min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
-    size, g = goal[1] - support[0, 1], np.array([gravity])
-    start, speed, deep = land[1] - goal[1], float(velocity[1]), min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else 1.0) * size / ADULT
-
-    def course(stiff: float) -> tuple[float, float]:
-        """The lowest place [m] and the least acceleration [m/s²]."""
-        up = np.array([0.0, 1.0, 0.0])
-        place, _, bends = Landing(np.full(3, stiff), start * up, speed * up, -g * up, 0.0 * up).motion(TIMES)
-        return float(place[:, 1].min()), float(bends[1:, 1].min())
-    low, high = SLOWEST, STIFFEST
-    for _ in range(10):
-        sink = 0.5 * (low + high)
-        low, high = (sink, high) if course(sink)[0] < max(start - deep, -DEEPEST * size) else (low, sink)
-    while sink > 1.0 and course(sink)[1] < LIGHT * gravity - gravity:
-        sink *= 0.93
-    return Landing(np.array([rate, sink, rate]), land - goal, velocity, np.array([0.0, -gravity, 0.0]), goal, passes)
+    size, start = goal[1] - support[0, 1], float(land[1] - goal[1])
+    deep = min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else 1.0) * size / ADULT
+    deep = max(min(deep, start + DEEPEST * size), max(start, 0.0) + LEAST * size)
+    return Landing(rate, land - goal, velocity, gravity, goal, deep, passes)

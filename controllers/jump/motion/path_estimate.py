@@ -19,7 +19,7 @@ from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = (0.02, 2.5, 0.05)
+SOFT = (0.03, 2.5, 0.07)
 """How much lower [m] a body touches down for each m/s that it falls faster than the second [m/s], and at most:
 bent legs give way without the knees flying. At standard height and what an adult falls."""
 LEAST_AIRTIME = 0.30

@@ -2,7 +2,8 @@
 
 from .feasibility import Refused
 from .reach import TRIES, Reach
+from .sweep import Touch
 
 __all__ = [
-    "TRIES", "Reach", "Refused",
+    "TRIES", "Reach", "Refused", "Touch",
 ]

@@ -13,7 +13,7 @@ from ..motion import Path, Plan, grounded, path
 from ..planner import plan
 from ..prior import Prior
 from .feasibility import fault, wrong
-from .sweep import touches
+from .sweep import Touch, touch, touches
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
@@ -85,6 +85,14 @@ class Reach:
                 return way, ""
         assert first is not None  # there is always one
         return first
+
+    def touching(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, around: Sequence[Any] = ()) -> Touch | None:
+        """What the usual jump to a place (3,) would touch, and how the body would lie in it; None if nothing, or if there is no such jump."""
+        way, _ = next(self.arcs(start, place, floor, airtime, around))
+        if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
+            return None
+        made = plan(self.physique, start, way, place, floor)
+        return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def footing(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> str:
         """Why nobody can stand at a place (3,), if so."""

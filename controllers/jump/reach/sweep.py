@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,12 +37,28 @@ def _bones(skeleton: Skeleton) -> tuple[tuple[str, int, int, bool, float], ...]:
     return tuple(out)
 
 
+class Touch(NamedTuple):
+    """What a body would hit in a plan, where it would lie deepest in it: in words, in which pose, root (3,) [m] and local rotations (J, 3, 3),
+    and where (3,) [m]."""
+
+    reason: str
+    root: np.ndarray
+    local: np.ndarray
+    place: np.ndarray
+
+
 def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
-    """What a body would hit in a plan, in words, where it would lie deepest in it; "" if nothing. What it touches as it begins, it may touch
+    """What a body would hit in a plan, in words, where it would lie deepest in it; "" if nothing."""
+    found = touch(physique, made, around)
+    return "" if found is None else found.reason
+
+
+def touch(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | None:
+    """What a body would hit in a plan, where it would lie deepest in it; None if nothing. What it touches as it begins, it may touch
     as much all along."""
     things = [thing for thing in around if not hasattr(thing, "place")]
     if not things:
-        return ""
+        return None
     last = min(made.duration, made.through)
     chosen = np.unique(np.searchsorted(made.times, np.arange(0.0, last, 1.0 / RATE)))
     chosen = chosen[chosen < len(made.times)]
@@ -51,7 +67,7 @@ def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
     centre = centre_of_mass(physique.anatomy, positions, turned)
     things = [thing for thing in things if gap(centre, thing).min() < NEAR * size]
     if not things:
-        return ""
+        return None
     ends = end_positions(skeleton, positions, turned)
     parts = [("feet", sole_corners(skeleton, positions, turned), 0.0)]
     for part, first, second, end, radius in _bones(skeleton):
@@ -70,5 +86,6 @@ def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
             moment, place = np.unravel_index(int(deep.argmax()), deep.shape)
             part = parts[int(np.searchsorted(np.cumsum(widths), place, "right"))][0]
             ahead = float(np.linalg.norm((every[moment, place] - every[0, place])[[0, 2]]))
-            return f"its {part} would hit something {ahead:.1f} m ahead"
-    return ""
+            pose = chosen[(moment + 1) // 2]
+            return Touch(f"its {part} would hit something {ahead:.1f} m ahead", made.roots[pose], made.local[pose], every[moment, place])
+    return None
