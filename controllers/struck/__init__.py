@@ -1,0 +1,7 @@
+"""Who is struck: a linear inverted pendulum, caught by steps to its capture point (Pratt 2006, Koolen 2012), or a fall and getting up."""
+
+from .controller import Recovering, Struck, rehearse
+from .recorded_pushes import TAKES, fit
+from .recovery import Recovery
+
+__all__ = ["TAKES", "Recovering", "Recovery", "Struck", "fit", "rehearse"]
