@@ -86,7 +86,7 @@ class Struck(Controller):
         start, floor, size = start_of(self.physique, state), float(level(state.floor)), self.physique.size
         x, z = strike.impulse
         start = replace(start, velocity=start.velocity + np.array([x, 0.0, z]) / self.physique.mass)
-        free = ~np.asarray(state.contacts, bool).reshape(2, 2).any(1)
+        free: np.ndarray = np.asarray(np.logical_not(np.asarray(state.contacts, bool).reshape(2, 2)).all(1))
         c, s = np.cos(start.heading), np.sin(start.heading)
         v_f, omega, v_l = np.asarray(intent.velocity, float)
         wish = np.array([s * v_f + c * v_l, c * v_f - s * v_l]) if np.isfinite([v_f, v_l]).all() else np.zeros(2)

@@ -22,8 +22,8 @@ BONES = (("UpLeg", "Leg", 0.06), ("Leg", "Foot", 0.045), ("Arm", "ForeArm", 0.04
 """Bones as capsules: from which joint to which or to its end, how thick [m] at standard height."""
 TOUCHES = 0.012
 """What is no farther over the floor than this [m], at standard height, lies or stands on it, the less the farther."""
-MOVES = 0.25
-"""A fall begins as its mass centre goes so fast [m/s]."""
+SINKS = 0.015
+"""A fall begins as its mass centre has sunk by this [m], at standard height."""
 FEET = 6
 """So many of the places that may touch the floor are feet, the last ones: heel, ball and tip of either."""
 
@@ -103,10 +103,8 @@ def _falls(physique: Physique) -> tuple[Fall, ...]:
         local = fall.turns(times)
         roots, over = grounded(physique, local, np.zeros(3), 0.0)
         centre = centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, roots, local))
-        pace = np.linalg.norm(np.gradient(centre[:, [0, 2]], 1.0 / RATE, axis=0), axis=-1)
         strikes = int(np.argmax(over[:, :-FEET].min(1) < TOUCHES * physique.size))
-        slow = np.flatnonzero(pace[:strikes] < MOVES * physique.size)
-        begins = int(slow[-1]) if len(slow) else 0
+        begins = int(np.argmax(centre[:, 1] < centre[0, 1] - SINKS * physique.size))
         gone = centre[strikes] - centre[begins]
         found.append(Fall(rows, begins / RATE, strikes / RATE, int(centre[:, 1].argmin()) / RATE, float(np.hypot(gone[0], gone[2])), float(np.arctan2(gone[0], gone[2]))))
     return tuple(found)

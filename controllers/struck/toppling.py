@@ -10,17 +10,19 @@ import math
 import numpy as np
 
 from ..body import centre_of_mass, forward_kinematics, yaw
-from ..jump.body import Physique, Start, vectors, turns
+from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import faded
 from .capture import FALLS
-from .recorded_falls import FEET, RATE, TOUCHES, Fall, falls, grounded
+from .recorded_falls import FEET, RATE, TOUCHES, Fall, falls, grounded, places
 from .recovery import Recovery
 
-PACES = 0.9, 2.2
+PACES = 0.9, 1.35
 """Falls are played at these shares of their recorded pace, until they strike the floor; from there on in WEARS seconds at their own."""
 WEARS = 0.35
-FADE, SPENT = 0.13, 0.10
-"""Half-lives with which the pose as it was struck gives way to the fall's, and with which the mass centre's speed comes to the fall's [s]."""
+FADE, SPENT = 0.13, 0.15
+"""Half-life with which the pose as it was struck gives way to the fall's [s]; what the mass centre is faster than the fall is spent on the floor with this time constant [s]."""
+SLIDES = 0.3
+"""A heel or ball that is faster along the floor [m/s] does not stand on it."""
 WHY = "struck too hard to be caught by a step: it falls, and gets up"
 
 
@@ -40,9 +42,13 @@ def topple(physique: Physique, start: Start, floor: float, rate: float) -> Recov
     roots, over = grounded(physique, local, np.asarray(start.root, float), floor)
     centres = centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, roots, local))
     lacks = start.velocity - (centres[1] - centres[0]) * RATE
-    slip = faded(np.zeros(3), lacks * [1.0, 0.0, 1.0], SPENT, times)
+    slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
     roots, centres = roots + slip, centres + slip
-    contacts = over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size
+    positions, turned = forward_kinematics(physique.skeleton, roots, local)
+    feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
+    flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
+    slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
+    contacts = slow & (over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
     return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY)
 
 
