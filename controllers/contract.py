@@ -18,6 +18,8 @@ from .body import Pose, Skeleton
 
 T = TypeVar("T")
 
+HARDEST = 1000.0
+"""Nobody is struck harder [N·s]: as a car at walking pace would."""
 HIGHEST = 1e5
 """No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
 
@@ -79,6 +81,23 @@ class Goal:
         return np.array([self.place[0], self.place[-1]])
 
 
+@dataclass(frozen=True)
+class Strike:
+    """A blow or a push, short enough that nobody moves meanwhile. impulse: x, z [N·s] in the world, along the floor; height: [m] over the floor
+    where it strikes, None for the chest. ValueError for what is no impulse, more than HARDEST, or nowhere on a body."""
+
+    impulse: tuple[float, float]
+    height: float | None = None
+
+    def __post_init__(self):
+        impulse = tuple(float(value) for value in self.impulse)
+        if len(impulse) != 2 or not math.hypot(*impulse) <= HARDEST:
+            raise ValueError(f"an impulse is x, z of at most {HARDEST:g} N·s together, got {self.impulse!r}")
+        if self.height is not None and not 0.0 <= self.height <= 3.0:
+            raise ValueError(f"a strike's height must be within 0 … 3 m, or None; got {self.height!r}")
+        object.__setattr__(self, "impulse", impulse)
+
+
 @dataclass(frozen=True, eq=False)
 class Sighting:
     """What cameras see of somebody in one frame.
@@ -111,6 +130,7 @@ class Intent:
     held: no leap of the way goes off now, as somebody is where it leads.
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
     aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again.
+    strike: what hits the body as this step begins, whatever is wanted; None for nothing.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -126,6 +146,7 @@ class Intent:
     turns: np.ndarray | None = None
     halt: np.ndarray | None = None
     towards: np.ndarray | None = None
+    strike: Strike | None = None
 
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:

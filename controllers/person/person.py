@@ -9,11 +9,12 @@ from ..contract import Intent
 from ..jump import GRAVITY, Jump, Physique, rehearse as rehearse_jump
 from ..locomotion import Locomotion
 from ..scaled import Scaled
+from ..struck import Struck, rehearse as rehearse_strike
 from ..supervisor import Supervisor
 
 
 def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRAVITY) -> Supervisor:
-    """Somebody who walks, runs and jumps.
+    """Somebody who walks, runs and jumps, and who stumbles if something strikes him.
 
     locomotion: a controller or a library's file; the shipped library by default. physique: by default
     a standard adult; another height walks as its legs are long. gravity: (3,) [m/s²] of the jumps.
@@ -23,7 +24,7 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
     physique = Physique() if physique is None else physique
     factor = physique.size
     return Supervisor({"locomotion": walker if factor == 1.0 else Scaled(walker, factor),
-                       "jump": Jump(physique, gravity)})
+                       "jump": Jump(physique, gravity), "struck": Struck(physique, gravity)})
 
 
 def rehearse(someone: Any) -> None:
@@ -31,6 +32,8 @@ def rehearse(someone: Any) -> None:
     someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
     if "jump" in someone.parts:
         rehearse_jump(someone.parts["jump"])
+    if "struck" in someone.parts:
+        rehearse_strike(someone.parts["struck"])
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:

@@ -23,9 +23,10 @@ from ..jump import Jump, rehearse
 from ..jump.body import measures
 from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
+from ..struck import Struck, rehearse as rehearse_strike
 
 PARTS = ("walk", "jump")
-KERNELS = 188
+KERNELS = 197
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 
@@ -146,5 +147,6 @@ def main(part: str, library: str = "") -> None:
     measures(jump.physique)
     sys.stdin.readline()  # and the strength
     rehearse(jump)
+    rehearse_strike(Struck())
     goals()
     _note("jump", walker)

@@ -14,11 +14,11 @@ from .key_names import MOUSE, PAD_BUTTONS, button_label, key_label
 from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, user_file
 from .script import Jump, Move, Script, aloft, jumping, landing, leaving
-from .wish import STEPS, Wish
+from .wish import STEPS, Wish, push
 
 __all__ = [
     "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
     "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "Pace", "Pilot", "Script", "Sticks", "Wish", "aloft", "as_toml",
     "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "leaving", "load", "mode_of", "mouse_wish",
-    "pad_held", "pad_pressed", "pad_wish", "player_of", "user_file", "wheel_wish", "wishes",
+    "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "user_file", "wheel_wish", "wishes",
 ]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status, but
+from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status, Strike, but
 from gambol.controllers.jump import Jumping
 from gambol.controllers.navigation import Path, follow, steer
 
@@ -77,12 +77,15 @@ class Script:
     """Where somebody is in a list of moves.
 
     steps: made of the current move. path, progress: along it. asked: for how many steps its jump was
-    asked for; aimed: for how many it was aimed at; jumped: whether it began. refused: why jumps were not made and places not reached, so far.
+    asked for; aimed: for how many it was aimed at; jumped: whether it began. strikes: after how many steps of the script what strikes; made: those it has made.
+    refused: why jumps were not made and places not reached, so far.
     hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
     """
 
     moves: tuple[Move, ...]
     index: int = 0
+    strikes: tuple[tuple[int, Strike], ...] = ()
+    made: int = 0
     steps: int = 0
     path: Path | None = None
     progress: float = 0.0
@@ -104,6 +107,12 @@ class Script:
         return not self.done and self.moves[self.index].jump is not None
 
     def step(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
+        """The script `dt` seconds later, what it asks of a character in `state` meanwhile, and what strikes him."""
+        hit = next((strike for number, strike in self.strikes if number == self.made), None)
+        script, intent = replace(self, made=self.made + 1)._wished(state, dt)
+        return script, intent if hit is None else but(intent, strike=hit)
+
+    def _wished(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         """The script `dt` seconds later, and what it asks of a character in `state` meanwhile."""
         script = self
         while not script.done and script._over(state, dt):
@@ -134,7 +143,8 @@ class Script:
         goal, way = self.moves[self.index].goal, _way(self.moves[self.index], state)
         if goal is not None and way is not None and way.reason:
             refused = (*refused, "no way to ({:g}, {:g}): {}".format(*goal.place, way.reason))
-        return Script(self.moves, self.index + 1, refused=refused, hopped=self.hops if self.jumped else None)
+        hopped = self.hops if self.jumped else None
+        return Script(self.moves, self.index + 1, self.strikes, self.made, refused=refused, hopped=hopped)
 
     def _over(self, state: CharacterState, dt: float) -> bool:
         move = self.moves[self.index]

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from gambol.controllers.contract import Strike
+
 STEPS = (127,) * 6 + (1, 1, 1) + (127,) * 2 + (4096,) * 2 + (16,) + (4096,) * 2
 """How finely a log keeps the controls, in the order of `Wish`: steps in 1, a radian, a notch."""
 
@@ -69,6 +71,17 @@ def unit_disc(x: float, y: float) -> tuple[float, float]:
     """(x, y), shortened to length 1 where it is longer: keyboard diagonals are no faster."""
     length = math.hypot(x, y)
     return (x / length, y / length) if length > 1.0 else (x, y)
+
+
+PUSHES = 45.0, 130.0
+"""How hard a push is [N·s]: to be caught by a step, and, as one runs or holds the key for running, not to be caught."""
+
+
+def push(camera_yaw: float, wish: Wish) -> Strike:
+    """A push away from the camera."""
+    x, z = in_view((0.0, 1.0), camera_yaw)
+    hard = PUSHES[1] if wish.run > 0.5 else PUSHES[0]
+    return Strike((hard * x, hard * z))
 
 
 def in_view(seen: tuple[float, float], camera_yaw: float) -> tuple[float, float]:

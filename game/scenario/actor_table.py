@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from gambol.controllers.body import STATURE
+from gambol.controllers.contract import HARDEST, Strike
 from gambol.controllers.jump import Jump as JumpController, Physique
 
 from ..input import Script
 from ..scene import TINT, Prop
-from ..world import TINTS
+from ..world import RATE, TINTS
 from .fields import Colour, Degrees, FileName, Flexibility, Gravity, Mass, Metres, Moment, Seconds, Stature, Strength, Table
 from .follows_table import FollowsTable
 from .tracks_table import TracksTable
@@ -41,13 +42,28 @@ class BodyTable(Table):
         return Physique(mass, self.height, self.strength, self.flexibility, self.sex)
 
 
+class StrikeTable(Table):
+    """What strikes somebody: at [s] after he has entered; impulse [N·s]; towards: where it pushes him [degrees], 0 along z, 90 along x; height [m] over the floor, his
+    chest by default."""
+
+    at: Moment
+    impulse: Annotated[float, Field(gt=0, le=HARDEST, allow_inf_nan=False)]
+    towards: Degrees
+    height: Annotated[float, Field(ge=0, le=3, allow_inf_nan=False)] | None = None
+
+    def strike(self) -> tuple[int, Strike]:
+        """In which step of his script, and what."""
+        angle = math.radians(self.towards)
+        return round(RATE * self.at), Strike((self.impulse * math.sin(angle), self.impulse * math.cos(angle)), self.height)
+
+
 class ActorTable(Table):
     """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
 
     body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
     points it follows instead of moves of its own. tracks: whom cameras see, whose motion is tracked. ghost: one sees through it.
     enters, leaves: when it is there [s], from the beginning to the end by default; its moves begin as it enters. group: those of
-    the same name walk together, side by side, where actors avoid each other. Who follows an actor comes and goes with it.
+    the same name walk together, side by side, where actors avoid each other. strikes: what strikes him, and when. Who follows an actor comes and goes with it.
     """
 
     name: FileName = "A"
@@ -62,13 +78,14 @@ class ActorTable(Table):
     leaves: Seconds | None = None
     group: FileName | None = None
     moves: tuple[MoveTable, ...] = ()
+    strikes: tuple[StrikeTable, ...] = ()
 
     @model_validator(mode="after")
     def _own_will_or_points(self):
         if self.follows is not None and self.tracks is not None:
             raise ValueError("somebody either follows points or tracks; name one of them")
         if self.follows is not None or self.tracks is not None:
-            for name in ("start", "body", "gravity", "enters", "leaves", "moves"):
+            for name in ("start", "body", "gravity", "enters", "leaves", "moves", "strikes"):
                 if name in self.model_fields_set:
                     who = "who follows points" if self.tracks is None else "who tracks"
                     raise ValueError(f"{who} has no {name}: that is the performer's")
@@ -95,4 +112,5 @@ class ActorTable(Table):
 
     def script(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Script:
         """What it does, among props."""
-        return Script(tuple(step for move in self.moves for step in move.moves(jumper, props)))
+        moves = tuple(step for move in self.moves for step in move.moves(jumper, props))
+        return Script(moves, strikes=tuple(strike.strike() for strike in self.strikes))

@@ -18,7 +18,7 @@ from .state import TINTS, SessionState, Player, newcomer, owners
 
 SLOWER = (1, 2, 4, 10)
 """Slow motion: how many ticks one step of the world takes."""
-ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode", "track", "penalty"))
+ACTIONS = frozenset(("pause", "step", "slowmo", "reset", "join", "strafe_lock", "recentre", "camera_mode", "track", "penalty", "push"))
 """What `done` does of a wish's `pressed`, beside "back=N", settings, "name=value", where to go, `goal_of`, how many passers-by there are, `peopled`, and `comparison.ACTIONS`."""
 
 
@@ -49,6 +49,8 @@ def done(moment: SessionState, who: int, action: str) -> SessionState:
         return tracking.otherwise(moment)
     if name == "strafe_lock":
         return _with(moment, who, replace(player, pilot=player.pilot.toggled()))
+    if name == "push":
+        return _with(moment, who, replace(player, pushed=True))
     character = moment.after.characters[who]
     ground = character.state.ground
     if name == "recentre":
@@ -86,7 +88,7 @@ def _reset(moment: SessionState) -> SessionState:
     for old, character in zip(moment.players, world.characters):
         camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
         players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim(), goal=None))
-    passers = tuple(Script(script.moves) for script in moment.passers)
+    passers = tuple(Script(script.moves, strikes=script.strikes) for script in moment.passers)
     return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0, passers=passers),
                      None if moment.comparison is None else replace(moment.comparison, pins=None, turned=()))
 

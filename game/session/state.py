@@ -26,7 +26,7 @@ TINTS = (TINT, (0.20, 0.46, 0.72))
 @dataclass(frozen=True, eq=False)
 class Player:
     """One pair of hands: its pilot, how it steers, where it aims, its camera now and (`last`) a tick ago. goal: where its character
-    is sent, until the hands ask for something else."""
+    is sent, until the hands ask for something else. pushed: its character is pushed in the next step."""
 
     pilot: Pilot
     camera: PlayerCamera
@@ -34,6 +34,7 @@ class Player:
     steering: Steering = STEERING
     aim: Aim = Aim()
     goal: Goal | None = None
+    pushed: bool = False
 
     @staticmethod
     def behind(character: Character) -> Player:

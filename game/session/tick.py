@@ -18,7 +18,7 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.navigation import in_world, slide
 
 from ..explain import preview
-from ..input import Aim, Wish, aloft, landing, leaving
+from ..input import Aim, Wish, aloft, landing, leaving, push
 from ..world import DT, RATE, ground_between, jump_of
 from . import settings
 from .actions import done
@@ -76,12 +76,13 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
         camera = player.camera.turned(command.swing * DT) if command.swing else player.camera
         goal = None if math.hypot(*wish.move) > 0.0 or wish.turn or aim.stands or wish.jump else player.goal  # hands take over at once
-        players.append(replace(player, pilot=pilot, camera=camera, aim=aim, goal=goal))
+        players.append(replace(player, pilot=pilot, camera=camera, aim=aim, goal=goal, pushed=False))
         props = moment.after.props
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
             slide(state.ground[:2], command.velocity, float(state.floor), props)))
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
-        intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal))
+        intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal,
+                               strike=push(player.camera.yaw, wish) if player.pushed else None))
     passers, theirs = asked(moment)
     intents += theirs
     held, turns = (None, None) if moment.comparison is None else (moment.comparison.goals, moment.comparison.turns)

@@ -9,10 +9,10 @@ from .footing import RUNNERS_HEEL, faded, heels_rise, settling
 from .flight import flight_kernel
 from .grounded import grounded
 from .path_estimate import SPINS, Course, Path, path
-from .plan import Plan
+from .plan import Plan, between_kernel
 from .thrust import Push, push
 
 __all__ = [
-    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "RUNNERS_HEEL", "SAME", "SPINS", "Airborne", "Course", "Path", "Plan", "Push", "faded", "fall",
+    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "RUNNERS_HEEL", "SAME", "SPINS", "Airborne", "Course", "Path", "Plan", "Push", "between_kernel", "faded", "fall",
     "flight_kernel", "ground_kernel", "grounded", "heels_rise", "over_nothing", "path", "push", "settling", "sinking", "struck",
 ]

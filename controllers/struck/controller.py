@@ -1,0 +1,139 @@
+"""Who is struck: ``state', pose = struck.step(state, intent, dt)``. He sways, steps, or falls and gets up again, and walks on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..body import Pose, Skeleton
+from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
+from ..jump import GRAVITY, Physique, start_of
+from ..jump.body import measures
+from .capture import FALLS, walks_kernel, way
+from .recorded_pushes import response
+from .recovery import Recovery
+from .stumble import CHEST, stumble
+from .toppling import topple
+
+STRUCK, HOLDS, OVER = 3.0, 1.4, 0.3
+"""How well it bids for somebody who is struck, above all others; how firmly it holds on, less than who loses the floor; once one can walk on."""
+WISHES = 0.05
+"""Wishes smaller than this are none [m/s, rad/s]."""
+LANDED = 0.06
+"""One walks on as a foot has landed, in so long [s]."""
+SHIFTS = 8.0
+"""Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
+ALOFT = 0.12
+"""Who is higher over the floor with both feet [m], at standard height, is in the air and no runner: there nobody can be struck."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recovering:
+    """What somebody remembers who was struck. made: what he plays; time: [s] since the strike. shift: (3,) x, z [m] of the ground frame from under the centre of mass, and its
+    heading's [rad] from the plan's, as that began."""
+
+    made: Recovery
+    time: float = 0.0
+    shift: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+
+class Struck(Controller):
+    """What becomes of somebody who is struck, `Intent.strike`: a pure function of his state and the impulse.
+
+    physique: whose body. gravity: (3,) [m/s²]. Pre-condition: a foot stands, or is about to. Post-condition: it stands at rest on both feet, or walks on with the velocity
+    that the state says, or as soon as somebody wants to walk and a foot has landed.
+    """
+
+    def __init__(self, physique: Physique = Physique(), gravity=GRAVITY):
+        self.physique, self.gravity = physique, np.asarray(gravity, float)
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The skeleton that the poses are of."""
+        return self.physique.skeleton
+
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of others."""
+        return f"Struck {self.physique} {self.gravity.tolist()}"
+
+    @property
+    def rate(self) -> float:
+        """ω = √(g/h) [1/s] of the pendulum that it is as it stands."""
+        return float(np.sqrt(-self.gravity[1] / measures(self.physique).stand))
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """STRUCK for who is struck and not in the air; while it goes on, how firmly it holds on."""
+        if isinstance(state.memory, Recovering):
+            wishes = bool(np.abs(intent.velocity).max() > WISHES) or intent.leap is not None
+            return OVER if wishes and self._walks_on(state) else HOLDS
+        if intent.strike is None or np.ndim(state.ground) != 1:
+            return 0.0
+        low = float(start_of(self.physique, state).feet[:, 1].min()) - float(state.floor)
+        return STRUCK if low < self.physique.tables.sole + ALOFT * self.physique.size else 0.0
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state of who has just been struck. Unable where nothing strikes."""
+        if intent.strike is None:
+            raise Unable("nothing strikes it")
+        made = self.recovery(state, intent, intent.strike)
+        shift = np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.headings[0]]
+        return replace(state, memory=Recovering(made, 0.0, shift))
+
+    def recovery(self, state: CharacterState, intent: Intent, strike: Strike) -> Recovery:
+        """What becomes of a state that is struck: its mass centre's velocity is what it was and the impulse over the mass."""
+        start, floor, size = start_of(self.physique, state), float(level(state.floor)), self.physique.size
+        x, z = strike.impulse
+        start = replace(start, velocity=start.velocity + np.array([x, 0.0, z]) / self.physique.mass)
+        free: np.ndarray = np.asarray(np.logical_not(np.asarray(state.contacts, bool).reshape(2, 2)).all(1))
+        c, s = np.cos(start.heading), np.sin(start.heading)
+        v_f, omega, v_l = np.asarray(intent.velocity, float)
+        wish = np.array([s * v_f + c * v_l, c * v_f - s * v_l]) if np.isfinite([v_f, v_l]).all() else np.zeros(2)
+        goes = way(start.centre[[0, 2]], start.velocity[[0, 2]], start.feet[:, [0, 2, 3]], free, start.heading, self.rate, wish, self.physique.tables)
+        height = CHEST * size if strike.height is None else strike.height
+        if goes.fate == FALLS:
+            return topple(self.physique, start, floor, self.rate)
+        return stumble(self.physique, start, goes, free, response(), floor, height)
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of dt seconds. ValueError unless 0 < dt ≤ 0.1."""
+        dt = seconds(dt)
+        if intent.strike is not None and state.memory.time > 0.0:  # struck again
+            state = self.enter(state, intent)
+        memory: Recovering = state.memory
+        made, time = memory.made, min(memory.time + dt, memory.made.duration)
+        pose, (centre, velocity, heading) = made.at(time), made.moving(time)
+        ground = np.array([centre[0], centre[2], heading]) + memory.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
+        c, s = np.cos(ground[2]), np.sin(ground[2])
+        velocity = np.array([s * velocity[0] + c * velocity[2], 0.0, c * velocity[0] - s * velocity[2]])
+        n, part = made.between(time)
+        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, time=time))
+        if np.abs(intent.velocity).max() > WISHES and self._walks_on(after) and not made.stands(time):
+            after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
+        return after, pose
+
+    def status(self, state: CharacterState) -> Status:
+        """Running until it stands, and says what it does."""
+        memory: Recovering = state.memory
+        if memory.time < memory.made.duration:
+            return Status("running", memory.made.why)
+        return Status("done", memory.made.why)
+
+    def _walks_on(self, state: CharacterState) -> bool:
+        """Whether one could walk on now: a foot has just landed, or one stands."""
+        memory: Recovering = state.memory
+        if memory.made.stands(memory.time):
+            return True
+        if memory.made.landing(memory.time, LANDED) < 0:
+            return False
+        return bool(walks_kernel(np.asarray(state.velocity, float)[[2, 0]], 0.0, self.physique.size))
+
+
+def rehearse(struck: Struck) -> None:
+    """Strike somebody in a T-pose, so that what that compiles or loads does not halt a game."""
+    skeleton = struck.skeleton
+    pose = Pose(skeleton.offsets[0].copy(), np.tile(np.eye(3), (len(skeleton), 1, 1)))
+    state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
+    intent = Intent(strike=Strike((0.0, 0.5 * struck.physique.mass)))
+    struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)

@@ -1,0 +1,176 @@
+"""Swaying and stumbling: a body over the feet that catch it, its mass centre on the pendulum's way, trunk and arms as recorded people answer a push."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d, minimum_filter1d
+
+from ..body import yaw
+from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
+from ..jump.motion import FADE, faded, ground_kernel
+from .capture import RATE, Way
+from .recorded_pushes import SPACED
+from .recovery import Recovery
+
+STRAIGHT = 0.975
+"""A leg that stands under a stumbling body is no longer than this share of its length, as long as its heel is down."""
+HEELS = 0.14
+"""A heel that rises lends a leg that is behind so much [m], at standard height."""
+LOWERS = 0.09
+"""Who is thrown goes down by this [m], at standard height, for each m/s (recorded: 0.06 … 0.13)."""
+LIFTS = 0.045, 0.05
+"""A foot swings so high [m] and higher by this share of how far it goes."""
+PEELS = 0.35
+"""How far a foot that leaves points down at most [rad]."""
+MOST = 1.4
+"""Trunk and arms answer no more than to so fast a push [m/s]: that was recorded."""
+ROLLS, SPREADS = 0.16, 0.30
+"""A push from the side bends the trunk aside by this and spreads the arms by that [rad], for each m/s; built, nobody was recorded."""
+COURSE = (0.0, 0.15, 0.4, 0.8, 1.5), (0.0, -0.5, 1.0, 0.5, 0.0)
+"""How it goes in time [s]: against the push at first, the trunk being left behind, then with it."""
+CHEST = 1.25
+"""Where a push strikes that is told nowhere [m], at standard height; pushes at the hips bend the trunk as much the other way."""
+
+
+RESTED, STILL = 0.25, 0.05
+"""So long before its end it is at rest but for trunk and arms [s], if it is slower then than this [m/s]."""
+SAID = "pushed, it sways", "pushed, it takes a step", "pushed, it stumbles"
+
+
+def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, response: np.ndarray, floor: float, height: float) -> Recovery:
+    """The motion of a body along a way. free: (2,) which feet are in the air. response: (2, ROWS, 11) as fitted. floor: [m]. height: [m] over it where it was struck."""
+    body, size = physique.tables, physique.size
+    times = np.arange(len(way.centre)) / RATE
+    feet, standing = _feet(start, way, free, floor, body, times)
+    centres, velocities = _centres(physique, start, way, feet, standing, floor, times)
+    angles, aside = _carriage(start, way, response, times, (height / size - 1.0) / (CHEST - 1.0))
+    offsets, turned = _left_over(physique, start, angles[0], times)
+    joints = carriage.joints_of(physique.skeleton)
+    offsets[:, joints[:3], 2] += aside[:, None] / 3.0
+    facing = yaw(np.full(len(times), start.heading)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    roots, local = np.empty((len(times), 3)), np.tile(np.eye(3), (len(times), len(physique.skeleton), 1, 1))
+    root, begins = np.array(start.root, float), [0, *(int(round(step[1] * RATE)) for step in way.steps if step[1] > 0.0), len(times)]
+    turned = np.ascontiguousarray(turned @ facing)
+    for first, last in zip(begins[:-1], begins[1:]):
+        if first and first < len(times):
+            _leaves(feet, standing, first, times)
+        part = slice(first, last)
+        made = feet[part].copy()
+        ground_kernel(body, FLEX * physique.flexibility, angles[part], joints, offsets[part], turned[part], centres[part], made, root, roots[part], local[part])
+        feet[part] = made
+        root = roots[last - 1].copy()
+    contacts = np.zeros((len(times), 4), bool)
+    contacts[:, 1::2] = standing
+    contacts[:, ::2] = standing & (feet[..., 4] < 0.03)
+    return Recovery(times, roots, local, centres, velocities, contacts, np.full(len(times), start.heading), way.fate, way.caught,
+                    way.steps[:, [0, 2]].copy(), float(times[-1]) - RESTED if np.abs(way.velocity[-1]).max() < STILL else np.inf, SAID[min(way.caught, 2)])
+
+
+def _feet(start: Start, way: Way, free: np.ndarray, floor: float, body, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The feet (N, 2, 6): balls, yaw, pitch, 1; and whether they stand (N, 2)."""
+    planted = start.planted(floor, body)
+    feet = np.ones((len(times), 2, 6))
+    feet[..., :5] = planted + faded(start.feet - planted, start.feet_rates, FOOT_FADE, times)
+    feet[..., 1] = np.maximum(feet[..., 1], planted[:, 1])
+    standing = np.tile(~np.asarray(free, bool), (len(times), 1))
+    for step in way.steps:
+        side, lift, land = int(step[0]), step[1], step[2]
+        first, last = int(round(lift * RATE)), min(int(round(land * RATE)), len(times) - 1)
+        flight = np.arange(first, last + 1)
+        share = (times[flight] - lift) / (land - lift)
+        begin, rate = feet[first, side, :5].copy(), np.zeros(5)
+        if lift == 0.0:
+            begin, rate = start.feet[side].copy(), start.feet_rates[side].copy()
+        end = np.array([step[3], floor + body.sole, step[4], begin[3] + np.remainder(step[5] - begin[3] + np.pi, 2.0 * np.pi) - np.pi, 0.0])
+        gone = quintic(begin, rate * (land - lift), end, share)
+        far = float(np.hypot(*(end - begin)[[0, 2]]))
+        up = 16.0 * share**2 * (1.0 - share) ** 2
+        gone[:, 1] = np.maximum(gone[:, 1] + (LIFTS[0] * body.size + LIFTS[1] * far) * up * (lift > 0.0 or begin[1] - floor < 0.1 * body.size), floor + body.sole)
+        gone[:, 4] += PEELS * min(far / 0.3, 1.0) * 27.0 / 4.0 * share * (1.0 - share) ** 2 * (lift > 0.0)
+        lower = np.sin(np.maximum(-gone[:, 4], 0.0)) * (body.toe[2] - body.heel[2])
+        gone[:, 1] = np.maximum(gone[:, 1], floor + body.sole + lower)
+        feet[flight, side, :5], feet[flight, side, 5] = gone, 0.0
+        standing[first:last, side] = False
+        feet[last:, side, :5], feet[last:, side, 5], standing[last:, side] = end, 1.0, True
+    return feet, standing
+
+
+def quintic(begin, rate, end, share):
+    """The smoothest way (K, ...) from `begin`, which it leaves with `rate` for the whole way, to rest at `end`: minimum jerk (Flash and Hogan 1985)."""
+    s = share[:, None]
+    return begin + rate * s * (1.0 - s) ** 3 * (1.0 + 3.0 * s) + (end - begin) * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+
+
+def _leaves(feet: np.ndarray, standing: np.ndarray, first: int, times: np.ndarray) -> None:
+    """A foot that leaves goes on from the pitch with which it stood."""
+    for side in range(2):
+        if standing[first - 1, side] and not standing[first, side]:
+            lands = first + int(np.argmax(np.append(standing[first:, side], True)))
+            flight = np.arange(first, min(lands, len(times)))
+            share = (flight - first) / max(lands - first, 1)
+            was = feet[first - 1, side, 4]
+            feet[flight, side, 4] += was * (1.0 - share) ** 3 * (1.0 + 3.0 * share)
+
+
+def _centres(physique: Physique, start: Start, way: Way, feet: np.ndarray, standing: np.ndarray, floor: float, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The mass centre (N, 3): along the floor as the pendulum has it, and as low as legs and the push ask."""
+    body, size, stand = physique.tables, physique.size, measures(physique).stand
+    hips = stand - (physique.skeleton.offsets[0, 1] + physique.skeleton.offsets[body.hip[0], 1])  # the mass centre over the hips
+    leg, ankle = STRAIGHT * (body.thigh + body.shank), body.sole - body.toe[1]
+    most = np.full(len(times), stand)
+    for side in range(2):
+        facing = np.stack([np.sin(feet[:, side, 3]), np.cos(feet[:, side, 3])], -1)
+        foot = feet[:, side, [0, 2]] - body.toe[2] * facing
+        off = np.linalg.norm(way.centre - foot, axis=-1) - abs(physique.skeleton.offsets[body.hip[0], 0]) * 0.5
+        behind = ((way.centre - foot) * facing).sum(-1) > 0.0
+        reach = leg + np.where(behind, HEELS * size, 0.0)
+        high = ankle + np.sqrt(np.maximum(reach**2 - off**2, (0.45 * leg) ** 2)) + hips
+        most = np.where(standing[:, side], np.minimum(most, high), most)
+    pace = np.maximum.accumulate(np.linalg.norm(way.velocity, axis=-1)[::-1])[::-1]
+    most = np.minimum(most, stand - LOWERS * size * np.minimum(np.maximum(pace - 0.15, 0.0), MOST) * np.clip(times / 0.3, 0.0, 1.0))
+    wide = int(0.15 * RATE)
+    low = gaussian_filter1d(minimum_filter1d(most, 2 * wide + 1, mode="nearest"), 0.45 * wide, mode="nearest")
+    off, rate = start.centre[1] - floor - low[0], start.velocity[1] - (low[1] - low[0]) * RATE
+    height = floor + low + faded(np.array([off]), np.array([rate]), 0.12, times)[:, 0]
+    centres = np.stack([way.centre[:, 0], height, way.centre[:, 1]], -1)
+    velocities = np.stack([way.velocity[:, 0], np.gradient(height, 1.0 / RATE), way.velocity[:, 1]], -1)
+    return centres, velocities
+
+
+def _carriage(start: Start, way: Way, response: np.ndarray, times: np.ndarray, height: float) -> tuple[np.ndarray, np.ndarray]:
+    """How trunk and arms are carried (N, 11) [rad], and how far the trunk bends aside (N,), to the left positive."""
+    pace = np.linalg.norm(way.velocity, axis=-1)
+    top = int(pace[:int(0.6 * RATE)].argmax())
+    c, s = np.cos(start.heading), np.sin(start.heading)
+    x, z = way.velocity[top] * min(1.0, MOST / max(pace[top], 1e-6))
+    ahead, left = s * x + c * z, c * x - s * z
+    rows = response[0 if ahead > 0.0 else 1]
+    keys = np.arange(len(rows)) * SPACED
+    shown = hermite(keys, rows, monotone(keys, rows), np.minimum(times, keys[-1]))
+    angles = carriage.STAND + abs(ahead) * shown
+    keys, share = np.array(COURSE)
+    course = hermite(keys, share, monotone(keys, share), np.minimum(times, keys[-1]))
+    lean = float(np.clip(height, -1.0, 1.5))
+    aside = -ROLLS * left * lean * course
+    spread = SPREADS * abs(left) * np.abs(course)
+    angles[:, 5] += spread
+    angles[:, 9] -= spread
+    angles[:, 6] += 0.6 * spread
+    angles[:, 10] += 0.6 * spread
+    angles[:, :2] = carriage.STAND[:2] + (angles[:, :2] - carriage.STAND[:2]) * (0.4 + 0.6 * lean)
+    return angles, aside
+
+
+def _left_over(physique: Physique, start: Start, angles: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What is left (N, J, 3) [rad] of how the body was carried, legs apart, and of how its pelvis was turned (N, 3, 3)."""
+    count = len(physique.skeleton)
+    local = np.tile(np.eye(3), (count, 1, 1))
+    carriage.carry_kernel(angles, carriage.joints_of(physique.skeleton), local)
+    local[0] = yaw(start.heading) @ turns(angles[:1] * [1.0, 0.0, 0.0])
+    offset, rate = vectors(start.rotations @ np.swapaxes(local, -1, -2)), start.rates.copy()
+    legs = (physique.tables.hip[:, None] + np.arange(4)).ravel()
+    left = faded(offset, rate, FADE, times)
+    left[:, legs] = 0.0
+    turned = turns(left[:, 0])
+    left[:, 0] = 0.0
+    return left, turned

@@ -1,0 +1,65 @@
+"""Falling over and getting up: a body whose capture point its legs can't reach goes the way of a recorded fall, as fast as a pendulum about its feet does.
+
+The fall that goes most nearly the same way is turned the rest of the way round while it topples. Nothing is below the floor in any moment, and what lies on it stays where it lies.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..body import centre_of_mass, forward_kinematics, yaw
+from ..jump.body import Physique, Start, turns, vectors
+from ..jump.motion import faded
+from .capture import FALLS
+from .recorded_falls import FEET, RATE, TOUCHES, Fall, falls, grounded, places
+from .recovery import Recovery
+
+PACES = 0.9, 1.35
+"""Falls are played at these shares of their recorded pace, until they strike the floor; from there on in WEARS seconds at their own."""
+WEARS = 0.35
+FADE, SPENT = 0.13, 0.15
+"""Half-life with which the pose as it was struck gives way to the fall's [s]; what the mass centre is faster than the fall is spent on the floor with this time constant [s]."""
+SLIDES = 0.3
+"""A heel or ball that is faster along the floor [m/s] does not stand on it."""
+WHY = "struck too hard to be caught by a step: it falls, and gets up"
+
+
+def topple(physique: Physique, start: Start, floor: float, rate: float) -> Recovery:
+    """The fall, lying and getting up of a body whose mass centre has start.velocity [m/s] as it begins. floor: [m]. rate: ω [1/s] of the pendulum."""
+    flat = start.velocity[[0, 2]]
+    pace = float(np.hypot(*flat))
+    way = math.atan2(flat[0], flat[1]) - start.heading
+    fall = min(falls(physique), key=lambda one: abs(math.remainder(way - one.way, math.tau)))
+    turn = math.remainder(way - fall.way, math.tau)
+    times, shown, toppled = _paced(fall, pace, rate)
+    facing = start.heading + turn * np.clip(times / toppled, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(times / toppled, 0.0, 1.0))
+    local = fall.turns(shown)
+    local[:, 0] = yaw(facing) @ local[:, 0]
+    left = faded(vectors(start.rotations @ np.swapaxes(local[0], -1, -2)), start.rates, FADE, times)
+    local = turns(left) @ local
+    roots, over = grounded(physique, local, np.asarray(start.root, float), floor)
+    centres = centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, roots, local))
+    lacks = start.velocity - (centres[1] - centres[0]) * RATE
+    slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
+    roots, centres = roots + slip, centres + slip
+    positions, turned = forward_kinematics(physique.skeleton, roots, local)
+    feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
+    flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
+    slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
+    contacts = slow & (over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
+    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY)
+
+
+def _paced(fall: Fall, pace: float, rate: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Times (N,) [s], the moments (N,) [s] of a recorded fall that are shown then, and when it strikes the floor: as soon as a pendulum would that goes with a pace [m/s] and falls as far."""
+    alone = math.asinh(fall.far * rate / max(pace, 0.05)) / rate  # until x = v/ω sinh ωt is there
+    quick = min(max((fall.strikes - fall.begins) / alone, PACES[0]), PACES[1])
+    toppled = (fall.strikes - fall.begins) / quick
+    wears = min(WEARS, 2.0 * (fall.lasts - fall.strikes) / (quick + 1.0))
+    whole = toppled + wears + (fall.lasts - fall.strikes - 0.5 * (quick + 1.0) * wears)
+    times = np.arange(int(whole * RATE)) / RATE
+    late = np.clip(times - toppled, 0.0, wears)
+    shown = fall.begins + quick * np.minimum(times, toppled) + quick * late + 0.5 * (1.0 - quick) * late**2 / wears + np.maximum(times - toppled - wears, 0.0)
+    return times, np.minimum(shown, fall.lasts), toppled
