@@ -77,7 +77,11 @@ def leans(m, ahead):
 
 def readiness(memory):
     """The same (...) of what characters (...) remember, before their next step; those who stand as if they set off in it."""
-    onset = np.where(memory["settled"], BEFORE + END, memory["onset"])
+    if not memory.ndim:  # for one it takes a seventh of the time so
+        onset = BEFORE + END if memory["settled"] else float(memory["onset"])
+        done = min(max((BEFORE + END - onset) / (BEFORE + LEANING), 0.0), 1.0)
+        return np.array(FIRST_PUSH + (1.0 - FIRST_PUSH) * done * done * (3.0 - 2.0 * done) if onset > 0.0 else 1.0)
+    onset = np.where(memory["settled"], BEFORE + END, memory["onset"].astype(float))
     done = np.clip((BEFORE + END - onset) / (BEFORE + LEANING), 0.0, 1.0)
     return np.where(onset > 0.0, FIRST_PUSH + (1.0 - FIRST_PUSH) * done * done * (3.0 - 2.0 * done), 1.0)
 

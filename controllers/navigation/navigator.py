@@ -120,6 +120,8 @@ def _thinks(now: Going, state: CharacterState, intent: Intent, walker: Controlle
         return now.but(thinking=began(now, *asked[1:], np.zeros(3)))
     if late:
         return now.but(thinking=run_up(*asked))
+    if now.back and ready(now, state):
+        return now.but(thinking=began(now, *asked[1:], np.zeros(3)))
     if now.crossings and not run and not now.poised and ready(now, state):
         return now.but(thinking=poised(*asked))
     return now.but(thinking=another(*asked)) if astray(now, state) else now

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -70,10 +69,10 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
     for k, (i, own, change, part) in enumerate(zip(who, asked, share * (led - asked), share[:, 0])):
         way = _way(world.characters[i], found[i])
         if way is not None and way.crossings and _taken(way, ground[:, :2], k):
-            found[i] = replace(found[i], held=True)
+            found[i] = but(found[i], held=True)
         if part > 1e-6 and not jumps[k]:
             halt = found[i].halt if part < HALF_WAY else None  # who has to give way does not stop where he wished to
-            found[i] = replace(found[i], velocity=own + change, halt=halt) if found[i].goal is None else replace(found[i], aside=change)
+            found[i] = but(found[i], velocity=own + change, halt=halt) if found[i].goal is None else but(found[i], aside=change)
     return world, found
 
 

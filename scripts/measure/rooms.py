@@ -1,6 +1,6 @@
 """Measure walks among ten things: plans in random rooms, and somebody who is sent through them.
 
-    python scripts/measure/rooms.py [--scenes 1000] [--walked 400] [--seed 0] [--log FILE] [--plots DIR]
+    python scripts/measure/rooms.py [--scenes 1000] [--walked 400] [--seed 0] [--gaps] [--log FILE] [--plots DIR]
 
 Room n of a seed is the same whichever others are asked for; with --log each is kept as a line of JSON, and one that is there is not done again. A goal
 counts as one that can be reached where a grid twice as fine as the planner's has a way for a disc of the clearance's radius; along every plan the body is
@@ -112,6 +112,17 @@ def walk(walker: Locomotion, things, start, goal) -> dict[str, Any]:
             "depth": depth, "limb": limb, "thing": thing, "frame": frame}
 
 
+def gaps(limits) -> None:
+    """How many plans lead through a gap in a wall of 24 m, from six starts, and not round the wall."""
+    ways = [((0.0, 0.0, 0.0), (0.0, 4.0, 0.0)), ((-1.0, 0.5, 0.0), (0.8, 3.5, 1.0)), ((1.0, 0.0, 2.0), (-1.0, 4.0, -1.0)),
+            ((-2.0, 1.0, 1.5), (1.5, 3.0, 0.0)), ((0.3, 1.2, 3.0), (-0.5, 2.9, 0.0)), ((0.0, 0.0, 1.57), (0.0, 4.0, 1.57))]
+    for wide in np.arange(0.47, 0.521, 0.005):
+        wall = tuple(Box((side * (0.5 * wide + 6.0), 0.6, 2.0), (12.0, 1.2, 0.15)) for side in (1.0, -1.0))
+        made = [plan(start, goal, limits=limits, around=wall) for start, goal in ways]
+        through = sum(not one.reason and np.abs(one.sampled(200)[1][:, 0]).max() < 6.0 for one in made)
+        print(f"a gap of {100 * wide:.1f} cm: {through} of {len(ways)} plans lead through it, {sum(bool(one.reason) for one in made)} nowhere", flush=True)
+
+
 def told_of_plans(rows: Sequence[dict]) -> None:
     """All figures of plans."""
     for name in SETS:
@@ -152,6 +163,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=1000, help="rooms, of which the first --walked are walked through, too")
     parser.add_argument("--walked", type=int, default=400)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--gaps", action="store_true", help="narrow gaps instead of rooms")
     parser.add_argument("--log", type=Path, help="a file to which every room is added as it is done")
     parser.add_argument("--plots", type=Path, help="a folder for pictures")
     given = parser.parse_args()
@@ -159,6 +171,9 @@ def main() -> None:
     walker = Locomotion.load()
     limits = walker.walk.half_spaces()
     rehearse()
+    if given.gaps:
+        gaps(limits)
+        return
     lines = given.log.read_text().splitlines() if given.log and given.log.exists() else []
     known = {(row["seed"], row["number"]): row for row in map(json.loads, lines)}
     rows = []

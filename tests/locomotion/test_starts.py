@@ -10,6 +10,7 @@ from gambol.controllers.body.springs import spring_kernel
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import LibraryError, Library, Locomotion, Settings, Start, first_stride_build
 from gambol.controllers.locomotion.cycles import track
+from gambol.controllers.locomotion.first_stride import readiness
 from playing import FPS, play
 
 
@@ -41,6 +42,10 @@ def test_readiness_is_how_fast_a_wish_is_taken_up(locomotion):
         spent += locomotion.readiness(state) / FPS
         state, _ = locomotion.step(state, Intent(np.array([0.0, 1.0, 0.0])), 1 / FPS)
         assert state.velocity[1] == pytest.approx(spring_kernel(0.0, 0.0, 1.0, 0.11, spent)[0], abs=0.06)
+    crowd = locomotion.start(np.zeros((2, 3)))
+    for _ in range(FPS // 2):  # one alone, and each of many, to the bit
+        assert readiness(crowd.memory[0]) == readiness(crowd.memory)[0]
+        crowd, _ = locomotion.step(crowd, Intent(np.array([0.0, 1.0, 0.0])), 1 / FPS)
     assert locomotion.readiness(state) == 1.0 and locomotion.readiness(locomotion.start(np.zeros((4, 3)))).shape == (4,)
 
 

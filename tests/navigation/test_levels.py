@@ -130,12 +130,28 @@ def test_he_leaps_from_a_walk_and_walks_on(someone):
     assert np.abs([state.ground[0] for state in states]).max() < 0.3, "the leap on the way is taken, not another as short"
 
 
+WIDE = (LONG[0], Box((0.0, 0.3, 6.08), (2.0, 0.6, 5.0)))
+
+
 def test_a_walk_leads_over_gaps_that_are_too_wide_from_a_stand(someone):
-    wide = (LONG[0], Box((0.0, 0.3, 6.08), (2.0, 0.6, 5.0)))
-    leap = Intent(leap=Leap(np.array([0.0, 0.6, 3.94])), around=wide)
+    leap = Intent(leap=Leap(np.array([0.0, 0.6, 3.94])), around=WIDE)
     assert "too far" in someone.refusal(someone.start((0.0, 2.14, 0.0), 0.6), leap)
-    states = going(someone, wide, (0.0, -2.0, 0.0), 0.6, Goal((0.0, 7.0)))
+    states = going(someone, WIDE, (0.0, -2.0, 0.0), 0.6, Goal((0.0, 7.0)))
     assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
+
+
+def test_who_stands_too_near_for_his_run_up_steps_back_for_it(someone):
+    states = going(someone, WIDE, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)))
+    off = [state.active for state in states].index("jump")
+    assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
+    assert any(state.going.back for state in states) and min(state.ground[1] for state in states) < 0.4
+    assert states[off - 1].velocity[0] > 1.2 and not states[-1].going.barred, "then he leaps from a walk, at once"
+
+
+def test_without_room_to_step_back_a_gap_is_too_wide(someone):
+    short = (Box((0.0, 0.3, 1.75), (2.0, 0.6, 1.5)), WIDE[1])
+    status = someone.status(going(someone, short, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)), 3.0)[-1])
+    assert status.kind == "failed" and "no leap" in status.reason
 
 
 def test_a_step_that_is_hindered_becomes_a_leap_from_a_stand(someone):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation.obstacles import DEPTH, SHOULDER
-from gambol.controllers.navigation.planning import plan
+from gambol.controllers.navigation.planning import goal_planner, plan
 from gambol.controllers.navigation.planning.goal_planner import MARGIN
 from gambol.controllers.navigation.planning.limits import keep_clear, reach
 from gambol.controllers.navigation.planning.room import narrow, room_on
@@ -111,3 +111,31 @@ def test_he_side_steps_through_and_planned_anew_in_the_gap_goes_on_so():
     assert walker.status(state).kind == "done" and np.hypot(*(state.ground[:2] - [0.2, 3.6])) < 0.03
     headings, aside = np.array(passed)[:, 2], np.abs(np.array(passed)[:, 0])
     assert np.abs(np.sin(headings)).min() > 0.7 and aside.max() < 0.05
+
+
+@pytest.mark.parametrize("wide", [0.485, 0.49, 0.5])
+def test_a_gap_of_less_than_half_a_metre_is_passed_by_who_comes_aslant(wide):
+    """Rather than going round a wall of 24 m."""
+    wall = [Box((side * (wide / 2 + 6.0), 0.6, 2.0), (12.0, 1.2, 0.15)) for side in (1, -1)]
+    made = plan((-2.0, 1.0, 1.5), (1.5, 3.0, 0.0), limits=Locomotion.load().limits(0.9), around=wall)
+    assert made.reason == "" and np.abs(made.sampled()[1][:, 0]).max() < 3.0
+
+
+def test_no_plan_takes_more_work_than_it_is_given(monkeypatch):
+    """Newton's steps times intervals: so much for the ways that he walks straight, and as much for those on which he turns aside."""
+    spent, search = [], goal_planner.search
+
+    def counted(splines, *rest):
+        search(splines, *rest)
+        spent.append((splines.shape[1] - 3) * int(np.abs(rest[-1]).sum()))
+    monkeypatch.setattr(goal_planner, "search", counted)
+    wall = [Box((side * 2.3, 0.6, 2.0), (4.0, 1.2, 0.15)) for side in (1, -1)]
+    plan((0.0, 0.0, 1.5), (0.0, 4.0, 0.0), limits=LIMITS, around=wall)
+    whole = sum(spent)
+    for work in (600, 1500, 2500):
+        spent.clear()
+        monkeypatch.setattr(goal_planner, "WORK", work)
+        monkeypatch.setattr(goal_planner, "MENDS", work // 5)
+        made = plan((0.0, 0.0, 1.5), (0.0, 4.0, 0.0), limits=LIMITS, around=wall)
+        assert sum(spent) <= (6 if made.reason else 2) * work, (work, spent)
+    assert whole > 2 * 600, "or nothing is cut here"

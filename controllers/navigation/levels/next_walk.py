@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...contract import CharacterState, Controller, Goal, Intent, Leap
-from .journeys import Crossing, journey
-from .run_up import farther
+from .journeys import Crossing, journey, named
+from .run_up import farther, near, start_of
 from .surfaces import levels_of
 
 Refusal = Callable[[CharacterState, Intent], str | None]
@@ -19,7 +19,8 @@ Refusal = Callable[[CharacterState, Intent], str | None]
 class Leg(NamedTuple):
     """A walk. place: (2,) x, z [m] where it leads. heading: [rad] to stand there, or None to stand as one comes. around: what is in its way.
 
-    crossings: the leaps of the whole way that is left, the first at the end of this walk. reason: why no way leads to the goal, or "".
+    crossings: the leaps of the whole way that is left, the first at the end of this walk, or, where it leads back for a run-up, of the next. reason: why no
+    way leads to the goal, or "".
     """
 
     place: np.ndarray
@@ -27,12 +28,14 @@ class Leg(NamedTuple):
     around: Sequence[Any]
     crossings: tuple[Crossing, ...] = ()
     reason: str = ""
+    back: bool = False
 
 
 def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequence[Any], barred: Iterable[tuple[float, ...]] = (),
-             refusal: Refusal | None = None, known: Sequence[Crossing] = ()) -> Leg:
+             refusal: Refusal | None = None, known: Sequence[Crossing] = (), stands: Iterable[tuple[float, ...]] = ()) -> Leg:
     """How the way to a goal goes on, for a walker who stands in `state`. barred: leaps, as `named`, that he could not make. refusal: how the walker
     is asked for leaps, by default his own. known: the leaps that are left of a way that he is on: they are not sought again where they lead on from here.
+    stands: leaps, as `named`, that he makes from no walk.
     """
     refusal = walker.refusal if refusal is None else refusal
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
@@ -44,15 +47,21 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     if levels.regions[end] == region:
         return Leg(goal.floor, goal.heading, stops)
 
-    if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:
-        return Leg(known[0].ground[:2], float(known[0].ground[2]), stops, tuple(known))
+    def from_stand(leap: Crossing) -> str | None:
+        return refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
 
     def able(leap: Crossing) -> str | None:
-        why = refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+        why = from_stand(leap)
         return "" if why and farther(walker, leap, around, refusal) else why
 
+    def to(crossings: tuple[Crossing, ...]) -> Leg:
+        """The walk to the first of them; back, where he is too near for the run-up without which it is too far."""
+        first = crossings[0]
+        if near(first, here) and named(first) not in stands and (begins := start_of(first, around)) is not None and from_stand(first):
+            return Leg(begins, float(first.ground[2]), stops, crossings, back=True)
+        return Leg(first.ground[:2], float(first.ground[2]), stops, crossings)
+
+    if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:
+        return to(tuple(known))
     way = journey(levels, here, start, goal.floor, end, able, barred)
-    if way.crossings:
-        first = way.crossings[0].ground
-        return Leg(first[:2], float(first[2]), stops, way.crossings)
-    return Leg(goal.floor, goal.heading, stops, (), way.reason)
+    return to(way.crossings) if way.crossings else Leg(goal.floor, goal.heading, stops, (), way.reason)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...contract import CharacterState, Controller, Intent, Leap
 from ..goal import wish
+from ..obstacles import SHOULDER, STEP
 from .journeys import Crossing
 from .surfaces import levels_of
 
@@ -24,7 +25,9 @@ FAR, UP = 2.0, 0.1
 LONG = 1.65
 """Who leaps from a walk leaps so far at least [m]: landing nearer, he would come to a stand."""
 RUN = 1.2
-"""So far before the leap he begins to walk to it, at least [m], ..."""
+"""So far before the leap he begins to walk to it, at least [m] ..."""
+BACKS = 1.9, 1.3
+"""... or goes back for it, so far, where there is room: from a stand there one of his steps ends where the leap goes off; ..."""
 ROOM = 1.8
 """... and has so far to come to a stand behind where he lands [m]."""
 SOON = 0.65
@@ -44,14 +47,30 @@ EVERY = 3
 def runs(leap: Crossing, here: np.ndarray, around: Sequence[Any], planes: np.ndarray) -> float:
     """How fast [m/s] somebody at a place (2,) would walk as he leaps; 0 for who leaps from a stand: where there is no room, or it is too far or high."""
     top = float(np.min(-planes[:, 3] / np.maximum(planes[:, 0], 1e-9), initial=np.inf, where=planes[:, 0] > 1e-9))
-    if top < PACE or (leap.ground[:2] - here) @ _ahead(leap) < RUN:
+    if top < PACE or near(leap, here):
         return 0.0
     return PACE if _room(leap, around) else 0.0
 
 
+def start_of(leap: Crossing, around: Sequence[Any]) -> np.ndarray | None:
+    """Where (2,) who can leap only from a walk begins to walk to it; None where there is no room."""
+    levels = levels_of(around)
+    for back in BACKS:
+        places = leap.ground[:2] - np.linspace(0.0, back + SHOULDER, 8)[:, None] * _ahead(leap)
+        which, heights = levels.ground(places, leap.height + STEP)
+        if np.all(levels.regions[which] == levels.regions[which[0]]) and not levels.shut(places, heights).any():
+            return leap.ground[:2] - back * _ahead(leap)
+    return None
+
+
+def near(leap: Crossing, here: np.ndarray) -> bool:
+    """Whether a place (2,) is too near to a leap to come to it at a walk."""
+    return bool((leap.ground[:2] - here) @ _ahead(leap) < RUN)
+
+
 def farther(walker: Controller, leap: Crossing, around: Sequence[Any], refusal: Callable[[CharacterState, Intent], str | None]) -> bool:
     """Whether a leap that is too far from a stand could be made from a walk, at most of the steps; what it might touch is not looked at."""
-    if not _room(leap, around):
+    if not _room(leap, around) or start_of(leap, around) is None:
         return False
     asked = [(state, Leap(np.array([state.ground[0], 0.0, state.ground[1] + leap.asks[0]]))) for state in _walking(walker)]
     asked = [(state, one) for state, one in asked if walker.precondition(state, Intent(leap=one)) >= READY]

@@ -29,6 +29,9 @@ REPAIRS = 2
 """A plan that comes too near to something between the places that are looked at is mended so often."""
 MOST = 250
 """Steps of Newton's method for a guess, at most; twice as many where he has to turn aside to pass."""
+WORK, MENDS = 60_000, 12_000
+"""Steps times intervals for all guesses of a goal together, at most, so that no plan takes much longer than others, and how many of these are kept for mending; as many
+again for ways on which he turns aside to pass. Where none was found, twice as many among twice the intervals."""
 TOLERANCE = 1e-6
 """A search ends where another step would gain less than this share of the cost."""
 ALLOWED = np.array([0.01, 0.004])
@@ -36,7 +39,7 @@ ALLOWED = np.array([0.01, 0.004])
 TIGHT = np.array([0.01, 0.009])
 """... where he turns aside to pass, which is searched for stiffly and slowly, by nearly the margin: the sweep tells ..."""
 STRICT = np.array([0.01, 0.0004])
-"""... and where a plan is mended by so much ..."""
+"""... and where a plan is mended by so much, unless he turns aside ..."""
 MARGIN = 0.01
 """... which therefore keeps so much more distance than was asked [m]."""
 FREE = np.empty((0, 4))
@@ -66,7 +69,7 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
     goals = _numbers("goal", goals)
     if goals.ndim != 2 or goals.shape[1] != 3:
         raise ValueError(f"a goal is x, z [m] and heading [rad], got shape {goals.shape[1:]}")
-    grounds = np.broadcast_to(_numbers("ground", ground), goals.shape)
+    grounds = np.array(np.broadcast_to(_numbers("ground", ground), goals.shape))  # kernels are compiled for what may be written to
     velocities = np.broadcast_to(_numbers("velocity", velocity), goals.shape)
     onward = np.broadcast_to(_numbers("leaving", leaving), goals.shape)
     for what, moving in (("starts", velocities), ("leaves", onward)):
@@ -134,7 +137,8 @@ def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance:
 def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, shapes, around, girth, top, finer: int = 1) -> None:
     """Plans for tasks [(number, ways)] among the same shapes, those of `around` as seen from the starts, put into `found` where they cost less.
     finer: so many times the intervals; where nothing was found it is sought among twice as many."""
-    table = basis(finer * max(_intervals(way, weights, top, STRETCH[int(girth[1] < girth[0])] if len(shapes) else 0.0) for _, routes in tasks for way in routes))
+    intervals = finer * max(_intervals(way, weights, top, STRETCH[int(girth[1] < girth[0])] if len(shapes) else 0.0) for _, routes in tasks for way in routes)
+    table = basis(intervals)
     first, times, aims, whose = [], [], [], []
     for number, routes in tasks:
         for way in routes:
@@ -153,17 +157,20 @@ def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, sh
     leaves = np.column_stack([in_world(ends, onward[whose]), onward[whose, 1]])
 
     ceilings = np.array([found[number].cost for number in whose])
-    most = MOST if girth[1] == girth[0] else 2 * MOST
+    straight, work = girth[1] == girth[0], np.full(len(found), finer * WORK)
+    most = MOST if straight else 2 * MOST
 
-    def searched(which, margin, shapes, allowed, ceilings=np.full(len(splines), np.inf)):
+    def searched(which, margin, shapes, allowed, ceilings=np.full(len(splines), np.inf), kept=0):
         some, times, count = splines[which], seconds[which], len(splines[which])
         costs, faults, steps = np.empty(count), np.empty((count, 2)), np.empty(count, np.int64)
+        mine = np.array(whose)[which]
         search(some, times, starts[which], speeds[which], ends[which], leaves[which], facing[which], np.asarray(weights, float), table.values, table.weights, planes, shapes,
-               girth + margin, allowed, most, TOLERANCE, np.array(whose)[which], ceilings[which], costs, faults, steps)
+               girth + margin, allowed, most, TOLERANCE, mine, (work[mine] - kept) // intervals, ceilings[which], kept > 0, costs, faults, steps)
+        np.subtract.at(work, mine, intervals * np.abs(steps))
         splines[which], seconds[which] = some, times
         return costs, faults, np.all(faults <= allowed, 1) & np.isfinite(costs)
 
-    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED if girth[1] == girth[0] else TIGHT, ceilings)
+    costs, faults, sound = searched(slice(None), MARGIN, shapes, ALLOWED if straight else TIGHT, ceilings, MENDS)
     for number, _ in tasks:
         mine = [s for s in np.argsort(costs) if whose[s] == number]
         true = round_ends(grounds[number], goals[number], around, girth, MARGIN)
@@ -174,7 +181,7 @@ def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, sh
                     break
                 margin = MARGIN + 2.0 * missing
                 wider = round_ends(grounds[number], goals[number], around, girth + margin)
-                (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), margin, wider, STRICT)
+                (costs[s],), _, (sound[s],) = searched(slice(s, s + 1), margin, wider, STRICT if straight else ALLOWED)
             if sound[s] and room_on(splines[s], true, girth) >= 0.0:
                 if costs[s] < found[number].cost:
                     found[number] = Plan(splines[s].copy(), float(seconds[s]), float(costs[s]), ends[s])

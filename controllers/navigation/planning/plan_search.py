@@ -11,9 +11,12 @@ from .splines import at_place
 
 SOFT = (10.0, 10000.0)
 """How stiff limits on velocities and distances are at first: the cost rises by half of it where one unit [m/s, m] is missing ..."""
-TIGHT, WIDER = 3e5, 0.15
-"""... where he has to turn aside to pass, the distance so stiff at once, and he so much wider at first [m], lest he turns back: who stands straight in a gap
-no longer feels which way helps ..."""
+TIGHT = 3e5
+"""... where he has to turn aside to pass, the distance so stiff at once ..."""
+SHY, WIDER = 4e3, 0.15
+"""... but at first, where it is only so stiff, and he so much wider [m], lest he turns back: who stands straight in a gap no longer feels which way helps ..."""
+SPARED = 1.2
+"""... and there he is given up only where he costs so many times more than another ..."""
 STIFFER = 8.0
 """... how much stiffer they become as long as they are broken ..."""
 STIFFEST = 1e6
@@ -24,13 +27,13 @@ ROUNDS = 9
 
 @kernel(nogil=True)
 def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values, weights, planes, shapes, girth, allowed, most, tolerance,
-           whose, ceilings, costs, faults, steps):
+           whose, spare, ceilings, rough, costs, faults, steps):
     """Every guess (S, M + 3, 3) with its time (S,) [s] becomes the least cost near it, in place.
 
     starts, speeds, goals, leaves: (S, 3), speeds, and those at the goals, as of (x, z, θ). aims: (S, Q, 2) what is faced, place by place. planes (H, 4), shapes (K, 6), girth (3,) [m]: the limits. allowed: (2,)
     how far velocities and distances may break them. whose: (S,) whose guess it is, in order: a guess is given up where it would cost more
-    than another of the same one that keeps to its limits, or, once multipliers tell, than his ceiling (S,). most: steps for a guess; twice as many for all guesses of one who turns aside to
-    pass though he has a ceiling. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
+    than another of the same one that keeps to its limits, or than his ceiling (S,). most: steps for a guess; spare: (S,) for all guesses of the same
+    one together. rough: whether guesses are not ways yet, which are mended. costs: (S,). faults: (S, 2) the worst violations. steps: (S,) taken;
     negative where the search did not settle.
     """
     places = weights.shape[0]
@@ -46,17 +49,20 @@ def search(guesses, seconds, starts, speeds, goals, leaves, aims, alpha, values,
         last = np.full(2, np.inf)
         total, settled, owed = 0, False, 0.0
         fast = near = costs[s] = faults[s, 0] = faults[s, 1] = np.inf
-        left = most if not tight or ceilings[s] == np.inf else min(most, 2 * most - spent)
+        left = min(most, spare[s] - spent)
         for lap in range(ROUNDS if left > 0 else 0):
-            held[0] = girth[0] + (WIDER if lap == 0 and tight else 0.0)
+            shy = lap == 0 and tight and rough
+            held[0] = girth[0] + (WIDER if shy else 0.0)
+            dearest = min(best, ceilings[s])
             seconds[s], costs[s], dual, fast, near, count, settled = minimise(
                 guesses[s], seconds[s], starts[s], speeds[s], goals[s], leaves[s], aims[s], alpha, values, weights, planes, shapes, held,
-                by_plane, by_shape, stiff[0], stiff[1], left - total, tolerance if lap else 10.0 * tolerance, best + owed)
+                by_plane, by_shape, stiff[0], SHY if shy else stiff[1], left - total, tolerance if lap else 10.0 * tolerance,
+                np.inf if shy else best + owed)
             total += count
             faults[s, 0], faults[s, 1] = fast, near
-            if lap == 0 and tight:
+            if shy and costs[s] <= SPARED * dearest:
                 continue
-            if (fast <= allowed[0] and near <= allowed[1]) or total >= left or dual - owed > min(best, ceilings[s]):
+            if (fast <= allowed[0] and near <= allowed[1]) or total >= left or dual - owed > dearest:
                 break
             renew(guesses[s], seconds[s], values, planes, shapes, girth, by_plane, by_shape, stiff)
             for i in range(2):

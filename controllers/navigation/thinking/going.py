@@ -51,7 +51,7 @@ class Going:
     stood: for how long he has stood at the plan's end [s]. left: how far he was from it as it was planned [m]. held: so many plans in a row brought him no nearer. waits: for how
     long others have kept him from coming nearer than he was, `nearest` [m], to the plan's end [s]. plans: how many were made. crossings: the leaps that are left. asked: for how long the first was asked for [s]. leapt: whether somebody else is on duty.
     anew: whether the plan leads on no more. barred: leaps that he could not make. pace: how fast he walks as he leaps on [m/s]; 0 from a stand. off: after how many steps he leaps,
-    once that is known. poised: whether a leap from a stand was thought of. stands: leaps that he does not make from a walk. thinking: of what he thinks beside.
+    once that is known. back: whether the plan leads back, to where the run-up begins. poised: whether a leap from a stand was thought of. stands: leaps that he does not make from a walk. thinking: of what he thinks beside.
     """
 
     goal: Goal
@@ -75,6 +75,7 @@ class Going:
     barred: tuple[tuple[float, ...], ...] = ()
     pace: float = 0.0
     off: int | None = None
+    back: bool = False
     poised: bool = False
     stands: tuple[tuple[float, ...], ...] = ()
     thinking: Thinking | None = None

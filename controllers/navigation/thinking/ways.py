@@ -44,18 +44,19 @@ def began(now: Going, state: CharacterState, intent: Intent, walker: Controller,
             questions += 1
             ask()
             return walker.refusal(there, asked)
-        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, now.crossings[1:] if now.leapt else ())
+        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, now.crossings[1:] if now.leapt else (), now.stands)
         steps = steps_of(questions, dt)
         then = foreseen(now, state, intent, walker, steps, dt, carries)
         heading = _arrival(then, leg) if leg.heading is None else leg.heading
         end = np.array([*leg.place, heading])
         within = None if leg.crossings or goal.within is None else max(goal.within - now.spent - steps * dt, 0.1)
-        pace = runs(leg.crossings[0], then.ground[:2], intent.around, planes) if leg.crossings and named(leg.crossings[0]) not in now.stands else 0.0
+        walks = leg.crossings and not leg.back and named(leg.crossings[0]) not in now.stands
+        pace = runs(leg.crossings[0], then.ground[:2], intent.around, planes) if walks else 0.0
         made = Plan.none(then.ground, end, leg.reason) if leg.reason else plan_in_time(
             then.ground, end, then.velocity, planes, leg.around, float(then.floor), within, now.planned != goal, np.array([pace, 0.0, 0.0]))
         return {"plan": made, "planned": goal, "heading": heading, "around": intent.around, "stops": leg.around, "time": 0.0, "stood": 0.0,
                 "left": _left(then, made), "held": 0, "waits": 0.0, "nearest": math.inf, "plans": now.plans + 1, "crossings": leg.crossings,
-                "asked": 0.0, "leapt": False, "anew": False, "pace": pace, "off": None, "poised": False}
+                "asked": 0.0, "leapt": False, "anew": False, "pace": pace, "off": None, "poised": False, "back": leg.back}
     return _thinking(act, dt, carries)
 
 
