@@ -170,7 +170,7 @@ class Comparison:
             if rows:
                 rows = [row for _, row in sorted(rows, key=lambda one: one[0])]
                 parts.append(f"### {name}\n\n" + table([*baseline.grid, "cm", "joint deg", ""], rows))
-        return "\n\n".join(parts)
+        return "\n\n".join([*parts, TRACKERS])
 
     def time(self) -> str:
         """A frame, all in: neighbours, prior and solver."""
@@ -193,6 +193,13 @@ class Comparison:
         return f"{len(on.takes)} takes, {on.name}; {len(on.learnt):,} poses to learn from, mirror images included."
 
 
+TRACKERS = """### Network for trackers
+
+| chosen | among | on | in use |
+|---|---|---|---|
+| how much of one's own motion is taught | 0, 0.25, 0.5, 0.75, 1 of the way | eight of NCSOFT's takes, and these takes | 0.5 |
+
+Versions of it were compared on these takes alone; [what the one in use has there](validation.md). Set poses' deviations were not tuned."""
 SECTIONS = {"table1": "Table 1", "table2": "Table 2", "figure3": "Figure 3", "subjects": "Unseen subjects", "noise": "Noise on the points",
             "long": "A minute", "dropout": "Lost points", "tune": "Tuning", "time": "Time"}
 
