@@ -24,7 +24,7 @@ from gambol.controllers.compiled import cache_folder
 from gambol.controllers.reconstruction.database import DatabaseError
 from gambol.controllers.reconstruction.regression import SPAN
 from reconstruction_bench import Bench, Course, Courses, lost_from
-from reconstruction_figures import PRINTED, PRINTED_SIZES, Figures, against, bars, figures, lines, table
+from reconstruction_figures import PRINTED, PRINTED_SIZES, TRACKERS, Figures, against, bars, figures, lines, table
 from reconstruction_methods import BASE, OURS, RIVALS
 
 SETS = ("2", "3", "4", "5", "6", "liu")
@@ -193,13 +193,6 @@ class Comparison:
         return f"{len(on.takes)} takes, {on.name}; {len(on.learnt):,} poses to learn from, mirror images included."
 
 
-TRACKERS = """### Network for trackers
-
-| chosen | among | on | in use |
-|---|---|---|---|
-| how much of one's own motion is taught | 0, 0.25, 0.5, 0.75, 1 of the way | eight of NCSOFT's takes, and these takes | 0.5 |
-
-Versions of it were compared on these takes alone; [what the one in use has there](validation.md). Set poses' deviations were not tuned."""
 SECTIONS = {"table1": "Table 1", "table2": "Table 2", "figure3": "Figure 3", "subjects": "Unseen subjects", "noise": "Noise on the points",
             "long": "A minute", "dropout": "Lost points", "tune": "Tuning", "time": "Time"}
 
