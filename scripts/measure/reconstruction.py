@@ -24,7 +24,7 @@ from gambol.controllers.compiled import cache_folder
 from gambol.controllers.reconstruction.database import DatabaseError
 from gambol.controllers.reconstruction.regression import SPAN
 from reconstruction_bench import Bench, Course, Courses, lost_from
-from reconstruction_figures import PRINTED, PRINTED_SIZES, Figures, against, bars, figures, lines, table
+from reconstruction_figures import PRINTED, PRINTED_SIZES, TRACKERS, Figures, against, bars, figures, lines, table
 from reconstruction_methods import BASE, OURS, RIVALS
 
 SETS = ("2", "3", "4", "5", "6", "liu")
@@ -170,7 +170,7 @@ class Comparison:
             if rows:
                 rows = [row for _, row in sorted(rows, key=lambda one: one[0])]
                 parts.append(f"### {name}\n\n" + table([*baseline.grid, "cm", "joint deg", ""], rows))
-        return "\n\n".join(parts)
+        return "\n\n".join([*parts, TRACKERS])
 
     def time(self) -> str:
         """A frame, all in: neighbours, prior and solver."""

@@ -14,6 +14,14 @@ from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.evaluation import Outcome, metrics
 from gambol.controllers.reconstruction.regression import SPAN
 
+TRACKERS = """### Network for trackers
+
+| chosen | among | on | in use |
+|---|---|---|---|
+| how much of one's own motion is taught | 0, 0.25, 0.5, 0.75, 1 of the way | eight of NCSOFT's takes, and these takes | 0.5 |
+
+Versions of it were compared on these takes alone; [what the one in use has there](validation.md). Set poses' deviations were not tuned."""
+"""What was chosen of the network for trackers, told beside what was tuned of the methods."""
 FAR = 0.2
 """A frame is lost beyond this mean error [m]."""
 PRINTED = {
