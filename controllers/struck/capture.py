@@ -32,8 +32,11 @@ SOONEST = 0.1
 """No foot lands sooner [s]."""
 SHOWN = 1.6
 """So long it takes until a body that was pushed has answered with trunk and arms [s]."""
-FAR = (0.62, 0.52, 0.56)
-"""A mass centre so far ahead of a foot that stands, behind or beside it [m], at standard height, when the other lands, was not caught: no leg is so long."""
+FAR = (0.64, 0.60, 0.50)
+"""A mass centre so far ahead of a foot's ball that stands, or behind it, or a hip so far beside it [m], at standard height, when the other lands, was not caught: no leg is
+so long."""
+HIP = 0.088
+"""How far a hip is to its side [m], at standard height."""
 STANDS_BOTH = 0.05
 """Both feet stand so long between two steps [s]."""
 INSIDE = 0.85
@@ -192,10 +195,10 @@ def aim_kernel(body, side, feet, x, v, p, rate, time, heading, wish, target, poi
 
 
 @kernel
-def far_kernel(foot, x, heading, wishes, size):
-    """How far a mass centre (2,) is off a foot (3,), over how far it may be. wishes: whether it walks on: then a foot behind leaves in time."""
+def far_kernel(foot, x, heading, own, wishes, size):
+    """How far a mass centre (2,) is off a foot (3,), over how far it may be. own: 1 of a left one, −1 of a right one. wishes: whether it walks on: then a foot behind leaves in time."""
     c, s = math.cos(heading), math.sin(heading)
-    ahead, left = s * (x[0] - foot[0]) + c * (x[1] - foot[1]), c * (x[0] - foot[0]) - s * (x[1] - foot[1])
+    ahead, left = s * (x[0] - foot[0]) + c * (x[1] - foot[1]), c * (x[0] - foot[0]) - s * (x[1] - foot[1]) + own * HIP * size
     return math.hypot(0.0 if wishes else ahead / (FAR[0] if ahead > 0.0 else FAR[1]), left / FAR[2]) / size
 
 
@@ -257,7 +260,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, centres,
                     caught += 1
                 last, stance, swing, landed = swing, swing, -1, now
                 count = support_kernel(body, feet, free, points, corners)
-                behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, wishes, body.size) > 1.0
+                behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, 2.0 * last - 1.0, wishes, body.size) > 1.0
                 if margin_kernel(corners, count, point[0], point[1]) < -LOST * body.size or caught > MOST or behind:
                     return n + 1, taken, FALLS, caught
                 if not closing and wishes and walks_kernel(v, heading, body.size):

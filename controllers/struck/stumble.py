@@ -14,6 +14,8 @@ from .recovery import Recovery
 
 STRAIGHT = 0.975
 """A leg that stands under a stumbling body is no longer than this share of its length, as long as its heel is down."""
+BENT = 1.15
+"""Hips are off a foot by so many times as much as the mass centre, as a trunk that bends sends them the other way."""
 HEELS = 0.14
 """A heel that rises lends a leg that is behind so much [m], at standard height."""
 LOWERS = 0.09
@@ -89,9 +91,9 @@ def _feet(start: Start, way: Way, free: np.ndarray, floor: float, body, times: n
         gone[:, 4] += PEELS * min(far / 0.3, 1.0) * 27.0 / 4.0 * share * (1.0 - share) ** 2 * (lift > 0.0)
         lower = np.sin(np.maximum(-gone[:, 4], 0.0)) * (body.toe[2] - body.heel[2])
         gone[:, 1] = np.maximum(gone[:, 1], floor + body.sole + lower)
-        feet[flight, side, :5], feet[flight, side, 5] = gone, 0.0
+        feet[flight, side, :5] = gone
         standing[first:last, side] = False
-        feet[last:, side, :5], feet[last:, side, 5], standing[last:, side] = end, 1.0, True
+        feet[last:, side, :5], standing[last:, side] = end, True
     return feet, standing
 
 
@@ -121,7 +123,7 @@ def _centres(physique: Physique, start: Start, way: Way, feet: np.ndarray, stand
     for side in range(2):
         facing = np.stack([np.sin(feet[:, side, 3]), np.cos(feet[:, side, 3])], -1)
         foot = feet[:, side, [0, 2]] - body.toe[2] * facing
-        off = np.linalg.norm(way.centre - foot, axis=-1) - abs(physique.skeleton.offsets[body.hip[0], 0]) * 0.5
+        off = BENT * np.linalg.norm(way.centre - foot, axis=-1) - abs(physique.skeleton.offsets[body.hip[0], 0]) * 0.5
         behind = ((way.centre - foot) * facing).sum(-1) > 0.0
         reach = leg + np.where(behind, HEELS * size, 0.0)
         high = ankle + np.sqrt(np.maximum(reach**2 - off**2, (0.45 * leg) ** 2)) + hips

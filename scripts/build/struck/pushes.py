@@ -1,6 +1,6 @@
 """Fits how people answer a push, `assets/library/pushes.npz`, to a folder of motion capture.
 
-    python scripts/build/pushes.py DIR
+    python scripts/build/struck/pushes.py DIR
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Fits how people fall over and get up again, `assets/library/falls.npz`, to a folder of motion capture. Takes ten minutes.
 
-    python scripts/build/falls.py DIR
+    python scripts/build/struck/falls.py DIR
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""Fits how people answer pushes, and how they fall and get up, to recordings."""

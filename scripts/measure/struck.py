@@ -1,0 +1,57 @@
+"""Figures of those who are struck: how hard a push it takes to make them sway, step, stumble and fall, whether momentum is kept, what slides, what goes through the floor.
+
+    python scripts/measure/struck.py
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
+from gambol.controllers.contract import Intent, Strike
+from gambol.controllers.jump import Physique
+from gambol.controllers.person import person
+from gambol.controllers.struck import FALLS, STEPS, places
+
+WAYS = {"from behind": (0.0, 1.0), "from before": (0.0, -1.0), "from the right": (1.0, 0.0), "from the left": (-1.0, 0.0)}
+HARD = np.arange(4.0, 200.0, 4.0)
+"""Impulses [N·s]."""
+PHASES = 12
+"""So many moments of a stride are struck in."""
+
+
+def main() -> None:
+    """Print the figures."""
+    body, somebody = Physique(), person()
+    struck = somebody.parts["struck"]
+    for wish in ((0.0, 0.0, 0.0), (1.2, 0.0, 0.0), (3.0, 0.0, 0.0)):
+        states, state = [], somebody.start()
+        for n in range(150 + 5 * PHASES):
+            state, _ = somebody.step(state, Intent(np.array(wish)), 1.0 / 60.0)
+            if n >= 150 and n % 5 == 0 or n == 149:
+                states.append(somebody.active(state)[1])
+        states = states[:1] if not wish[0] else states
+        print(f"{'standing' if not wish[0] else f'at {wish[0]:g} m/s, {len(states)} moments'}, {body.mass:g} kg:")
+        for name, way in WAYS.items():
+            made = [[struck.recovery(one, Intent(np.array(wish)), Strike(tuple(hard * np.array(way)))) for hard in HARD] for one in states]
+            steps, falls = ([HARD[next((k for k, one in enumerate(row) if one.fate >= fate), -1)] / body.mass for row in made] for fate in (STEPS, FALLS))
+            kept = [np.abs(one.velocities[0][[0, 2]] - one.velocities[1][[0, 2]]).max() for row in made for one in row]
+            slides, low, under = [], [], []
+            for one in (one for row in made for one in row[::4]):
+                placed = forward_kinematics(body.skeleton, one.roots, one.local)
+                points = contact_points(body.skeleton, *placed)
+                flow = np.linalg.norm(np.diff(points[..., [0, 2]], axis=0), axis=-1) / np.diff(one.times)[:, None]
+                if one.fate < FALLS:
+                    slides.append(float(np.where(one.contacts[1:] & one.contacts[:-1], flow, 0.0).max()))
+                    low.append(float(points[..., 1].min()) - body.tables.sole)
+                else:
+                    under.append(float(places(body, *placed)[1].min()))
+                    centre = centre_of_mass(body.anatomy, *placed)
+                    assert np.isfinite(centre).all()
+            print(f"  {name}: steps from {np.median(steps):.2f} m/s, falls from {np.min(falls):.2f} (median {np.median(falls):.2f}) m/s; soles slide {max(slides, default=0.0):.3f} m/s at most, "
+                  f"{1e3 * min(low, default=0.0):.1f} mm below the floor, in falls {1e3 * min(under, default=0.0):.2f} mm; "
+                  f"speed changes by {max(kept):.3f} m/s in the first 1/120 s")
+
+
+if __name__ == "__main__":
+    main()
