@@ -17,10 +17,8 @@ from .cycles import EVENTS, RATE, Track, labels_of
 from .first_stride_build import steps, strides
 from .idle import onto
 from .library import HIPS, Library, Turn
-from .turning_step import BEFORE, END, PER_CYCLE, SPOT, WAITING, WALKS, features
+from .turning_step import BEFORE, END, PER_CYCLE, SHIFTS, SPOT, WAITING, WALKS, features
 
-SHIFTS = {WALKS: 0.65, SPOT: 0.25}
-"""For this long [s] before their first foot leaves people turn their shoulders and shift their weight, into a walk and on the spot."""
 STILL = {WALKS: 0.77, SPOT: 0.25}
 """Both feet stood for this long [s] before, and after a turn on the spot."""
 LEAVES, STAYS = 0.45, 0.3
