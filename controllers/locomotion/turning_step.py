@@ -34,8 +34,9 @@ STRIKE = float(EVENTS["walk"][3])
 """The second foot comes down this long after the first left, in phase."""
 TEMPO = 1.35, 1.0
 """So many times as fast as the recorded people, who were in no hurry, into a walk and on the spot."""
-LONGEST = 2.4
-"""No phase lasts longer than this [s]: some of those people stood between their steps."""
+QUICKEST, LONGEST = (SHORTEST, 0.6), 2.4
+"""A phase lasts no shorter, into a walk and on the spot, and no longer than this [s]: as a foot leaves it is told by few frames, and some of those
+people stood between their steps."""
 SHIFTS, HASTE = (0.65, 0.25), (2.6, 1.0)
 """Recorded people turn their shoulders and shift their weight for this long [s] before their first foot leaves; that begins so many times as fast."""
 FROM, FARTHEST = (0.9, 0.6), (4.0, 2.0)
@@ -177,7 +178,7 @@ def turned_row(m, turns, since, row):
 @kernel
 def turn_time(m, turns, since):
     """How long a phase lasts there, at the usual agility [s]."""
-    recorded = SHIFTS[m.spot] / BEFORE if since < 0.0 else min(max(turn_kernel(m, turns, DURATION_AT, since), SHORTEST), LONGEST)
+    recorded = SHIFTS[m.spot] / BEFORE if since < 0.0 else min(max(turn_kernel(m, turns, DURATION_AT, since), QUICKEST[m.spot]), LONGEST)
     return recorded / _tempo(m, since)
 
 
