@@ -221,7 +221,7 @@ def until_together(m, step, rest):
     the spot if one is not in its place then. rest: the number of the rest primitive."""
     if m.waits:
         x, z = m.offset[0, 0] - m.offset[1, 0], m.offset[0, 1] - m.offset[1, 1]
-        faded = not m.left_turn and abs(m.blend[HIPS_AT]) + abs(m.blend[HIPS_AT + 2]) < FADED
+        faded = not m.spot or not m.left_turn and abs(m.blend[HIPS_AT]) + abs(m.blend[HIPS_AT + 2]) < FADED
         if faded and m.weights[rest] >= DECIDED and math.hypot(x, z) > 2.0 * BESIDE:
             m.waits = 0
         return 0.0

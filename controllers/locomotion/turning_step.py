@@ -34,10 +34,11 @@ STRIKE = float(EVENTS["walk"][3])
 """The second foot comes down this long after the first left, in phase."""
 TEMPO = 1.35, 1.0
 """So many times as fast as the recorded people, who were in no hurry, into a walk and on the spot."""
-LONGEST = 2.4
-"""No phase lasts longer than this [s]: some of those people stood between their steps."""
-SHIFT, HASTE = 0.3, (2.0, 0.8)
-"""Shoulders turn and weight is shifted in this time [s] before the first foot leaves, so many times as fast as those people do."""
+QUICKEST, LONGEST = (SHORTEST, 0.6), 2.4
+"""A phase lasts no shorter, into a walk and on the spot, and no longer than this [s]: as a foot leaves it is told by few frames, and some of those
+people stood between their steps."""
+SHIFTS, HASTE = (0.65, 0.25), (2.6, 1.0)
+"""Recorded people turn their shoulders and shift their weight for this long [s] before their first foot leaves; that begins so many times as fast."""
 FROM, FARTHEST = (0.9, 0.6), (4.0, 2.0)
 """Smaller turns than the first [rad] are walked and stepped as the gait has them, into a walk and on the spot; larger ones than the second
 are made in two."""
@@ -144,17 +145,15 @@ def end_turn(m):
 
 @kernel
 def after_turn(m, table, row, dt):
-    """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, fades."""
+    """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, which goes on by itself, fades."""
     m.left_turn = 0
-    for d in range(LABELS_AT):
-        m.blend[d], m.blend_rate[d] = m.row[d] + m.row_rate[d] * dt - row[d], m.row_rate[d]
     m.fade = LEAVING
     later = np.empty(row.shape[0], np.float32)
-    ahead = dt / max(row[DURATION_AT], SHORTEST)
+    ahead = 0.0 if m.waits else dt / max(row[DURATION_AT], SHORTEST)
     series_kernel(table, m.weights, (m.phase + ahead) % 1.0, later)
-    if not m.waits:
-        for d in range(LABELS_AT):
-            m.blend_rate[d] -= (later[d] - row[d]) / dt
+    for d in range(LABELS_AT):
+        by_itself = later[d] - row[d]
+        m.blend[d], m.blend_rate[d] = m.row[d] - row[d] + by_itself, m.row_rate[d] - by_itself / dt
 
 
 @kernel
@@ -179,7 +178,8 @@ def turned_row(m, turns, since, row):
 @kernel
 def turn_time(m, turns, since):
     """How long a phase lasts there, at the usual agility [s]."""
-    return SHIFT / BEFORE if since < 0.0 else min(max(turn_kernel(m, turns, DURATION_AT, since), SHORTEST) / TEMPO[m.spot], LONGEST)
+    recorded = SHIFTS[m.spot] / BEFORE if since < 0.0 else min(max(turn_kernel(m, turns, DURATION_AT, since), QUICKEST[m.spot]), LONGEST)
+    return recorded / _tempo(m, since)
 
 
 @kernel
@@ -226,7 +226,7 @@ def turn_ahead(m, turns, agility, later, ground):
 @kernel
 def _tempo(m, since):
     """How many times as fast as recorded a turn is there."""
-    return HASTE[m.spot] if since < 0.0 else TEMPO[m.spot]
+    return TEMPO[m.spot] + (HASTE[m.spot] - TEMPO[m.spot]) * (1.0 - smooth(1.0 + since / BEFORE))
 
 
 @kernel

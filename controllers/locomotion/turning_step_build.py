@@ -13,14 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body import compose, contact_points, forward_kinematics, mirror_index, relative, rotations as rot, screw
-from .cycles import EVENTS, RATE, Track, labels_of
+from .cycles import RATE, Track, labels_of
 from .first_stride_build import steps, strides
 from .idle import onto
 from .library import HIPS, Library, Turn
-from .turning_step import BEFORE, END, PER_CYCLE, SPOT, WAITING, WALKS, features
+from .turning_step import BEFORE, END, PER_CYCLE, SHIFTS, SPOT, WAITING, WALKS, features
 
-SHIFTS = {WALKS: 0.65, SPOT: 0.25}
-"""For this long [s] before their first foot leaves people turn their shoulders and shift their weight, into a walk and on the spot."""
 STILL = {WALKS: 0.77, SPOT: 0.25}
 """Both feet stood for this long [s] before, and after a turn on the spot."""
 LEAVES, STAYS = 0.45, 0.3
@@ -30,7 +28,7 @@ LEAST, MOST = {WALKS: -0.3, SPOT: 0.5}, {WALKS: 3.3, SPOT: 2.1}
 SMOOTH = 0.08
 """The standard deviation [s] of the filter that takes what shakes from the ground frame's way."""
 LIFTS = 0.03
-"""On the spot feet do not swivel while they stand: the first is told to stand until so long before it leaves, in phase."""
+"""On the spot the first foot is told to stand until so long before it leaves, in phase."""
 ASIDE = np.array([-1.0, 1.0, 1.0])
 """Left and right exchanged."""
 ALIKE = 0.35
@@ -165,7 +163,7 @@ def _beside_joints(track: Track, feet: np.ndarray, at: np.ndarray, seconds: np.n
     one, other = labels[:, 2 * first:2 * first + 2], labels[:, 2 - 2 * first:4 - 2 * first]
     other[u < 0.0] = 1.0
     if kind == SPOT:
-        one[u < -LIFTS] = one[u > EVENTS["walk"][2]] = other[u < EVENTS["walk"][1]] = 1.0
+        one[u < -LIFTS] = 1.0
     way = np.stack([ahead, frame[:, 2] - frame[0, 2], aside], -1)
     return np.concatenate([place[:, :1], root[:, 1:2], place[:, 1:2], labels, duration[:, None], way], -1)
 
