@@ -24,6 +24,9 @@ GRIP = 0.8
 SINKS = 0.04, 0.085, 0.42
 """How deep [m] legs give to a body that hardly falls, how much deeper for each m/s that it falls, and at most: a tenth deeper than recorded
 for fast falls, at standard height."""
+FOLDED = 0.08, 0.3
+"""Who touches down lower below where it stands than the first, as a share of that, sinks by so much of the rest less: legs that are folded
+already would raise the heels."""
 SOONEST = 10
 """The force over the way down (s = t / T) is A (1 − (1 − s)^SOONEST − c s²): it begins at nothing and is nearly level after a tenth of T."""
 EASES, HARD = 0.3, 0.7
@@ -129,5 +132,6 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
     rate = STRIDE if striding else min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
     size, start = goal[1] - support[0, 1], float(land[1] - goal[1])
     deep = min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else 1.0) * size / ADULT
+    deep -= FOLDED[1] * max(-start - FOLDED[0] * size, 0.0)
     deep = max(min(deep, start + DEEPEST * size), max(start, 0.0) + LEAST * size)
     return Landing(rate, land - goal, velocity, gravity, goal, deep, passes)
