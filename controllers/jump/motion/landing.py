@@ -33,9 +33,9 @@ EASES, HARD = 0.3, 0.7
 """c at most; it is as much where a level force would be heavier than the body by the second, times its weight, and less in softer landings."""
 RISES, EASIEST = 5.6, 0.85
 """But c is so much that at the lowest point no more than some seven times its weight is left, lest the body be thrown up; and at most."""
-SLOWEST, LIGHT = 4.0, 6.5
-"""Rate of the spring with which a body that hardly fell stands up [1/s]; the square of that rate at most, times how deep it is over gravity: the
-floor can't pull."""
+SLOWEST, LIGHT = 8.0, 6.5
+"""Rate of the spring with which a body stands up at least [1/s], so that it is up when its trunk and arms are; the square of that rate at most,
+times how deep it is over gravity: the floor can't pull."""
 ADULT = 0.975
 """How high the centre of mass of a standard body stands [m]."""
 DEEPEST = 0.45
