@@ -33,7 +33,7 @@ class MoveTable(Table):
     velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
     [m] it jumps. airtime: [s]; by default of the least effort. aim: so long [s] one crouches before a jump without a run-up.
 
-    hops: how many hops on both feet, each off the landing of the one before, and each so `far` ahead [m] (0: on the spot); airtime: of each.
+    hops: how many hops on both feet, each off the landing of the one before, and each so far `ahead` [m] (0: on the spot); airtime: of each.
     """
 
     seconds: Seconds | None = Field(None, alias="for")
@@ -50,7 +50,7 @@ class MoveTable(Table):
     airtime: Airtime | None = None
     within: Length | None = None
     hops: Annotated[int, Field(ge=1, le=100)] | None = None
-    far: Annotated[float, Field(ge=0, le=5, allow_inf_nan=False)] | None = None
+    ahead: Annotated[float, Field(ge=0, le=5, allow_inf_nan=False)] | None = None
     aim: Seconds | None = None
     speed: Pace | None = None
     facing: Degrees | None = None
@@ -65,7 +65,7 @@ class MoveTable(Table):
         walks, jumps = kinds[0] in ("walk_to", "path"), kinds[-1] in ("jump_to", "jump", "hops")
         for name, fits, with_ in (("aim", jumps and not feet, "jump, hops or jump_to without a run-up"),
                                   ("airtime", self.jump_to is not None or self.hops is not None, "jump_to or hops; a jump has its height"),
-                                  ("far", self.hops is not None, "hops: how far ahead each goes"),
+                                  ("ahead", self.hops is not None, "hops: how far ahead each goes"),
                                   ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
             if getattr(self, name) is not None and not fits:
                 raise ValueError(f"`{name}` goes with {with_}")
@@ -110,7 +110,7 @@ class MoveTable(Table):
             leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]), self.aim or 0.0, heading)
             points = (*points, (x, z)) if points else ()
         elif self.hops is not None:
-            leap = Jump(airtime=self.airtime, aims=self.aim or 0.0, hop=self.far or 0.0)
+            leap = Jump(airtime=self.airtime, aims=self.aim or 0.0, hop=self.ahead or 0.0)
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
                     until=None if self.until is None else _forward(self.until),

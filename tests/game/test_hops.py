@@ -17,7 +17,7 @@ duration = 4.6
 [[actors]]
 name = "A"
 start = [0.5, 0.2, 40]
-moves = [{ for = 0.2, stop = true }, { hops = 2, airtime = 0.4 }, { hops = 3, far = 0.4, airtime = 0.3 }]
+moves = [{ for = 0.2, stop = true }, { hops = 2, airtime = 0.4 }, { hops = 3, ahead = 0.4, airtime = 0.3 }]
 """
 
 

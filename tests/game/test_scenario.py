@@ -55,7 +55,7 @@ FAULTS = [
     ("velocity = [1.2, 0.5, 0.3]", "velocity = [0.2, 0.5, 0.3]", "actors[0].moves[0]: velocity is [v_t, ω, v_l] and |v_l| ≤ |v_t|"),
     ("velocity = [1.2, 0.5, 0.3]", "velocity = [1.2, inf, 0.3]", "actors[0].moves[0].velocity[1]: input should be a finite number"),
     ("walk_to = [0, 0], speed", "walk_to = [0, 0], stop = true, speed", "actors[0].moves[1]: needs exactly one of"),
-    ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump, or jump_to with a run-up; has none"),
+    ("for = 0.5, stop = true, ", "for = 0.5, ", "actors[1].moves[1]: needs exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump, hops, or jump_to with a run-up; has none"),
     ("walk_to = [0, 0], speed = 1", "go_to = [0, 0], facing = 3", "actors[0].moves[1]: `facing` goes with walk_to, path or stop; who goes to a place"),
     ("walk_to = [0, 0], speed = 1", "go_to = [0, 0], speed = 1", "actors[0].moves[1]: `speed` goes with walk_to or path"),
     ("walk_to = [0, 0], speed = 1", "walk_to = [0, 0], heading = 1", "actors[0].moves[1]: `heading` goes with go_to, jump_to or jump"),

@@ -24,15 +24,18 @@ GRIP = 0.8
 SINKS = 0.04, 0.085, 0.42
 """How deep [m] legs give to a body that hardly falls, how much deeper for each m/s that it falls, and at most: a tenth deeper than recorded
 for fast falls, at standard height."""
+FOLDED = 0.08, 0.3
+"""Who touches down lower below where it stands than the first, as a share of that, sinks by so much of the rest less: legs that are folded
+already would raise the heels."""
 SOONEST = 10
 """The force over the way down (s = t / T) is A (1 − (1 − s)^SOONEST − c s²): it begins at nothing and is nearly level after a tenth of T."""
 EASES, HARD = 0.3, 0.7
 """c at most; it is as much where a level force would be heavier than the body by the second, times its weight, and less in softer landings."""
 RISES, EASIEST = 5.6, 0.85
 """But c is so much that at the lowest point no more than some seven times its weight is left, lest the body be thrown up; and at most."""
-SLOWEST, LIGHT = 4.0, 6.5
-"""Rate of the spring with which a body that hardly fell stands up [1/s]; the square of that rate at most, times how deep it is over gravity: the
-floor can't pull."""
+SLOWEST, LIGHT = 8.0, 6.5
+"""Rate of the spring with which a body stands up at least [1/s], so that it is up when its trunk and arms are; the square of that rate at most,
+times how deep it is over gravity: the floor can't pull."""
 ADULT = 0.975
 """How high the centre of mass of a standard body stands [m]."""
 DEEPEST = 0.45
@@ -129,5 +132,6 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
     rate = STRIDE if striding else min(PASS, 0.5 * GRIP * gravity / max(pace, 1e-6)) if passes else HOLD
     size, start = goal[1] - support[0, 1], float(land[1] - goal[1])
     deep = min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else 1.0) * size / ADULT
+    deep -= FOLDED[1] * max(-start - FOLDED[0] * size, 0.0)
     deep = max(min(deep, start + DEEPEST * size), max(start, 0.0) + LEAST * size)
     return Landing(rate, land - goal, velocity, gravity, goal, deep, passes)
