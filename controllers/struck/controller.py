@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..body import Pose, Skeleton
+from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
 from ..jump import GRAVITY, Physique, start_of
 from ..jump.body import measures
@@ -24,6 +24,8 @@ LANDED = 0.06
 """One walks on as a foot has landed, in so long [s]."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
+SLIDES = 0.3
+"""Whose feet would slide faster than this [m/s] were they to catch him falls."""
 ALOFT = 0.12
 """Who is higher over the floor with both feet [m], at standard height, is in the air and no runner: there nobody can be struck."""
 
@@ -94,7 +96,8 @@ class Struck(Controller):
         height = CHEST * size if strike.height is None else strike.height
         if goes.fate == FALLS:
             return topple(self.physique, start, floor, self.rate)
-        return stumble(self.physique, start, goes, free, response(), floor, height)
+        made = stumble(self.physique, start, goes, free, response(), floor, height)
+        return made if _slides(self.skeleton, made) < SLIDES else topple(self.physique, start, floor, self.rate)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds. ValueError unless 0 < dt ≤ 0.1."""
@@ -128,6 +131,13 @@ class Struck(Controller):
         if memory.made.landing(memory.time, LANDED) < 0:
             return False
         return bool(walks_kernel(np.asarray(state.velocity, float)[[2, 0]], 0.0, self.physique.size))
+
+
+def _slides(skeleton: Skeleton, made: Recovery) -> float:
+    """How fast a heel or ball goes along the floor that stands on it [m/s], at most: as where legs are too short for how far a body was thrown."""
+    points = contact_points(skeleton, *forward_kinematics(skeleton, made.roots, made.local))[..., [0, 2]]
+    pace = np.linalg.norm(np.diff(points, axis=0), axis=-1) / np.diff(made.times)[:, None]
+    return float(np.where(made.contacts[1:] & made.contacts[:-1], pace, 0.0).max(initial=0.0))
 
 
 def rehearse(struck: Struck) -> None:

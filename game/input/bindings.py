@@ -121,7 +121,7 @@ DEFAULT = Bindings((
         Binding("go_to", "go where the pointer is; or click", ("T",), ("LS",), held=True),
         Binding("strafe", "keep facing", ("F",), ("LT",), held=True),
         Binding("strafe_lock", "keep facing, on or off", ("TAB",), ("RB",)),
-        Binding("push", "a push from behind you; hard with run", ("O",)),
+        Binding("push", "a push from behind you; hard with run", ("M",)),
         Binding("face", "face a direction", analog="look stick"),
         Binding("join", "a second player joins", ("J",), ("START",), mode=JOINING),
     )),
