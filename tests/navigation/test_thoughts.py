@@ -7,8 +7,9 @@ import pytest
 
 from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation.planning import goal_planner
-from gambol.controllers.navigation.thinking import Thought, steps_of
+from gambol.controllers.navigation.levels import Crossing
+from gambol.controllers.navigation.planning import Plan, goal_planner
+from gambol.controllers.navigation.thinking import Going, Thought, poised, steps_of
 from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box
@@ -99,3 +100,17 @@ def test_a_leap_that_was_thought_of_is_not_planned_again(monkeypatch):
             assert len(planned) == count and planned, "the step at which he leaps finds the plan made"
             return
     pytest.fail("he never leapt")
+
+
+@pytest.mark.parametrize("why", ["", "too far"])
+def test_a_leap_that_is_refused_as_it_is_thought_of_is_not_asked_for(why):
+    """It would be looked into in the step in which it was to go off."""
+    class Leaper(Locomotion):
+        def refusal(self, state, intent):
+            return why
+
+    someone = Leaper(Locomotion.load().library)
+    state = someone.start()
+    now = Going(Goal((0.0, 1.0)), Plan.none(state.ground, state.ground, ""), 0.0, (), (), crossings=(Crossing(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.0),))
+    thought = poised(now, state, Intent(), someone, 1 / 60).thought.after(steps_of(0, 1 / 60))
+    assert now.but(**thought).poised == (why == "") and (now.but(**thought).asked > 0.0) == (why != "")

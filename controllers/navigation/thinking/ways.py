@@ -100,8 +100,8 @@ def poised(now: Going, state: CharacterState, intent: Intent, walker: Controller
     """A leap from a stand is thought of: it is planned for where he will be, so that nothing is left to plan as it goes off."""
     def act(ask: Callable[[], None]) -> Mapping[str, Any]:
         then = foreseen(now, state, intent, walker, steps_of(0, dt), dt, None)
-        walker.refusal(then, but(intent, leap=Leap(onto(now.crossings[0], 0.0))))
-        return {"poised": True}
+        refused = walker.refusal(then, but(intent, leap=Leap(onto(now.crossings[0], 0.0)))) != ""
+        return {"asked": now.asked + dt * steps_of(0, dt)} if refused else {"poised": True}  # what is refused would be looked into as it went off
     return _thinking(act, dt)
 
 
