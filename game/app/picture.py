@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -46,6 +47,7 @@ class Game:
         self.preparing, self.teacher, self.sending, self.refused = preparing, teacher, sending, False
         self.done = self.helping = self.full_screen = self.wants_picture = False
         self.clock, self.held = FixedStep(), 0.0
+        self.crew = ThreadPoolExecutor(1, "preview")  # no frame waits for what is found out about jumps
         self.previews: Previews = ()  # the jumps that are aimed at, as they were drawn last
 
     @property
@@ -81,7 +83,7 @@ class Game:
         """What to draw now, one scene for each player; size: of the frame in pixels."""
         halted = self.watching is not None and self.watching.halted
         moment, fraction, cameras = self.past.seen(1.0 if halted and self.past.look is None else self.clock.alpha)
-        self.previews = previews(moment, self.previews)
+        self.previews = previews(moment, self.previews, self.crew)
         views = scenes(moment, fraction, cameras, self.showing.overlays, self._texts(moment), self.previews)
         for one in (self.held_points, self.pointing):
             one.look(cameras[0], size[0] / (len(views) * size[1]))

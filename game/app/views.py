@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from itertools import zip_longest
 from typing import Any
 
-from ..explain import Preview, broken, explained, ghosts, led, pointed, preview, stepping
+from ..explain import AT_ONCE, Preview, broken, explained, ghosts, led, pointed, preview, stepping
 from ..scene import Camera, Overlays, Scene
 from ..session import Log, SessionState, replay, strayed
 from ..world import RATE, figures
@@ -15,9 +16,9 @@ from ..world import RATE, figures
 Previews = tuple[Preview | None, ...]
 
 
-def previews(moment: SessionState, before: Previews = ()) -> Previews:
-    """The jumps that players aim at. before: those of a picture earlier."""
-    return tuple(preview(character, player.aim, moment.after.props, old)
+def previews(moment: SessionState, before: Previews = (), crew: Executor = AT_ONCE) -> Previews:
+    """The jumps that players aim at. before: those of a picture earlier; crew: who finds out what takes long."""
+    return tuple(preview(character, player.aim, moment.after.props, old, crew)
                  for player, character, old in zip_longest(moment.players, moment.after.characters[:len(moment.players)],
                                                            before[:len(moment.players)]))
 

@@ -16,7 +16,7 @@ from gambol.controllers.navigation import floor_at
 
 from ..scene import Arrow, Dot, Figure, Line, Patch, Prop, Sketch
 from ..world import Character, physique_of
-from .jump_preview import CAN, CANNOT, LIFT, PALE
+from .jump_sketches import CAN, CANNOT, LIFT, PALE
 
 GROUND, WEIGHT = (0.02, 0.42, 0.10), (0.10, 0.11, 0.13)
 NEWTON = 0.42 / (Physique.mass * 9.81)

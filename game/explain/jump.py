@@ -15,7 +15,8 @@ from gambol.controllers.jump.motion import Plan
 from ..scene import Figure, Overlays
 from ..world import Character, World, jump_of
 from .forces import Body, balance, forces, planned, pushed
-from .jump_preview import Preview, aimed, flown, plan_of
+from .jump_preview import Preview, plan_of
+from .jump_sketches import aimed, flown
 
 LAYERS = ("jump", "balance", "forces")
 WIDE = 58

@@ -15,7 +15,7 @@ from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import Figure, Line, Overlays, Sketch
 from ..world import World
-from .jump_preview import CAN, CANNOT, LIFT, ring
+from .jump_sketches import CAN, CANNOT, LIFT, ring
 
 if TYPE_CHECKING:  # whoever has a plan has loaded what it takes
     from gambol.controllers.navigation.planning import Plan

@@ -96,7 +96,7 @@ def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
     lines = []
     for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
         if old.aim.waiting > 0.0 and new.aim == Aim() and not leaving(now.state) and now is not was:
-            seen = preview(was, old.aim, before.after.props)
+            seen = preview(was, old.aim, before.after.props, sweeps=False)
             why = seen.why if seen is not None else ""
             lines.append(f"no jump: {why or was.state.refused or 'no foot stood ready'}")
     return tuple(lines)

@@ -1,6 +1,8 @@
 """Jumps by hand: aimed, refused, seen, followed."""
 
+from concurrent.futures import Executor, Future
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,7 +11,8 @@ from gambol.controllers.contract import Leap
 from gambol.controllers.person import person
 from gambol.controllers.navigation import gap
 from gambol.game.app.views import previews, scenes
-from gambol.game.explain.jump_preview import CAN, CANNOT, aimed, previewed
+from gambol.game.explain.jump_preview import previewed
+from gambol.game.explain.jump_sketches import CAN, CANNOT, aimed
 from gambol.game.input.script import jumping
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box, Overlays, Patch
@@ -139,6 +142,17 @@ def test_pressed_in_the_air_it_aims_from_where_it_will_land_and_goes_off_again_f
     assert np.linalg.norm(rings[-1][[0, 2]] - middles[1]) < 0.1 < np.linalg.norm(middles[1] - middles[0])
 
 
+class Held(Executor):
+    """Somebody who does nothing yet."""
+
+    done = None
+
+    def submit(self, fn, /, *args, **kwargs):
+        assert self.done is None
+        self.done = partial(fn, *args, **kwargs)
+        return Future()
+
+
 def test_where_something_would_be_touched_the_body_is_seen_as_it_would_lie_in_it(somebody):
     hurdle = Box((0.0, 0.35, 0.75), (2.0, 0.7, 0.2))
     timeline = Timeline(begin(World((Character("A", somebody, somebody.start()),), (hurdle,)), 1))
@@ -153,5 +167,13 @@ def test_where_something_would_be_touched_the_body_is_seen_as_it_would_lie_in_it
     assert len(scenes(moment, 1.0, [moment.players[0].view(1.0)], Overlays())[0].figures) == 1
     again, = previews(moment, (seen,))
     assert again.touch is seen.touch, "which is not planned again while nothing moves"
+    held = Held()
+    waiting, = previews(moment, (), held)
+    assert waiting.touch is None and waiting.nearest is None and held.done is not None, "no picture waits for it"
+    later, = previews(moment, (waiting,), held)
+    assert later.seeking is waiting.seeking, "nor is it asked for twice"
+    waiting.seeking.set_result(held.done())
+    told, = previews(moment, (later,), held)
+    assert told.why == seen.why and np.array_equal(told.touch.root, seen.touch.root)
     far = replace(moment, after=replace(moment.after, props=()))
     assert previews(far)[0].touch is None
