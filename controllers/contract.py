@@ -130,7 +130,7 @@ class Intent:
     held: no leap of the way goes off now, as somebody is where it leads.
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
     aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again.
-    strike: what hits the body as this step begins, whatever is wanted; None for nothing.
+    strike: what hits the body as this step begins, whatever is wanted; None for nothing. One in the air is struck once it stands again.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -204,7 +204,7 @@ class Duty:
     chosen, in words.
 
     refused: why what was asked last can't be done, or goes wrong; empty if it can. asked: what was refused and from where, so that it
-    is not tried again until something changes.
+    is not tried again until something changes. strike: what struck it in the air, where nobody answers that, until it stands again.
     """
 
     active: str
@@ -212,6 +212,7 @@ class Duty:
     why: str
     refused: str = ""
     asked: Any = None
+    strike: Strike | None = None
 
 
 @dataclass(frozen=True)
@@ -298,6 +299,14 @@ class Controller(Protocol):
 
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
+        return None
+
+    def gain(self, strike: Strike) -> np.ndarray | None:
+        """By how much (2,) x, z [m/s] a strike changes the velocity of its body; None of one that answers no strikes."""
+        return None
+
+    def pushed(self, state: CharacterState, change: np.ndarray) -> CharacterState | None:
+        """The state with a velocity that a push has changed by (2,) x, z [m/s] in the world, from which it goes on as it does; None where it can't."""
         return None
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:

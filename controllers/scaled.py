@@ -83,6 +83,11 @@ class Scaled(Controller):
         """The state with this controller's own memory."""
         return self._grown(self.controller.enter(self._shrunk(state), self._asked(intent)))
 
+    def pushed(self, state: CharacterState, change: np.ndarray) -> CharacterState | None:
+        """The state with a velocity that a push has changed by (2,) x, z [m/s]; None where its next steps don't take that in."""
+        taken = self.controller.pushed(self._shrunk(state), np.asarray(change, float) / self.factor**0.5)
+        return None if taken is None else self._grown(taken)
+
     def status(self, state: CharacterState) -> Status:
         """Whether it goes on."""
         return self.controller.status(self._shrunk(state))

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import CharacterState, Controller, Duty, Intent, Status, Unable, but, seconds
+from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Status, Strike, Unable, but, seconds
 from .navigation import going
 from .navigation.passing import drawn_in
 
@@ -22,6 +22,10 @@ from .navigation.passing import drawn_in
 MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
 """A leap that was refused is tried again from elsewhere: so far away [m], farther by so much for each m/s, turned by so much [rad], or
 on other feet."""
+
+
+TAKEN = "its next steps take in what pushed it"
+"""Why who walks or runs goes on, pushed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,13 +109,37 @@ class Supervisor(Controller):
         if intent.goal is not None:
             way, intent = going(state, intent, self, duty.active == self.first, dt)
         own = but(state, memory=duty.memory)
-        duty, own = self._choose(duty, own, intent)
+        kept = None
+        if intent.strike is not None or duty.strike is not None:
+            duty, own, intent, kept = self._struck(duty, own, intent)
+        else:
+            duty, own = self._choose(duty, own, intent)
         before = state.pose
         after, pose = self.parts[duty.active].step(own, intent, dt)
         if duty.active == self.first and len(intent.around):
             pose = drawn_in(self.skeleton, pose, after.ground, intent.around)
-        duty = but(duty, memory=after.memory)
+        duty = but(duty, memory=after.memory, strike=kept)
         return but(after, pose=pose, memory=duty, previous=before, elapsed=dt, going=way), pose
+
+    def _struck(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState, Intent, Strike | None]:
+        """Who acts in a step in which something strikes, or has struck in the air; the state it starts from, what is asked of it, and the strike that is still to be answered.
+
+        The first goes on from what it can take in; what is harder is for who answers strikes, once a foot stands of one whom another moves.
+        """
+        strike = _both(duty.strike, intent.strike)
+        taker, change = next(((name, gain) for name, part in self.parts.items() if (gain := part.gain(strike)) is not None), ("", None))
+        calm = but(intent, strike=None)
+        if change is None:
+            return *self._choose(duty, own, calm), calm, None
+        if duty.active == self.first:
+            taken = self.parts[self.first].pushed(own, change)
+            if taken is not None:
+                return *self._choose(but(duty, why=TAKEN), taken, calm), calm, None
+        elif duty.active != taker and not np.any(own.contacts):
+            return *self._choose(duty, own, calm), calm, strike
+        hit = but(intent, strike=strike)
+        duty, own = self._choose(duty, own, hit)
+        return duty, own, hit, None if duty.active == taker else strike
 
     def _choose(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState]:
         """Who acts in this step, and the state it starts from."""
@@ -164,3 +192,13 @@ class Supervisor(Controller):
     def status(self, state: CharacterState) -> Status:
         """It never ends by itself; a walk to a goal is done, or fails with a reason."""
         return Status("running") if state.going is None else state.going.status
+
+
+def _both(one: Strike | None, other: Strike | None) -> Strike:
+    """Two strikes as one, no harder than anybody is struck, where the later one hits."""
+    if one is None or other is None:
+        found = other if one is None else one
+        assert found is not None
+        return found
+    both = np.add(one.impulse, other.impulse)
+    return Strike(tuple(both * min(1.0, (1.0 - 1e-9) * HARDEST / max(float(np.hypot(*both)), 1e-9))), other.height)

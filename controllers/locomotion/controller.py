@@ -23,6 +23,7 @@ from .idle import ENDS
 from .kernel import DURATION_AT
 from .library import Library
 from .memory import Settings, memory_dtype, plain, put
+from .pushed import pushed
 from .step import step_kernel
 from .tables import Tables, tables_of
 from .uneven_ground import FLAT, tops
@@ -194,6 +195,10 @@ class Locomotion(Controller):
         if self._knows(state.memory):
             return state
         return entered(self, state) if np.ndim(state.ground) == 1 else self.start(state.ground, state.floor)
+
+    def pushed(self, state: CharacterState, change: np.ndarray) -> CharacterState | None:
+        """One who walks or runs, pushed no harder than its next steps take in; else None."""
+        return pushed(state, change) if self._knows(state.memory) else None
 
     def status(self, state: CharacterState) -> Status:
         """Locomotion never ends by itself."""

@@ -65,6 +65,10 @@ class Struck(Controller):
         """ω = √(g/h) [1/s] of the pendulum that it is as it stands."""
         return float(np.sqrt(-self.gravity[1] / measures(self.physique).stand))
 
+    def gain(self, strike: Strike) -> np.ndarray:
+        """By how much (2,) x, z [m/s] a strike changes the velocity of its mass centre."""
+        return np.array(strike.impulse) / self.physique.mass
+
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """STRUCK for who is struck and not in the air; while it goes on, how firmly it holds on."""
         if isinstance(state.memory, Recovering):

@@ -1,4 +1,5 @@
-"""Figures of those who are struck: how hard a push it takes to make them sway, step, stumble and fall, whether momentum is kept, what slides, what goes through the floor.
+"""Figures of those who are struck: how hard a push walkers and runners take in with their next steps, how hard it takes to make people step, stumble and fall, whether momentum is
+kept, what slides, what goes through the floor.
 
     python scripts/measure/struck.py
 """
@@ -18,6 +19,30 @@ HARD = np.arange(4.0, 200.0, 4.0)
 """Impulses [N·s]."""
 PHASES = 12
 """So many moments of a stride are struck in."""
+DT, PLAYED, BACK = 1.0 / 60.0, 2.0, 0.05
+"""Steps [s], for how long who goes on is followed [s], and how near to his wish he is back at it [m/s]."""
+
+
+def _goes_on(somebody, state, wish, impulse):
+    """Of somebody who takes an impulse (2,) [N·s] in stride: how far the ground frame's speed is off v + J/m after a step, after how long he is back at his wish for good [s], how
+    fast a sole that stands slides, and how fast it does unpushed [m/s]."""
+    found, was = [], np.asarray(state.ground, float)
+    for strike in (Strike(tuple(impulse)), None):
+        rows, speeds, first = [], [], None
+        now = state
+        for n in range(round(PLAYED / DT)):
+            now, _ = somebody.step(now, Intent(np.array(wish), strike=None if n else strike), DT)
+            placed = forward_kinematics(somebody.skeleton, np.asarray(now.pose.root, float), np.asarray(now.pose.rotations, float))
+            rows.append((contact_points(somebody.skeleton, *placed)[:, [0, 2]], now.contacts))
+            speeds.append(float(np.hypot(*(now.velocity - wish)[[0, 2]])))
+            first = now.ground if first is None else first
+        points, stands = (np.stack(column) for column in zip(*rows))
+        flow = np.linalg.norm(np.diff(points, axis=0), axis=-1) / DT
+        found.append((((first - was) / DT)[:2], speeds, float(np.where(stands[1:] & stands[:-1], flow, 0.0).max())))
+    (pushed, speeds, slides), (calm, _, unpushed) = found
+    far = np.flatnonzero(np.array(speeds) > BACK)
+    gained = impulse / somebody.parts["struck"].physique.mass
+    return float(np.hypot(*(pushed - calm - gained))), DT * (1.0 + far[-1] if len(far) else 0.0), slides, unpushed
 
 
 def main() -> None:
@@ -25,16 +50,24 @@ def main() -> None:
     body, somebody = Physique(), person()
     struck = somebody.parts["struck"]
     for wish in ((0.0, 0.0, 0.0), (1.2, 0.0, 0.0), (3.0, 0.0, 0.0)):
-        states, state = [], somebody.start()
+        states, walked, state = [], [], somebody.start()
         for n in range(150 + 5 * PHASES):
             state, _ = somebody.step(state, Intent(np.array(wish)), 1.0 / 60.0)
             if n >= 150 and n % 5 == 0 or n == 149:
                 states.append(somebody.active(state)[1])
-        states = states[:1] if not wish[0] else states
+                walked.append(state)
+        states, walked = (states[:1], walked[:1]) if not wish[0] else (states, walked)
         print(f"{'standing' if not wish[0] else f'at {wish[0]:g} m/s, {len(states)} moments'}, {body.mass:g} kg:")
         for name, way in WAYS.items():
+            taken = [[somebody.parts["locomotion"].pushed(one, struck.gain(Strike(tuple(hard * np.array(way))))) is not None for hard in HARD] for one in states]
+            most = [int(np.argmin(row)) for row in taken]  # the first that is not
+            if min(most) > 0:
+                ways = [_goes_on(somebody, one, wish, HARD[k - 1] * np.array(way)) for one, k in zip(walked, most)]
+                err, late, slid, unpushed = np.max(ways, 0)
+                print(f"  {name}: taken in stride up to {HARD[min(most) - 1] / body.mass:.2f} m/s, where the ground frame's speed is off v + J/m by {err:.3f} m/s after a step and within "
+                      f"{BACK:g} m/s of the wish after {late:.2f} s; soles slide {slid:.2f} m/s at most, unpushed {unpushed:.2f}")
             made = [[struck.recovery(one, Intent(np.array(wish)), Strike(tuple(hard * np.array(way)))) for hard in HARD] for one in states]
-            steps, falls = ([HARD[next((k for k, one in enumerate(row) if one.fate >= fate), -1)] / body.mass for row in made] for fate in (STEPS, FALLS))
+            steps, falls = ([HARD[next((k for k, one in enumerate(row) if one.fate >= fate and not known[k]), -1)] / body.mass for row, known in zip(made, taken)] for fate in (STEPS, FALLS))
             kept = [np.abs(one.velocities[0][[0, 2]] - one.velocities[1][[0, 2]]).max() for row in made for one in row]
             slides, low, under = [], [], []
             for one in (one for row in made for one in row[::4]):

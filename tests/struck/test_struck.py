@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
-from gambol.controllers.contract import Intent, Strike
+from gambol.controllers.contract import Intent, Leap, Strike
 from gambol.controllers.jump import Physique
 from gambol.controllers.person import person
 from gambol.controllers.struck import FALLS, STEPS, SWAYS, Struck, places
@@ -122,6 +122,61 @@ def test_who_walks_goes_on_walking(somebody, impulse):
     states = played(somebody, after(somebody, wish, 1.5), impulse, wish, 8.0)
     assert any(s.active == "struck" for s in states) and states[-1].active == "locomotion"
     assert abs(states[-1].velocity[0] - 1.2) < 0.02 and all(np.isfinite(s.pose.root).all() and np.isfinite(s.pose.rotations).all() for s in states)
+
+
+@pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.2, 0.0)), (1.2, (-0.2, 0.1)), (1.2, (0.0, 0.45)), (1.2, (0.0, -0.25)),
+                                               (3.0, (0.4, 0.0)), (3.0, (-0.75, 0.0)), (3.0, (0.0, 1.1)), (3.0, (0.0, -0.55))])
+def test_who_walks_or_runs_takes_a_push_in_stride(somebody, speed, gained):
+    """His next steps take in what they can: he goes on with v + J/m, is back at his wish within 1.5 s, and no foot slides that stands, whichever does."""
+    wish = np.array([speed, 0.0, 0.0])
+    for more in (0.0, 0.17, 0.33, 0.5):
+        state = after(somebody, wish, 2.0 + more)
+        calm, _ = somebody.step(state, Intent(wish), DT)
+        states = played(somebody, state, tuple(BODY.mass * np.array(gained)), wish, 1.5)
+        assert all(s.active == "locomotion" and s.memory.strike is None for s in states) and states[1].memory.why == "its next steps take in what pushed it"
+        kick = (np.asarray(states[1].ground) - calm.ground)[:2] / DT
+        assert np.linalg.norm(kick - gained) < 0.1 * np.linalg.norm(gained)
+        assert np.abs(np.asarray(states[-1].velocity) - wish).max() < 0.06
+        points = contact_points(BODY.skeleton, *placed(states))
+        stands = np.stack([s.contacts for s in states])
+        slides = np.linalg.norm(np.diff(points[..., [0, 2]], axis=0), axis=-1)
+        slid = np.where(stands[1:] & stands[:-1] & (slides > 0.3 * DT), slides, 0.0)
+        assert slid.sum(0).max() < 0.02  # as a foot comes down
+        assert points[..., 1].min() > 0.015
+
+
+@pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.4, 0.0)), (1.2, (0.0, -0.4)), (1.2, (0.0, 0.7)), (3.0, (1.0, 0.0)), (3.0, (0.0, 1.5)), (3.0, (0.0, -0.8))])
+def test_what_is_harder_is_no_longer_taken_in_stride(somebody, speed, gained):
+    state = after(somebody, (speed, 0.0, 0.0), 2.0)
+    assert played(somebody, state, tuple(BODY.mass * np.array(gained)), (speed, 0.0, 0.0), DT)[-1].active == "struck"
+
+
+def test_a_child_takes_less_in_stride_and_who_sets_off_none():
+    """Speeds grow as the root of a body's size; who sets off or stops has no steady step that would take a push in."""
+    small = person(physique=Physique(25.0, 1.2))
+    wish = np.array([1.0, 0.0, 0.0])
+    steady, setting_off = after(small, wish, 2.0), after(small, wish, 0.3)
+    stopping, _ = small.step(steady, Intent(), DT)
+    for state, gained, taken in ((steady, 0.24, True), (steady, 0.28, False), (setting_off, 0.1, False), (stopping, 0.1, False)):
+        went, _ = small.step(state, Intent(wish, strike=Strike((25.0 * gained, 0.0))), DT)
+        assert (went.active == "locomotion") == taken
+
+
+def test_who_is_in_the_air_is_struck_once_he_stands(somebody):
+    """The strikes are kept, added up, and none is lost."""
+    state = after(somebody)
+    leap, strikes, kept = Leap(None, airtime=0.4), 0, []
+    for _ in range(240):
+        aloft = state.active == "jump" and not state.contacts.any()
+        hits = aloft and strikes < 2
+        strikes += hits
+        state, _ = somebody.step(state, Intent(leap=None if strikes or aloft else leap, strike=Strike((0.0, 25.0)) if hits else None), DT)
+        kept.append(state.memory.strike)
+        if state.active == "struck":
+            break
+    assert strikes == 2 and state.active == "struck" and state.memory.strike is None
+    assert [one.impulse for one in kept if one is not None][0] == (0.0, 25.0) and kept[-2].impulse == (0.0, 50.0)
+    assert state.memory.memory.made.velocities[0][2] == pytest.approx(50.0 / BODY.mass, abs=0.15)
 
 
 def test_it_is_a_function_of_state_and_impulse(somebody):
