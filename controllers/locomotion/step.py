@@ -58,6 +58,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     ahead = room_to_plan(memory["weights"].shape[1], joints)
     for n in range(memory.shape[0]):
         m = memory[n]
+        on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings.acceleration * settings.agility, dt)
         begin_turn(m, turns, wish[n], fresh)
         if m.turn != 0.0:
@@ -83,7 +84,6 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         add_start(m, start, fresh)
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
-        on_floor(m, before)
         follow_command(m, dt)
         foot_points(body, legs, positions, orientations, m.points)
         stride(m, m.points, positions)

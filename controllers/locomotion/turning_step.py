@@ -56,6 +56,8 @@ FOLLOWS = 0.04
 """On the spot shoulders turn by this share of it once both feet stand."""
 SHIFTED = 0.6
 """On the spot the body goes back to where it stood until so long after its first foot left, in phase."""
+MOMENT = 0.004
+"""How fast a turn begins is told over this long in phase."""
 PIECES = 8
 """The way ahead is followed in so many pieces."""
 
@@ -121,11 +123,27 @@ def begin_turn(m, turns, wish, row):
     m.phase = 1.0 - BEFORE if m.first == 0 else 0.5 - BEFORE
     m.settled, m.waits, m.onset = 0, 0, 0.0
     m.stop = BEFORE + STRIKE if m.spot else 0.0
-    turned_row(m, turns, m.turned, row)
-    for d in range(LABELS_AT):
-        m.blend[d], m.blend_rate[d] = m.row[d] - row[d], m.row_rate[d]
+    _begin_smoothly(m, turns, row)
     m.row[DURATION_AT] = row[DURATION_AT]
     m.fade = ENTRY
+
+
+@kernel
+def _begin_smoothly(m, turns, row):
+    """Write a turn's first row (COLUMNS,) and remember how the pose is off it, and moves against it and its ground frame, which sets off at once."""
+    later = MOMENT * turn_time(m, turns, -BEFORE)
+    turned_row(m, turns, MOMENT - BEFORE, row)
+    for d in range(LABELS_AT):
+        m.blend_rate[d] = m.row_rate[d] - row[d] / later
+    turned_row(m, turns, -BEFORE, row)
+    for d in range(LABELS_AT):
+        m.blend[d] = m.row[d] - row[d]
+        m.blend_rate[d] += row[d] / later
+    pace = _tempo(m, -BEFORE)
+    m.blend_rate[HIPS_AT] += m.velocity[2] - pace * turn_kernel(m, turns, WAY_AT + 2, -BEFORE)
+    m.blend_rate[HIPS_AT + 2] += m.velocity[0] - pace * turn_kernel(m, turns, WAY_AT, -BEFORE)
+    turned = turn_kernel(m, turns, WAY_AT + 1, MOMENT - BEFORE) - turn_kernel(m, turns, WAY_AT + 1, -BEFORE)
+    m.blend_rate[LANES] += m.velocity[1] - turned / later
 
 
 @kernel

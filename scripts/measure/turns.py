@@ -15,21 +15,25 @@ import numpy as np
 from _figures import figures, told
 from _motion import Motion
 
+from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import steer
 
 FPS, SECONDS, NEAR = 60, 3.5, 0.1
+STOOD = 10
+"""So many frames of standing are looked at, too."""
 TURNS = ((1.3, (45, 60, 90, 135, 180, -60, -90, -135, -175)), (2.5, (90, 180, -90)), (0.0, (45, 60, 90, 110, 135, 180, -45, -90, -110, -175)))
 """Speeds [m/s], and by how much is turned [degrees]."""
 
 
 def turned(locomotion: Locomotion, degrees: np.ndarray, speed: float) -> list:
-    """The states of characters that stand and then go or look another way each."""
+    """The states of characters that stand for STOOD frames and then go or look another way each."""
     angle = np.radians(degrees)
     way = speed * np.stack([np.sin(angle), np.cos(angle)], -1)
     state, states = locomotion.start(np.zeros((len(angle), 3))), []
-    for _ in range(round(SECONDS * FPS)):
-        state, _ = locomotion.step(state, steer(state.ground, way, None if speed else angle, state.velocity[:, 1]), 1 / FPS)
+    for k in range(STOOD + round(SECONDS * FPS)):
+        wish = steer(state.ground, way, None if speed else angle, state.velocity[:, 1]) if k >= STOOD else Intent(np.zeros(3))
+        state, _ = locomotion.step(state, wish, 1 / FPS)
         states.append(state)
     return states
 
@@ -44,12 +48,12 @@ def main() -> None:
                         locomotion.library.accelerations)
         print(f"Into {speed:.1f} m/s:" if speed else "On the spot:", told([figures(motion)]))
         feet = np.array([s.contacts.reshape(-1, 2, 2).any(-1) for s in states]).astype(int)
-        strikes = (np.diff(feet, axis=0) > 0).sum(-1)
-        ground = np.array([s.ground for s in states])
+        strikes = (np.diff(feet, axis=0) > 0).sum(-1)[STOOD:]
+        ground = np.array([s.ground for s in states])[STOOD:]
         for n, angle in enumerate(np.radians(degrees)):
             off = np.abs((ground[:, n, 2] - angle + np.pi) % (2 * np.pi) - np.pi)
             facing = int(np.flatnonzero(off > NEAR)[-1]) + 1
-            quick = (motion.com_velocity[:, n][:, [0, 2]] @ [np.sin(angle), np.cos(angle)] > 0.9 * speed).argmax() / FPS
+            quick = (motion.com_velocity[STOOD:, n][:, [0, 2]] @ [np.sin(angle), np.cos(angle)] > 0.9 * speed).argmax() / FPS
             steps = strikes[:facing if speed else None, n].sum()
             print(f"  {degrees[n]:5.0f}°: faces there after {facing / FPS:.2f} s, {steps} steps; " + (f"nine tenths of the speed after {quick:.2f} s; " if speed
                   else f"off the place {100 * np.hypot(*ground[-1, n, :2]):.0f} cm; ")

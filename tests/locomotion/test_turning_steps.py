@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gambol.controllers.body import feet_apart, forward_kinematics
+from gambol.controllers.body import contact_points, feet_apart, forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.navigation import steer
 
@@ -54,11 +54,39 @@ def test_turns_on_the_spot_take_two_steps_and_end_where_they_began(locomotion):
     assert (states[-1].memory["settled"] == 1).all()
 
 
+def motion_of(locomotion, states):
+    """The final poses' joints (T, N, J, 3) and their orientations."""
+    return forward_kinematics(locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
+
+
+def test_feet_that_stand_do_not_move_as_the_body_turns_over_them(locomotion):
+    """Nor as a turn on the spot leads it back to its place."""
+    for speed in (1.3, 0.0):
+        states = turned(locomotion, np.array([45.0, 90, 178, -60, -110, -175]), speed)
+        points = contact_points(locomotion.skeleton, *motion_of(locomotion, states))[..., [0, 2]]
+        held = np.array([s.memory["grip"] >= 1.0 for s in states])
+        moved = np.linalg.norm(np.diff(points, axis=0), axis=-1)[held[1:] & held[:-1]]
+        assert moved.mean() < 0.0002, moved.mean()
+
+
+def test_turns_begin_without_a_jerk(locomotion):
+    """The hips of who stands are not at once as fast as those of recorded people, who were under way."""
+    for speed in (1.3, 0.0):
+        still = turned(locomotion, np.zeros(8), 0.0, 0.2)
+        angle = np.radians([60.0, 90, 135, 178, -60, -90, -135, -178])
+        state, places = still[-1], [s.pose.root for s in still]
+        for _ in range(8):
+            wish = steer(state.ground, speed * np.stack([np.sin(angle), np.cos(angle)], -1), None if speed else angle, state.velocity[:, 1])
+            state, pose = locomotion.step(state, wish, 1 / FPS)
+            places.append(pose.root)
+        push = np.linalg.norm(np.diff(np.array(places, float)[..., [0, 2]], 2, axis=0), axis=-1) * FPS * FPS
+        assert push.max() < 10.0, push.max()
+
+
 def test_feet_keep_apart_as_they_turn(locomotion):
     for speed in (1.3, 0.0):
         states = turned(locomotion, np.array([60.0, 90, 135, 180, -60, -90, -135, -175]), speed)
-        motion = forward_kinematics(locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
-        assert feet_apart(locomotion.skeleton, *motion).min() > 0.06
+        assert feet_apart(locomotion.skeleton, *motion_of(locomotion, states)).min() > 0.06
 
 
 def test_who_is_told_otherwise_leaves_a_turn(locomotion):
