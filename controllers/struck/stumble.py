@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
 from ..body import yaw
 from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
@@ -130,6 +129,8 @@ def _centres(physique: Physique, start: Start, way: Way, feet: np.ndarray, stand
         most = np.where(standing[:, side], np.minimum(most, high), most)
     pace = np.maximum.accumulate(np.linalg.norm(way.velocity, axis=-1)[::-1])[::-1]
     most = np.minimum(most, stand - LOWERS * size * np.minimum(np.maximum(pace - 0.15, 0.0), MOST) * np.clip(times / 0.3, 0.0, 1.0))
+    from scipy.ndimage import gaussian_filter1d, minimum_filter1d  # no game waits for it at its start
+
     wide = int(0.15 * RATE)
     low = gaussian_filter1d(minimum_filter1d(most, 2 * wide + 1, mode="nearest"), 0.45 * wide, mode="nearest")
     off, rate = start.centre[1] - floor - low[0], start.velocity[1] - (low[1] - low[0]) * RATE

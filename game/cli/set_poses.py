@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from .base import say
+
+if TYPE_CHECKING:
+    import numpy as np
 
 MOST = 20.0
 """So long [s] a pose is waited for."""
@@ -23,6 +24,8 @@ def worn(source: Any, placement: Any, place: np.ndarray, turn: np.ndarray, times
 
     source: whose points are the room's. times: [s] to ask it at, as they come.
     """
+    import numpy as np
+
     from gambol.controllers.reconstruction.calibration import POSES, Wearer, apart, stance
 
     first = stance(source.controls, place, turn)
@@ -49,6 +52,8 @@ def worn(source: Any, placement: Any, place: np.ndarray, turn: np.ndarray, times
 
 def _held(source: Any, times: Iterator[float], before: np.ndarray, words: str) -> tuple[np.ndarray, np.ndarray] | None:
     """Places (n, 3) [m] and turns (n, 3, 3) of somebody who stands still, otherwise than `before`; None if nobody does in time."""
+    import numpy as np
+
     from gambol.controllers.reconstruction.live import Standing
 
     standing, began, told = Standing(), None, 0.0
