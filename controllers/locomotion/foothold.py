@@ -19,7 +19,7 @@ from .control_space import SCALE
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
 from .last_stride import bring_together
-from .root_motion import SHORTEST, advance, cadence_kernel
+from .root_motion import SHORTEST, advance, cadence_kernel, short_way
 from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
@@ -162,7 +162,7 @@ def _foretell(m, foot, left, paths, ahead):
     for i in range(3):
         goes[i] = m.ground[i]
     advance(goes, m.velocity[0], m.velocity[1], m.velocity[2], whole)
-    turn, turned = _turn(goes[2] - m.ground[2]), _turn(ground[2] - goes[2])
+    turn, turned = short_way(goes[2] - m.ground[2]), short_way(ground[2] - goes[2])
     for k in range(SAMPLES):
         share = 1.0 - SWING[m.family] * (1.0 - (k + 0.5) / SAMPLES) / max(left, 1e-6)
         ahead.shares[foot, k] = share
@@ -179,11 +179,6 @@ def _foretell(m, foot, left, paths, ahead):
             ahead.way[foot, k, p, 0] = x + c * at[p, 0] + s * at[p, 2]
             ahead.way[foot, k, p, 1] = at[p, 1]
             ahead.way[foot, k, p, 2] = z - s * at[p, 0] + c * at[p, 2]
-
-
-@kernel
-def _turn(angle):
-    return math.pi - (math.pi - angle) % (2.0 * math.pi)
 
 
 @kernel

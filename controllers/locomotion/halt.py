@@ -10,6 +10,7 @@ import math
 
 from ..compiled import kernel
 from .last_stride import AHEAD, NOWHERE, STOPS, lets_go, time_to_stop, to_halt
+from .root_motion import short_way
 
 THERE, STRAIGHT = 0.02, 0.034
 """Who stands so near to the place [m], so nearly turned as he should [rad], stays."""
@@ -29,7 +30,7 @@ def heed_halt(m, wish, most, dt):
     to make. most: what legs push [m/s²]."""
     if m.halts == NOWHERE:
         return
-    turn = 0.0 if math.isnan(m.halt[2]) else _short(m.halt[2] - m.ground[2])
+    turn = 0.0 if math.isnan(m.halt[2]) else short_way(m.halt[2] - m.ground[2])
     if m.settled:
         m.halts = AHEAD
         if math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) <= THERE and abs(turn) <= STRAIGHT:
@@ -48,15 +49,9 @@ def heed_halt(m, wish, most, dt):
 def _bend(m, most, dt):
     """Turn the command of somebody who stops towards the place, with what braking leaves of the push of his legs."""
     x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
-    off = _short(math.atan2(x, z) - m.ground[2] - math.atan2(m.command[2], m.command[0]))
+    off = short_way(math.atan2(x, z) - m.ground[2] - math.atan2(m.command[2], m.command[0]))
     left = math.sqrt(max(SPARES * most * most - m.rate[0] * m.rate[0] - m.rate[2] * m.rate[2], 0.0))
     most = left * dt / max(math.hypot(m.command[0], m.command[2]), 0.1)
     turn = min(max(off * (1.0 - 2.0 ** (-dt / BENDS)), -most), most)
     c, s = math.cos(turn), math.sin(turn)
     m.command[0], m.command[2] = c * m.command[0] - s * m.command[2], s * m.command[0] + c * m.command[2]
-
-
-@kernel
-def _short(angle):
-    """An angle the short way round [rad]."""
-    return math.pi - (math.pi - angle) % (2.0 * math.pi)

@@ -84,6 +84,12 @@ def advance(ground, v_f, omega, v_l, dt):
 
 
 @kernel
+def short_way(angle):
+    """An angle the short way round [rad]."""
+    return math.pi - (math.pi - angle) % (2.0 * math.pi)
+
+
+@kernel
 def to_world_kernel(m, row, root, local):
     """Place the pose of the ground frame in the world."""
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])

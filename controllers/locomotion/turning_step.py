@@ -18,7 +18,7 @@ from .cycles import EVENTS
 from .first_stride import shift_left
 from .kernel import COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, series_kernel
 from .library import Library
-from .root_motion import SHORTEST, advance
+from .root_motion import SHORTEST, advance, short_way
 from .spline import spline_kernel
 from .swing import smooth
 
@@ -94,17 +94,17 @@ def begin_turn(m, turns, wish, row):
     the pose before fades. wish: (3,), of which he who faces that way already turns no more. row: (COLUMNS,) scratch."""
     if turns.coefficients.shape[3] == 0:
         return
-    if m.heads and (m.settled or m.waits) and m.towards[1] < STANDS and abs(_short(m.towards[0] - m.ground[2])) < (STAYS if m.settled else THERE):
+    if m.heads and (m.settled or m.waits) and m.towards[1] < STANDS and abs(short_way(m.towards[0] - m.ground[2])) < (STAYS if m.settled else THERE):
         wish[1] = 0.0
     if m.turn != 0.0:
-        other = _short(m.towards[0] - m.turns_to)
+        other = short_way(m.towards[0] - m.turns_to)
         if not m.heads or abs(other) > OTHERWISE or (m.towards[1] > STANDS if m.spot else m.towards[1] < STANDS):
             leave_turn(m)
         return
     if not m.heads or not (m.settled or m.waits or shift_left(m) > 0.0):
         return
     m.spot = 1 if m.towards[1] < STANDS else 0
-    turn = _short(m.towards[0] - m.ground[2])
+    turn = short_way(m.towards[0] - m.ground[2])
     if abs(turn) < FROM[m.spot] or not m.spot and m.towards[1] < GOES:
         return
     m.turns_to = m.towards[0]
@@ -245,9 +245,3 @@ def turn_ahead(m, turns, agility, later, ground):
 def _tempo(m, since):
     """How many times as fast as recorded a turn is there."""
     return TEMPO[m.spot] + (HASTE[m.spot] - TEMPO[m.spot]) * (1.0 - smooth(1.0 + since / BEFORE))
-
-
-@kernel
-def _short(angle):
-    """An angle the short way round [rad]."""
-    return math.pi - (math.pi - angle) % (2.0 * math.pi)

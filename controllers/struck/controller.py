@@ -90,8 +90,8 @@ class Struck(Controller):
     def recovery(self, state: CharacterState, intent: Intent, strike: Strike) -> Recovery:
         """What becomes of a state that is struck: its mass centre's velocity is what it was and the impulse over the mass."""
         start, floor, size = start_of(self.physique, state), float(level(state.floor)), self.physique.size
-        x, z = strike.impulse
-        start = replace(start, velocity=start.velocity + np.array([x, 0.0, z]) / self.physique.mass)
+        x, z = self.gain(strike)
+        start = replace(start, velocity=start.velocity + np.array([x, 0.0, z]))
         free: np.ndarray = np.asarray(np.logical_not(np.asarray(state.contacts, bool).reshape(2, 2)).all(1))
         c, s = np.cos(start.heading), np.sin(start.heading)
         v_f, omega, v_l = np.asarray(intent.velocity, float)
