@@ -7,7 +7,6 @@ It has the gait's phase and ends in it, walking or with both feet together; who 
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
