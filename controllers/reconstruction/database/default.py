@@ -25,7 +25,7 @@ from .database import FPS, SUFFIX, Database, Writer
 from .store import folder
 
 _CONTROLLERS = Path(__file__).parents[2]
-_SOURCES = ("contract.py", "supervisor.py", "body/*.py", "locomotion/*.py", "jump/**/*.py", "reconstruction/pose_vector.py",
+_SOURCES = ("contract/*.py", "supervisor.py", "body/*.py", "locomotion/*.py", "jump/**/*.py", "reconstruction/pose_vector.py",
             "reconstruction/database/*.py")
 
 # seconds, then forward [m/s], yaw [rad/s] and leftward velocity [m/s]

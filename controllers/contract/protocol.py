@@ -1,0 +1,108 @@
+"""What every controller answers, and what it may be asked with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..body import Pose, Skeleton
+from .states import CharacterState, Status
+from .wishes import HIGHEST, Intent, Strike
+
+
+class Unable(ValueError):
+    """A controller can't do what is asked from here; the message says why."""
+
+
+LONGEST = 0.1
+"""A step is this long at most [s]."""
+
+
+def seconds(dt: Any) -> float:
+    """The length of a step as a plain number, for kernels are compiled anew for every other kind of number.
+
+    ValueError unless 0 < dt ≤ 0.1; of single precision, too.
+    """
+    plain = float(dt)
+    if not 0.0 < plain < LONGEST * (1.0 + 1e-6):
+        raise ValueError(f"dt must be in (0, {LONGEST:g}] s, got {dt}")
+    return plain
+
+
+def level(floor: Any) -> Any:
+    """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±1e5 m."""
+    sound = abs(floor) <= HIGHEST if isinstance(floor, float) else np.all(np.abs(np.asarray(floor, float)) <= HIGHEST)
+    if not sound:
+        raise ValueError(f"a floor must be a finite height within ±{HIGHEST:g} m, got {floor!r}")
+    return floor
+
+
+class Controller(Protocol):
+    """What the world asks of a controller. Whoever inherits from it has the null answers below, and gives what follows them.
+
+    skeleton: what its poses are of. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be
+    tuned. body: what it is drawn in, a `gambol.game.render.Body`. None of each where it has none. parts: the controllers
+    that it is made of, by name. What raises NotImplementedError has no null answer: whoever inherits gives it.
+    """
+
+    skeleton: Skeleton
+    library: Any = None
+    settings: Any = None
+    body: Any = None
+    parts: Mapping[str, Controller] = MappingProxyType({})
+
+    @property
+    def kind(self) -> str:
+        """What tells its motion from that of other controllers, beside the library."""
+        return type(self).__name__
+
+    def tuned(self, settings: Any) -> Controller:
+        """The same controller under other settings; itself where it has none."""
+        return self
+
+    def limits(self, share: float = 1.0) -> np.ndarray | None:
+        """Half-spaces (H, 4) n·(v_f, ω, v_l) + d ≤ 0 of the velocities that it walks with, and a `share` of them; None of
+        one that doesn't walk."""
+        return None
+
+    def readiness(self, state: CharacterState) -> Any:
+        """How fast (...) it takes a wish up now, as a share of how fast it does as it walks: less while it sets off."""
+        return 1.0
+
+    def start(self, ground: Any = (0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
+        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. Unable, of one that only
+        takes over from others."""
+        raise Unable(f"{type(self).__name__} starts nobody, it takes over from others: put both under a supervisor")
+
+    def precondition(self, state: CharacterState, intent: Intent) -> float:
+        """How well it could start from here for this intent: 0 not at all … 1 perfectly. Of one that
+        is active already: how firmly it holds on."""
+        raise NotImplementedError
+
+    def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
+        """The state with this controller's own memory, ready to step: it takes over pose and motion as
+        they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
+        raise NotImplementedError
+
+    def refusal(self, state: CharacterState, intent: Intent) -> str | None:
+        """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
+        return None
+
+    def gain(self, strike: Strike) -> np.ndarray | None:
+        """By how much (2,) x, z [m/s] a strike changes the velocity of its body; None of one that answers no strikes."""
+        return None
+
+    def pushed(self, state: CharacterState, change: np.ndarray) -> CharacterState | None:
+        """The state with a velocity that a push has changed by (2,) x, z [m/s] in the world, from which it goes on as it does; None where it can't."""
+        return None
+
+    def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
+        """One step of `dt` seconds. ValueError unless 0 < dt ≤ 0.1, see `seconds`."""
+        raise NotImplementedError
+
+    def status(self, state: CharacterState) -> Status:
+        """Whether it goes on."""
+        raise NotImplementedError

@@ -1,0 +1,145 @@
+"""What somebody wants of a character: velocities, places, jumps, looks; and what strikes it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+HARDEST = 1000.0
+"""Nobody is struck harder [N·s]: as a car at walking pace would."""
+HIGHEST = 1e5
+"""No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
+
+
+@dataclass(frozen=True, eq=False)
+class Leap:
+    """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land, or
+    None for where it is now: straight up.
+
+    airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
+    heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
+    """
+
+    place: np.ndarray | None
+    airtime: float | None = None
+    slack: float = 0.0
+    heading: float | None = None
+
+    def same(self, other: Leap | None) -> bool:
+        """Whether another wish is this one."""
+        return (other is not None and (self.airtime, self.slack, self.heading) == (other.airtime, other.slack, other.heading)
+                and (self.place is None) == (other.place is None) and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A place to walk to, and how to stand there.
+
+    place: x, z or x, y, z [m] in the world; a height says only where it is drawn. heading: [rad], or None to look there the way one
+    comes. within: so many seconds after it was asked for the way is to end, or None for the pace that people choose.
+    ValueError for what is no place, heading or time.
+    """
+
+    place: tuple[float, ...]
+    heading: float | None = None
+    within: float | None = None
+
+    def __post_init__(self):
+        place = tuple(float(value) for value in self.place)
+        if len(place) not in (2, 3) or not all(abs(value) <= HIGHEST for value in place):
+            raise ValueError(f"a goal is x, z or x, y, z within ±{HIGHEST:g} m, got {self.place!r}")
+        if self.heading is not None and not math.isfinite(self.heading):
+            raise ValueError(f"a goal's heading must be finite [rad], or None; got {self.heading!r}")
+        if self.within is not None and not self.within > 0.0:
+            raise ValueError(f"a goal is to be reached within more than 0 s, or None; got {self.within!r}")
+        object.__setattr__(self, "place", place)  # whatever it was given as, it can be compared
+
+    @property
+    def floor(self) -> np.ndarray:
+        """The place (2,) x, z [m]."""
+        return np.array([self.place[0], self.place[-1]])
+
+
+@dataclass(frozen=True)
+class Strike:
+    """A blow or a push, short enough that nobody moves meanwhile. impulse: x, z [N·s] in the world, along the floor; height: [m] over the floor
+    where it strikes, None for the chest. ValueError for what is no impulse, more than HARDEST, or nowhere on a body."""
+
+    impulse: tuple[float, float]
+    height: float | None = None
+
+    def __post_init__(self):
+        impulse = tuple(float(value) for value in self.impulse)
+        if len(impulse) != 2 or not math.hypot(*impulse) <= HARDEST:
+            raise ValueError(f"an impulse is x, z of at most {HARDEST:g} N·s together, got {self.impulse!r}")
+        if self.height is not None and not 0.0 <= self.height <= 3.0:
+            raise ValueError(f"a strike's height must be within 0 … 3 m, or None; got {self.height!r}")
+        object.__setattr__(self, "impulse", impulse)
+
+
+@dataclass(frozen=True, eq=False)
+class Sighting:
+    """What cameras see of somebody in one frame.
+
+    pictures: of each camera a mask (H, W) bool, a picture (H, W, 3) or (H, W) uint8, or None of one whose frame is missing.
+    place: (3,) [m] how far all of them are from where they were calibrated, as they may go along.
+    """
+
+    pictures: Sequence[np.ndarray | None]
+    place: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Intent:
+    """What somebody wants of a character, in the character's own ground frame.
+
+    velocity: (..., 3) forward speed v_f [m/s], angular speed ω [rad/s, counter-clockwise from
+    above] and lateral speed v_l [m/s, positive to the left]. leap: a jump, as long as it is wanted.
+    around: what stands about, anything with a box's centre, size and heading or a pillar's foot,
+    radius and height (`gambol.game.scene.scene` has both). points: (n, 3) [m] in the world, where the points on
+    the body should be that a reconstruction follows, NaN where one is not seen; None for no such wish. turns: (n, 3, 3) how the joints
+    at those points should be turned in the world, NaN where that is not known; None where none is.
+    look: (..., 3) [m] a place in the world to look at while walking or standing; None to look where one goes.
+    halt: (..., 3) x, z [m], heading [rad] in the world where to come to rest, going there with that velocity; NaN for a heading: as one comes, for a
+    place: none; None for none. A walker lets go of the velocity in time for it.
+    towards: (..., 2) the heading in the world [rad] and the speed [m/s] that the velocity leads to in the end: who stands turns there in as few
+    steps as people do; NaN for one who is not told, None for no such wish.
+    goal: where to walk to, instead of a velocity; a `gambol.controllers.supervisor.Supervisor` plans the way. aside: (3,) what is added to
+    the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
+    held: no leap of the way goes off now, as somebody is where it leads.
+    sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
+    aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again.
+    strike: what hits the body as this step begins, whatever is wanted; None for nothing. One in the air is struck once it stands again.
+    """
+
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    leap: Leap | None = None
+    around: Sequence[Any] = ()
+    points: np.ndarray | None = None
+    look: np.ndarray | None = None
+    goal: Goal | None = None
+    aside: np.ndarray | None = None
+    held: bool = False
+    sighting: Sighting | None = None
+    aim: Leap | None = None
+    turns: np.ndarray | None = None
+    halt: np.ndarray | None = None
+    towards: np.ndarray | None = None
+    strike: Strike | None = None
+
+    @staticmethod
+    def tangential(v_t, omega, v_l) -> Intent:
+        """The intent in Truong's terms: tangential (total) speed v_t, ω and v_l, each (...).
+
+        v_f² = v_t² − v_l², with the sign of v_t: a negative v_t walks backward.
+        ValueError if |v_l| > |v_t|, which no motion has.
+        """
+        v_t, omega, v_l = np.broadcast_arrays(*(np.asarray(v, float) for v in (v_t, omega, v_l)))
+        if np.any(np.abs(v_l) > np.abs(v_t) + 1e-9):
+            raise ValueError("the lateral speed can't exceed the tangential (total) speed")
+        v_f = np.copysign(np.sqrt(np.maximum(v_t**2 - v_l**2, 0.0)), v_t)
+        return Intent(np.stack([v_f, omega, v_l], -1))
