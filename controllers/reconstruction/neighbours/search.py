@@ -1,7 +1,7 @@
 """The nearest recorded segments: one interface, the exact search, and the space the quick ones look in.
 
-Of the quick searches, `neighbours_cells` is the one to take; `neighbours_tree` is the plainest and
-`neighbours_graph` the paper's. All rank what they found by the exact distance.
+Of the quick searches, `Cells` is the one to take; `Tree` is the plainest and `Graph` the paper's. All rank what
+they found by the exact distance.
 """
 
 from __future__ import annotations

@@ -24,11 +24,6 @@ class Contour:
     def __len__(self) -> int:
         return len(self.pixels)
 
-    def thinned(self, most: int) -> Contour:
-        """Every so manieth pixel, no more than `most` of them."""
-        step = max(-(-len(self) // most), 1)
-        return self if step == 1 else Contour(self.pixels[::step], self.normals[::step])
-
 
 def contour_of(mask: np.ndarray, box: tuple[int, int, int, int] | None = None) -> Contour:
     """The contour of a mask (H, W) bool, within a box of left, top, right, bottom pixels. The picture's own border is none."""
