@@ -22,6 +22,8 @@ REST, LONGEST = 3.0, 0.4
 """Between pictures, so many times as long as one takes [s], and at most: the cores have other things to do."""
 STROLL = (0.9, 0.6, 0.0)
 """How somebody walks round meanwhile: v_f [m/s], ω [rad/s], v_l [m/s]."""
+SETS_OFF = np.array([0.0, 0.0, -np.pi / 2])
+"""From where the game begins [m], to the right [rad], so that all of the round lies in the picture."""
 
 
 class Opening:
@@ -88,5 +90,5 @@ class Opening:
 def strolling(library: Library, seconds: float) -> Figure:
     """Somebody who has walked round for so long, past where the game begins."""
     number = nearest(library, STROLL)
-    ground = drift(np.zeros(3), library.velocities[number], np.array([seconds]))[0]
+    ground = drift(SETS_OFF, library.velocities[number], np.array([seconds]))[0]
     return Figure(*posed(library, number, seconds / library.primitives[number].period % 1.0, ground))

@@ -81,6 +81,24 @@ def test_somebody_walks_while_one_waits():
     assert np.linalg.norm(ground, axis=-1).max() < 2.5 * v_f / abs(omega)
 
 
+def test_who_walks_while_one_waits_stays_in_the_picture():
+    """All round, every joint, even in a square window."""
+    walker = Locomotion.load()
+    opening = Opening(lambda: pytest.fail("nothing is ready"), Preparing(walker, (Program(),)))
+    opening.scene((640, 640))
+    round_trip = 2 * np.pi / abs(walker.library.velocities[nearest(walker.library, STROLL)][1])
+    for opening.time in np.linspace(0.0, round_trip, 50):
+        scene = opening.scene((640, 640))
+        camera = scene.camera
+        ahead = camera.target - camera.eye
+        ahead /= np.linalg.norm(ahead)
+        right = np.cross(ahead, (0.0, 1.0, 0.0))
+        right /= np.linalg.norm(right)
+        seen = scene.figures[0].positions - camera.eye
+        across = np.stack([seen @ right, seen @ np.cross(right, ahead)]) / (seen @ ahead)
+        assert (seen @ ahead).min() > 1.0 and np.abs(across).max() < np.tan(0.5 * camera.fov), opening.time
+
+
 def test_who_does_not_want_to_wait_leaves(preparing):
     opening = Opening(lambda: pytest.fail("nobody waits for a game"), preparing)
     opening.handle(KeyEvent("W", True))
