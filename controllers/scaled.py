@@ -104,8 +104,9 @@ class Scaled(Controller):
     def _asked(self, intent: Intent) -> Intent:
         look = None if intent.look is None else np.asarray(intent.look, float) / self.factor
         halt = None if intent.halt is None else np.asarray(intent.halt, float) / [self.factor, self.factor, 1.0]
+        towards = None if intent.towards is None else np.asarray(intent.towards, float) / [1.0, self.factor**0.5]
         around = tuple(_Shrunk(thing, self.factor) for thing in intent.around if is_box(thing))
-        return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, look=look, halt=halt)
+        return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, look=look, halt=halt, towards=towards)
 
     def _grown(self, state: CharacterState) -> CharacterState:
         return _resized(state, self.factor, state.velocity * self._speeds)

@@ -29,7 +29,7 @@ class CharacterState:
     velocity: (..., 3) achieved (v_f, ω, v_l) in the ground frame [m/s, rad/s, m/s].
     pose: the pose of the last step. contacts: (..., 4) bool, which of left heel, left ball,
     right heel, right ball stand on the floor.
-    memory: what the active controller keeps for itself, a frozen dataclass of its own.
+    memory: what the active controller keeps for itself, a value of its own that nobody else changes.
     floor: (...) how high the floor lies that the character stands on [m].
     previous, elapsed: the pose a step before and that step's length [s]: how the body moves, for
     whoever takes over. None where nobody knows.

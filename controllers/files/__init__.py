@@ -2,9 +2,9 @@
 
 from .arrays import ArraysError, arrays
 from .printable import printable
-from .safe_files import contents, ordinary, reason, whole
+from .safe_files import append, contents, ordinary, reason, whole
 from .toml_tables import tables
 
 __all__ = [
-    "ArraysError", "arrays", "contents", "ordinary", "printable", "reason", "tables", "whole",
+    "ArraysError", "append", "arrays", "contents", "ordinary", "printable", "reason", "tables", "whole",
 ]

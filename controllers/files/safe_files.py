@@ -8,7 +8,8 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from io import RawIOBase
 from os import PathLike
 from pathlib import Path
 
@@ -45,6 +46,20 @@ def contents(path: str | PathLike[str], most: int | None = None) -> bytes:
     if most is not None and size > most:
         raise OSError(errno.EFBIG, f"holds {-(-size >> 20)} MiB; {most >> 20} MiB are read at most", str(path))
     return path.read_bytes()
+
+
+def append(file: RawIOBase, data: bytes) -> None:
+    """Write at the end of a file that was opened without a buffer, all of it or nothing. OSError where it can't be, as on a full disk,
+    which may take a part without a word."""
+    end, rest = file.tell(), memoryview(data)
+    try:
+        while rest:
+            rest = rest[file.write(rest) or 0:]
+    except OSError:
+        with suppress(OSError):
+            file.truncate(end)
+            file.seek(end)
+        raise
 
 
 @contextmanager

@@ -32,6 +32,8 @@ from .velocity_correction import space_of
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
 FINEST = 1 / 60
 """A longer step is made in parts no longer than this [s], as feet come down and gaits change at its moments."""
+ROUNDING = 1e-9
+"""Who stands no farther from where he was left than this [m, rad] was not put elsewhere: a body of another size rounds."""
 ELSEWHERE = 0.1
 """A place to come to rest at that moves by more than this [m] is another, for which nobody stops yet."""
 
@@ -179,7 +181,7 @@ class Locomotion(Controller):
         if not self._knows(state.memory):
             raise ValueError("this state's memory is not of a controller over this library: enter it first")
         memory, ground = _copied(state.memory), np.asarray(state.ground, float)
-        if not np.array_equal(ground, memory["ground"]):
+        if ground.shape != memory["ground"].shape or not (np.abs(ground - memory["ground"]) <= ROUNDING).all():
             if ground.shape != memory["ground"].shape or not np.isfinite(ground).all():
                 raise ValueError(f"ground must be finite {memory['ground'].shape} x, z, heading; got {ground!r}")
             put(memory, ground)

@@ -51,9 +51,18 @@ class Settings(NamedTuple):
     gaze: float = 1.0
 
 
+DIVIDING = ("agility", "acceleration", "weight_halflife")
+"""Of these a step takes shares."""
+
+
 def plain(settings: Settings) -> Settings:
-    """The same settings, each of its own kind of number: kernels are compiled anew for any other, 1 for 1.0."""
-    return Settings._make(type(usual)(value) for usual, value in zip(Settings(), settings))
+    """The same settings, each of its own kind of number: kernels are compiled anew for any other, 1 for 1.0. ValueError for one that
+    is no number, or that no body moves by."""
+    same = Settings._make(type(usual)(value) for usual, value in zip(Settings(), settings))
+    for name, value in same._asdict().items():
+        if np.isnan(value) or np.isinf(value) and name != "run_above" or value <= 0.0 and name in DIVIDING:
+            raise ValueError(f"{name} must be a finite number{' over 0' * (name in DIVIDING)}, got {value}")
+    return same
 
 
 class Legs(NamedTuple):

@@ -60,7 +60,7 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
     now = now if now.stood == stood else now.but(stood=stood)
     velocity = now.wished(state.ground, state.velocity)
     share, leap = 1.0, intent.leap
-    if intent.aside is not None:
+    if intent.aside is not None and bool(np.isfinite(intent.aside).all()):
         share, velocity = progress(velocity, velocity + intent.aside), velocity + intent.aside
         now = _kept(now, state, share, dt)
     if now.crossings and leap is None and not intent.held and _leaps(now, state):

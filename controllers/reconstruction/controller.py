@@ -1,7 +1,7 @@
 """The reconstruction controller: ``state', pose = reconstruction.step(state, intent, dt)`` follows `intent.points`.
 
 Where the points come from is nobody's business here: a recorded performance, handles that somebody drags, a live
-stream (`sources`). A method of `method` makes the poses; here they are taken over from whoever moved the body before,
+stream (`live.sources`). A method of `regression` makes the poses; here they are taken over from whoever moved the body before,
 kept going while points are lost, and given back.
 """
 
@@ -37,7 +37,7 @@ _CALMED = 0.5
 
 
 class Reconstructor(Protocol):
-    """What makes the poses: a `method.Method`, or anything that is used like one. One with `hears_turns` is given turns, too."""
+    """What makes the poses: a `regression.Method`, or anything that is used like one. One with `hears_turns` is given turns, too."""
 
     def begin(self, frames: np.ndarray, tracks: np.ndarray) -> Any:
         """See `Method`."""

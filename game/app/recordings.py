@@ -53,8 +53,7 @@ class Recordings:
 
     def add(self, wishes: Sequence[Wish]) -> None:
         """One tick more for the log."""
-        if self.log is not None:
-            self.log.add(wishes)
+        self._logged(lambda log: log.add(wishes))
 
     def save_sometimes(self, seconds: float, now: SessionState) -> None:
         """`seconds` have passed: save what was played if it is time to."""
@@ -65,12 +64,7 @@ class Recordings:
     def save(self, now: SessionState) -> None:
         """Write what was played since the last time. now: what it led to."""
         self._unsaved = 0.0
-        if self.log is not None:
-            try:
-                self.log.flush(now)
-            except OutputError as error:  # a full disk must not end the game
-                self.log = None
-                self.say(f"the log ends here: {error}")
+        self._logged(lambda log: log.flush(now))
 
     def picture(self, pixels: np.ndarray) -> None:
         """Keep a picture (H, W, 3 or 4)."""
@@ -100,6 +94,16 @@ class Recordings:
         self.save(now)
         if self.log is not None:
             self.log.close()
+
+    def _logged(self, keep: Callable[[LogWriter], None]) -> None:
+        """Have the log keep something; where it can't it ends, and the game goes on: a disk may be full."""
+        if self.log is not None:
+            try:
+                keep(self.log)
+            except OutputError as error:
+                self.log.close()
+                self.log = None
+                self.say(f"the log ends here: {error}")
 
     def _told(self, make: Callable[[Capture], Path | str]) -> None:
         """Have the studio make something, and say where it is or why it can't be."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from gambol.controllers.body import CONTACT_HEIGHT, contact_height
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import but
 from gambol.controllers.person import forecast
 
 from ..scene import Figure, Overlays, Patch
@@ -35,7 +35,7 @@ def stepping(figures: Sequence[Figure], after: World, overlays: Overlays) -> tup
 def _soles(one: Character) -> list[Patch]:
     if one.state.active not in ("", "locomotion") or one.intent.points is not None or not one.opacity:
         return []
-    told = forecast(one.controller, one.state, Intent(one.intent.velocity, around=one.intent.around, goal=one.intent.goal, halt=one.intent.halt), AHEAD)
+    told = forecast(one.controller, one.state, but(one.intent, leap=None, aim=None, strike=None, sighting=None), AHEAD)
     rests = contact_height(one.controller.skeleton)
     left, ahead = rests / CONTACT_HEIGHT * SOLE.T
     soles = []

@@ -94,7 +94,7 @@ def plan(names: Sequence[str], folder: str | Path, controller: Any, preset: str,
         if files.setdefault(file.stem, file) != file:
             raise ScenarioError(f"{file}: its film would have the same name as that of {files[file.stem]}; rename one of them")
         film = film if size is None else film.at_size(size)
-        words = (file.read_text("utf-8"), digest(controller), f"{film.size}", preset, version("gambol"), f"{FORMAT}")
+        words = (file.read_text("utf-8"), digest(controller), f"{film.size}", preset, version("gambol"), f"{FORMAT}", *_stamps(film.files))
         key = hashlib.sha256("\0".join(words).encode()).hexdigest()[:16]
         old = _entry(folder / f"{file.stem}.json")
         fresh = not force and old is not None and old.key == key and all(
@@ -102,6 +102,12 @@ def plan(names: Sequence[str], folder: str | Path, controller: Any, preset: str,
         made.append(Plan(file.stem, film, key, fresh))
     output_folder(folder)  # made only now: a name mistyped leaves nothing behind
     return tuple(made)
+
+
+def _stamps(paths: Sequence[Path]) -> list[str]:
+    """What tells that a file, or one in a folder, is another than it was: its name, size and time."""
+    files = [file for path in paths for file in (sorted(path.rglob("*")) if path.is_dir() else (path,)) if file.is_file()]
+    return [f"{file} {file.stat().st_size} {file.stat().st_mtime_ns}" for file in files]
 
 
 def make(plan: Plan, folder: str | Path, controller: Any, stage: Any, drawn: Callable[[], None] = lambda: None) -> Entry:

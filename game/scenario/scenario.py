@@ -84,6 +84,13 @@ class Scenario(Table):
         return tuple((actor, actor.follows) for actor in self.actors if actor.follows is not None)
 
     @property
+    def files(self) -> tuple[File, ...]:
+        """The files and folders that it names."""
+        named = [self.database, *(table.clip for _, table in self.followers),
+                 *(file for actor in self.actors if actor.tracks is not None for file in (actor.tracks.footage, actor.tracks.start))]
+        return tuple(File(name) for name in named if name is not None)
+
+    @property
     def wanted(self) -> tuple[tuple[str, str], ...]:
         """The methods, name and points, that its followers need, so that they can be learnt before."""
         return tuple(dict.fromkeys((table.method, table.points) for _, table in self.followers))

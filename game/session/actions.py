@@ -10,7 +10,7 @@ from gambol.controllers.contract import Goal
 
 from ..camera import Follow, cycled
 from ..input import Aim, Pilot, Script
-from ..world import Character, World
+from ..world import Character, World, walker_of
 from . import comparison, settings, tracking
 from .comparison import Comparison
 from .passers import peopled
@@ -87,7 +87,7 @@ def _reset(moment: SessionState) -> SessionState:
     players = []
     for old, character in zip(moment.players, world.characters):
         camera = Follow.behind(character.state.ground, old.camera.settings, level=character.level)
-        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim(), goal=None))
+        players.append(replace(old, pilot=Pilot(pace=old.pilot.pace), camera=camera, last=camera, aim=Aim(), goal=None, pushed=False))
     passers = tuple(Script(script.moves, strikes=script.strikes) for script in moment.passers)
     return _comparing(replace(moment, before=world, after=world, players=tuple(players), phase=0, passers=passers),
                      None if moment.comparison is None else replace(moment.comparison, pins=None, turned=()))
@@ -120,11 +120,12 @@ def _comparing(moment: SessionState, wanted: Comparison | None, kept: Mapping[st
 
 def _joined(moment: SessionState) -> SessionState:
     """One player more, beside the first; no more than there are tints."""
-    count, controller = len(moment.players), moment.after.characters[0].controller
+    count, controller = len(moment.players), walker_of(moment.after.characters[0].controller)
     if count >= len(TINTS):
         return moment
     def add(world: World) -> World:
-        late = newcomer(controller, count, world.characters[0].state.ground)
+        first = world.characters[0]
+        late = newcomer(controller, count, first.state.ground, float(first.state.floor), world.props)
         return replace(world, characters=world.characters[:count] + (late,) + world.characters[count:])
     after = add(moment.after)
     late = after.characters[count]

@@ -178,8 +178,9 @@ def _given_back(comparison: Comparison, world: World, body: Character) -> tuple[
 
 
 def written(place: np.ndarray, turn: np.ndarray | None = None) -> str:
-    """A place (3,) [m] as actions have it, to a tenth of a millimetre, and a turn (3, 3) where it is known; empty for one that is not seen."""
-    if not np.isfinite(place).all():
+    """A place (3,) [m] as actions have it, to a tenth of a millimetre, and a turn (3, 3) where it is known; empty for one that is not seen, or so
+    far away that nobody can be there."""
+    if not (np.abs(np.round(place, 4)) < FAR).all():
         return ""
     quaternion = () if turn is None or not np.isfinite(turn).all() else Rotation.from_matrix(turn).as_quat()
     return "/".join(f"{v:.4f}" for v in (*place, *quaternion))

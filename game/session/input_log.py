@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.files import contents, printable, reason
+from gambol.controllers.files import append, contents, printable, reason
 
 from ..files import OutputError, named
 from ..input import Wish
@@ -74,7 +74,7 @@ class LogWriter:
                       "library": digest(controller),
                       "character": "" if controller.body is None else printable(controller.body.name, 100), **needs}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
-        self._count = 0
+        self._count, self._ended = 0, False
 
     @property
     def begun(self) -> bool:
@@ -89,9 +89,13 @@ class LogWriter:
         self.ticks += 1
 
     def flush(self, moment: SessionState | None = None) -> None:
-        """Write what was added since the last time. moment: what it led to."""
+        """Write what was added since the last time. moment: what it led to. Once it could not be written nothing more is: a log
+        without a part of it can't be played."""
         if not self._waiting:
             return
+        if self._ended:
+            raise OutputError(f"{self.path}: has ended")
+        self._ended = True
         self._count += len(self._waiting)
         if self._count > LONGEST:
             raise OutputError(f"{self.path}: is {LONGEST / RATE / 3600:g} hours long, and no log is longer")
@@ -101,9 +105,9 @@ class LogWriter:
             if self._file is None:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
                 self._file = open(self.path, "xb", buffering=0)
-                self._file.write(json.dumps(self._head).encode() + b"\n")
-            self._file.write(b"%08x %s\n" % (zlib.crc32(data), escaped(data)))
-        self._waiting = []
+                append(self._file, json.dumps(self._head).encode() + b"\n")
+            append(self._file, b"%08x %s\n" % (zlib.crc32(data), escaped(data)))
+        self._waiting, self._ended = [], False
 
     def close(self) -> None:
         """Let the file go; what was not flushed is not in it."""

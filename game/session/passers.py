@@ -14,7 +14,7 @@ from gambol.controllers.navigation.routes import distance, shapes_of
 
 from ..input import Move, Script
 from ..scene import Prop
-from ..world import DT, Character, World, avoiding
+from ..world import DT, Character, World, avoiding, walker_of
 from .settings import SettingError
 from .state import SessionState
 
@@ -38,7 +38,7 @@ def peopled(moment: SessionState, action: str) -> SessionState:
         raise SettingError(f"{action}: needs a whole number of people, 0 to {MOST}")
     first, count = len(moment.players), len(moment.passers)
     rng, people = np.random.default_rng(1), [one.state.ground[:2] for one in moment.after.characters[:first]]
-    controller, props = moment.after.characters[0].controller, moment.after.props
+    controller, props = walker_of(moment.after.characters[0].controller), moment.after.props
     fresh, scripts = [], []
     for number in range(int(text)):
         place = _free(rng, props, people)

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from gambol.controllers.contract import Goal
-from gambol.controllers.navigation import Steering
+from gambol.controllers.navigation import Steering, floor_at, gap
 
 from ..camera import Follow, PlayerCamera, between
 from ..input import STEERING, Aim, Pilot, Script
-from ..scene import TINT, Camera, Figure
+from ..scene import TINT, Camera, Figure, Prop
 from ..world import COURSE, Character, Methods, World, figures, methods
 from . import settings
 from .comparison import Comparison
 
 APART = 1.2
 """How far from one another players start [m]."""
+STEP, ROOM = 0.2, 0.25
+"""Who starts beside somebody stands no more than a step higher [m], so far from whatever stands there [m] …"""
+BODY = np.array([[0.0, height, 0.0] for height in (0.3, 0.8, 1.3, 1.8)])
+"""… all the way up."""
 TINTS = (TINT, (0.20, 0.46, 0.72))
 """What tells the players apart."""
 
@@ -97,12 +102,17 @@ def begin(world: World, players: int = 1, learnt: Methods | None = None) -> Sess
                   methods=methods() if learnt is None else learnt)
 
 
-def newcomer(controller: Any, number: int, ground: np.ndarray) -> Character:
-    """Player `number`, to the right of the first, who stands at `ground`."""
-    x, z, heading = (float(v) for v in ground)
-    side = APART * number
-    return Character(f"Player {number + 1}", controller, tint=TINTS[number], state=controller.start(
-        ground=(x - side * np.cos(heading), z + side * np.sin(heading), heading)))
+def newcomer(controller: Any, number: int, ground: np.ndarray, level: float = 0.0, props: Sequence[Prop] = ()) -> Character:
+    """Player `number`, to the right of the first, who stands at `ground` on a floor at `level` [m]; where something stands there to his left,
+    or farther away, as props leave room."""
+    heading = float(ground[2])
+    for side in APART * number * np.array([1.0, -1.0, 2.0, -2.0, 3.0, -3.0]):
+        x, z = float(ground[0] - side * np.cos(heading)), float(ground[1] + side * np.sin(heading))
+        floor = floor_at(x, z, props, level + STEP)
+        body = np.array([x, floor, z]) + BODY
+        if all((gap(body, thing) > ROOM).all() for thing in props):
+            break
+    return Character(f"Player {number + 1}", controller, tint=TINTS[number], state=controller.start((x, z, heading), floor))
 
 
 def owners(moment: SessionState, who: int) -> dict[str, Any]:

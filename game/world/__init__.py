@@ -8,6 +8,7 @@ from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
 from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, Learning, Methods, methods, taught, usual
+from .performers import walker_of
 from .primitive import nearest, posed
 from .recorded import Recorded
 from .solid import stopped
@@ -20,5 +21,5 @@ __all__ = [
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
     "figures", "follower_of",
     "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "stopped", "switched", "taught",
-    "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "watches_of",
+    "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "walker_of", "watches_of",
 ]

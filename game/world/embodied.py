@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from gambol.controllers.body import STATURE
-from gambol.controllers.jump import Jump, Physique
+from gambol.controllers.jump import Jump
 from gambol.controllers.scaled import Scaled
+from gambol.controllers.struck import Struck
 from gambol.controllers.supervisor import Supervisor
 
 from ..render import Body, leg_length, skin
 
 SMALLEST, LARGEST = 0.4, 1.6
 """Legs shorter or longer than this share of the standard's are taken for another unit, and fitted."""
-ADULT = 73.0
-"""What a body of standard height weighs [kg]; others by the cube of their size."""
 
 
 class Embodied(Supervisor):
@@ -37,6 +36,7 @@ def sized(controller: Any, factor: float) -> Any:
     """A controller in a body `factor` times as long as the standard human's."""
     if factor == 1.0:
         return controller
-    if isinstance(controller, Jump):
-        return Jump(Physique(max(ADULT * factor**3, 5.0), STATURE * factor), controller.gravity)
+    if isinstance(controller, Jump | Struck):  # planned for whatever body it is
+        grown = replace(controller.physique, mass=max(controller.physique.mass * factor**3, 5.0), height=controller.physique.height * factor)
+        return type(controller)(grown, controller.gravity)
     return Scaled(controller, factor)

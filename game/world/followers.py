@@ -20,8 +20,7 @@ from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
 from .learnt_methods import Methods
-from .recorded import Recorded
-from .tracked_footage import Filmed
+from .performers import walker_of
 
 if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
     from gambol.controllers.reconstruction import ControlPoints
@@ -167,7 +166,7 @@ def follower_of(performer: Any, name: str, points: str, methods: Methods) -> Sup
     from gambol.controllers.reconstruction import SKELETON, Reconstruction
 
     method, controls = methods(name, points)
-    someone = performer.walker if isinstance(performer, Recorded | Filmed) else performer
+    someone = walker_of(performer)
     walker = someone.parts.get("locomotion", someone)
     height = STATURE * float(performer.skeleton.offsets[0, 1] / SKELETON.offsets[0, 1])
     controllers = {"locomotion": walker, "reconstruction": Reconstruction(

@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import threading
+from collections import deque
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -176,7 +177,10 @@ class Learning:
                                          stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
                                          env=os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
                                                            "PYTHONIOENCODING": "utf-8"})
-        threading.Thread(target=self._listen, daemon=True).start()
+        self._complaints: deque[str] = deque(maxlen=20)
+        self._readers = [threading.Thread(target=read, daemon=True) for read in (self._listen, self._complain)]
+        for reader in self._readers:
+            reader.start()
 
     def _listen(self) -> None:
         assert self._process.stdout is not None  # it is a pipe
@@ -185,6 +189,10 @@ class Learning:
                 done, total = int(found[2]), int(found[3])
                 self.said = f"{found[1]} {100 * done // max(total, 1)} %"
                 self._told(found[1], done, total)
+
+    def _complain(self) -> None:
+        assert self._process.stderr is not None  # it is a pipe, and a full one would stop the program
+        self._complaints.extend(self._process.stderr)
 
     @property
     def done(self) -> bool:
@@ -196,8 +204,9 @@ class Learning:
         """Why it ended without having learnt everything; empty if it has."""
         if not self._process.returncode:
             return ""
-        assert self._process.stderr is not None  # it is a pipe
-        lines = self._process.stderr.read().strip().splitlines()
+        for reader in self._readers:
+            reader.join(1.0)
+        lines = [line.strip() for line in self._complaints if line.strip()]
         return lines[-1] if lines else f"learning ended with code {self._process.returncode}"
 
     def wait(self) -> None:

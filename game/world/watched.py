@@ -18,8 +18,7 @@ from gambol.controllers.contract import Sighting
 from gambol.controllers.supervisor import Supervisor
 
 from .embodied import Embodied
-from .recorded import Recorded
-from .tracked_footage import Filmed
+from .performers import walker_of
 
 if TYPE_CHECKING:  # what tracks is loaded by the functions that need it: a game without cameras starts without
     from gambol.controllers.tracking import Tracking, Watching
@@ -115,7 +114,7 @@ def tracked_of(performer: Any, watches: Watches, rate: float, penalty: bool = Tr
     from ..meshes import surface_of
 
     surface = surface_of(watches.surface.chain.skeleton, "full", level="middle")
-    someone = performer.walker if isinstance(performer, Recorded | Filmed) else performer
+    someone = walker_of(performer)
     tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty, carriage=CARRIAGE))
     controllers = {"locomotion": someone.parts.get("locomotion", someone), "tracking": Tracking(tracker, watches.beside)}
     return Embodied(controllers, performer.body, performer.factor) if isinstance(performer, Embodied) else Supervisor(controllers)

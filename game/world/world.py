@@ -45,7 +45,7 @@ class Character:
     `body` (`gambol.game.render.mesh.Body`) is drawn in it.
     intent: what was last asked of the character. trail: (N, 3) [m] where it was, oldest first.
     follows: whose points it follows, watches: which cameras see whom it is to be like; None of both for somebody with a will.
-    told: (N, 4) its `follow.errors`, oldest first.
+    told: (N, 4) its `followers.errors`, oldest first.
     opacity: 1 for a body, less for a ghost. centre_of_mass: how its centre of mass is borne; None before its first step.
     enters, leaves: when it is there [s]; before and afterwards it stays as it is, and nobody sees it.
     """

@@ -154,3 +154,12 @@ def test_the_command_makes_what_is_missing(names, tmp_path, monkeypatch):
     done = gallery_of(*names)
     assert done.exit_code == 0 and "index.html: 1 of 1 films made, 1 up to date" in done.stderr
     assert gallery_of("nowhere").exit_code == 2
+
+
+def test_a_film_is_made_anew_when_a_file_that_it_names_has_changed(tmp_path):
+    clip, film = tmp_path / "clip.bvh", tmp_path / "film.toml"
+    clip.write_text("HIERARCHY", encoding="utf-8")
+    film.write_text(TEXT + '[[actors]]\nname = "doll"\nfollows = { clip = "clip.bvh", points = "6", method = "nearest" }\n', encoding="utf-8")
+    keys = [gallery.plan([str(film)], tmp_path / "out", Glide(), "fast")[0].key for _ in range(2)]
+    clip.write_text("HIERARCHY and more", encoding="utf-8")
+    assert keys[0] == keys[1] != gallery.plan([str(film)], tmp_path / "out", Glide(), "fast")[0].key

@@ -7,6 +7,7 @@ from PIL import Image
 from gambol.game.app.capture import Film, Capture, log_file
 from gambol.game.app.app import Play
 from gambol.game.files.paths import OutputError
+from gambol.game.input import Wish
 from gambol.game.session.fingerprint import fingerprint
 from gambol.game.session.input_log import LogWriter, read
 from gambol.game.session.replay import replay
@@ -108,3 +109,12 @@ def test_a_log_has_a_name_of_its_own_or_a_new_one(tmp_path, monkeypatch):
     for name, says in (("a.gambol", "is there already"), ("a.txt", "ends in .gambol")):
         with pytest.raises(OutputError, match=says):
             log_file(tmp_path / name)
+
+
+def test_a_log_that_ends_as_a_tick_is_added_does_not_end_the_game(tmp_path):
+    """Lines are written as one is full, or somebody joins."""
+    (tmp_path / "file").touch()
+    game = Play(Glide(), log=LogWriter(tmp_path / "file" / "a.gambol", Glide(), 1))
+    for wishes in ([Wish()], [Wish(), Wish()]):
+        game.kept.add(wishes)
+    assert "the log ends here" in text(game) and game.kept.log is None

@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
+from gambol.controllers.body import Clip, human
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.navigation import gap
 from gambol.game.input import Wish
 from gambol.game.session.actions import SLOWER
 from gambol.game.session.settings import SETTINGS, SettingError
-from gambol.game.session.state import opening
+from gambol.game.session.state import newcomer, opening
 from gambol.game.session.tick import KEPT, Timeline, advance
+from gambol.game.world import COURSE, Recorded
 from stand_in import Glide
 
 AHEAD = Wish(move=(0.0, 1.0))
@@ -204,3 +208,25 @@ def test_rounding_is_finer_than_a_hand_can_feel():
     rounded = wish.rounded()
     assert rounded.move == pytest.approx(wish.move, abs=0.004) and rounded.drag == pytest.approx(wish.drag, abs=2e-4)
     assert rounded.zoom == wish.zoom
+
+
+def test_a_push_that_waits_is_forgotten_by_a_reset():
+    line = played(pressing("pause"), pressing("push"), pressing("reset"))
+    assert not line.now.players[0].pushed
+
+
+@pytest.mark.parametrize("place, level", [((0.0, 0.0), 0.0), ((3.4, 11.4), 0.6), ((1.6, 5.0), 0.0)])
+def test_who_joins_stands_on_whatever_is_beside_the_first(place, level):
+    """Beside nothing, on a platform, and next to one: never within it."""
+    first = newcomer(Glide(), 0, np.array([*place, np.pi / 2]), level, COURSE)
+    late = newcomer(Glide(), 1, first.state.ground, level, COURSE)
+    feet = np.array([late.state.ground[0], float(late.state.floor), late.state.ground[1]])
+    assert min(gap(np.array([feet + [0.0, up, 0.0] for up in (0.3, 1.0, 1.7)]), thing).min() for thing in COURSE) > 0.2
+    assert float(late.state.floor) <= level + 0.2 and np.linalg.norm(late.state.ground[:2] - place) > 1.0
+
+
+def test_who_joins_somebody_that_a_clip_moves_walks():
+    body = human()
+    clip = Clip("still", body, 1 / 60, np.tile(body.offsets[0], (3, 1)), np.tile(Rotation.identity().as_quat(), (3, len(body), 1)))
+    line = played(pressing("crowd=2", "join"), moment=opening(Recorded(clip, Glide())))
+    assert [type(one.controller) for one in line.now.after.characters] == [Recorded, Glide, Glide, Glide]

@@ -247,3 +247,9 @@ def test_the_size_of_the_step_does_not_matter(locomotion):
         assert np.abs(end["weights"] - finest["weights"]).max() < 0.08  # of who is still getting faster
         assert np.abs((end["phase"] - finest["phase"] + 0.5) % 1 - 0.5).max() < 0.05
         assert np.abs(end["ground"] - finest["ground"]).max() < 0.05
+
+
+@pytest.mark.parametrize("name, value", [("breath", np.nan), ("clearance", np.inf), ("agility", 0.0), ("acceleration", -1.0), ("weight_halflife", 0.0)])
+def test_settings_that_no_body_moves_by_are_refused(name, value):
+    with pytest.raises(ValueError, match=f"{name} must be a finite number"):
+        Locomotion.load(settings=Settings()._replace(**{name: value}))

@@ -1,5 +1,7 @@
 """Packets that are kept: all of them, whenever the program ends, and heard again as they came."""
 
+import errno
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -72,3 +74,36 @@ def test_a_stream_that_was_kept_is_heard_again_as_it_was(tmp_path):
     last = [again.at(k / 60)[0, 0] for k in range(30)][-1]
     assert last == pytest.approx(-2.8, abs=0.02)  # one packet late
     assert again.broken == 1
+
+
+def test_a_disk_that_takes_half_of_a_packet_leaves_the_others_whole(tmp_path):
+    """Whatever came after is not kept; what came before is heard again."""
+    log, room = PacketLog(tmp_path / "a.packets"), [len(MAGIC) + 200]
+
+    class Full:
+        def __init__(self, file):
+            self.file = file
+
+        def write(self, data):
+            if not (left := room[0] - self.file.tell()):
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return self.file.write(data[:left])
+
+        def __getattr__(self, name):
+            return getattr(self.file, name)
+
+    log._file = Full(log._file)
+    for k in range(9):
+        log.add(k / 60, "127.0.0.1", bytes([k]) * 40)
+        room[0] += 1000 * (k == 3)
+    assert "No space left" in log.fault
+    log.close()
+    log.add(1.0, "127.0.0.1", b"late")
+    assert [packet[2] for packet in packets_of(log.path)] == [bytes([k]) * 40 for k in range(3)]
+
+
+def test_whoever_still_listens_as_a_log_is_closed_is_not_stopped(tmp_path):
+    log = PacketLog(tmp_path / "a.packets")
+    log.close()
+    log.add(0.0, "127.0.0.1", b"late")
+    assert "is closed" in log.fault

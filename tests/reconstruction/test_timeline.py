@@ -77,3 +77,25 @@ def test_after_a_silence_it_begins_anew():
 
 def test_nothing_heard_is_nowhere():
     assert np.isnan(Timeline().at(0.0)).all()
+
+
+@pytest.mark.parametrize("ago", [0.02, 0.05, 0.08, 0.11, 0.14])
+def test_a_moment_before_the_last_packet_may_be_asked_for(ago):
+    """As whoever draws may be late: what a late packet mends fades, and never grows into the past."""
+    rng, line = np.random.default_rng(3), Timeline()
+    sent = np.arange(120) / 60
+    arrived = np.maximum.accumulate(sent + rng.uniform(0.0, 0.004, 120) + np.where(np.arange(120) % 30 == 29, 0.04, 0.0))
+    for k, time in enumerate(arrived):
+        line.heard(time, hand(sent[k]))
+        if k > 40:
+            assert np.linalg.norm(line.at(time - ago) - hand(time - ago - 1 / 60)) < 0.12
+
+
+@pytest.mark.parametrize("jump", [-100.0, -0.5, 0.5, 100.0])
+def test_a_senders_clock_may_be_set(jump):
+    line = Timeline()
+    for k in range(240):
+        time = k / 60
+        line.heard(time, np.array([time, 0.0, 0.0]), 5.0 + time + (jump if k >= 120 else 0.0))
+        if k > 30 and not 120 <= k < 140:
+            assert line.at(time)[0] == pytest.approx(time - 1 / 60, abs=0.02)

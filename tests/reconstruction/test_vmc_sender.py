@@ -77,12 +77,13 @@ def test_frames_arrive_and_nobody_listening_is_no_mistake():
     sender.close()
 
 
-@pytest.mark.parametrize("text, found", [("127.0.0.1", ("127.0.0.1", PORT)), ("studio:40000", ("studio", 40000)), (":40000", ("127.0.0.1", 40000))])
+@pytest.mark.parametrize("text, found", [("127.0.0.1", ("127.0.0.1", PORT)), ("studio:40000", ("studio", 40000)), (":40000", ("127.0.0.1", 40000)),
+                                         ("[::1]", ("::1", PORT)), ("[fe80::2]:40000", ("fe80::2", 40000))])
 def test_an_address_is_a_machine_and_a_port(text, found):
     assert address(text) == found
 
 
-@pytest.mark.parametrize("text", ["a:b", "a:0", "a:65536", "a:", "a:1.5"])
+@pytest.mark.parametrize("text", ["a:b", "a:0", "a:65536", "a:", "a:1.5", "::1", "fe80::1:40000", "[::1", "[]:1:2"])
 def test_an_address_with_a_mistake_is_told_of(text):
     with pytest.raises(SenderError, match="give HOST:PORT"):
         address(text)

@@ -108,7 +108,7 @@ def _tracks(frames, newest, dt):
 
 
 def backed(track: np.ndarray, frame: np.ndarray, dt: float) -> np.ndarray:
-    """The ground tracks (..., 3) from which frames (..., D) led to `track` (..., 3): the inverse of `chart.advance`."""
+    """The ground tracks (..., 3) from which frames (..., D) led to `track` (..., 3): the inverse of `pose_vector.advance`."""
     earlier = np.array(track, float)
     earlier[..., 2] -= frame[..., YAW_RATE] * dt
     earlier[..., :2] -= advance(earlier, frame, dt)[..., :2] - earlier[..., :2]

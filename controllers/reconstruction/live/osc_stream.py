@@ -176,7 +176,7 @@ class Stream(Trackers):
             return self.told(time, evenly=False)
         late = self._clock() - time
         self._lag = self._lag + (late - self._lag) * _LAGGING if abs(late - self._lag) < self.stale else late
-        while self._arrived:
+        for _ in range(len(self._arrived)):  # no more: others arrive meanwhile
             self.take(*self._arrived.popleft())
         return self.told(time + self._lag)
 

@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterator
 from pathlib import Path
 
-from ...files import reason
+from ...files import append, reason
 
 MAGIC = b"gambol packets 1\n"
 SUFFIX = ".packets"
@@ -30,7 +30,7 @@ class PacketLog:
         self.path, self.fault = Path(path), ""
         try:
             self._file = self.path.open("xb", buffering=0)
-            self._file.write(MAGIC)
+            append(self._file, MAGIC)
         except FileExistsError:
             raise PacketLogError(f"{path}: there is such a file already; choose another name") from None
         except OSError as error:
@@ -42,9 +42,11 @@ class PacketLog:
             return
         name = sender.encode()[:255]
         try:
-            self._file.write(_HEAD.pack(time, len(name), len(packet)) + name + packet)
+            append(self._file, _HEAD.pack(time, len(name), len(packet)) + name + packet)
         except OSError as error:
             self.fault = f"{self.path}: ends early: {reason(error)}"
+        except ValueError:  # closed, while whoever listens still does
+            self.fault = f"{self.path}: is closed"
 
     def close(self) -> None:
         """Write no more."""

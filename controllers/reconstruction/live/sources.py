@@ -1,4 +1,4 @@
-"""Where points come from: a recorded performance here, a live one in `stream`, a camera's tracker one day.
+"""Where points come from: a recorded performance here, a live one in `osc_stream`, a camera's tracker one day.
 
 All that a reconstruction needs of a source is where the points are at a time.
 """

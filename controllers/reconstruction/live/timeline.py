@@ -66,7 +66,7 @@ class Timeline:
 
         place: (3,) [m]. turn: (4,) a unit quaternion x, y, z, w, NaN where none is known.
         """
-        if time - self.last > max(4.0 * self.period, ANEW):
+        if time - self.last > max(4.0 * self.period, ANEW) or sent is not None and self._set_anew(time, sent):
             self._known.clear()
             self._even = self._offset = math.nan
             self._late, self._mend = 0.0, (-math.inf, np.zeros(3), np.zeros(3))
@@ -103,7 +103,7 @@ class Timeline:
         """Where the tracker was (3,) one packet before a time [s]: the newest place while the pace is not known, NaN of none."""
         if len(self._known) < 3 or math.isnan(self.period):
             return self.newest
-        since, off, rate = time - self._mend[0], self._mend[1], self._mend[2]
+        since, off, rate = max(time - self._mend[0], 0.0), self._mend[1], self._mend[2]  # it may be asked of a moment before
         if since >= 12.0 * MENDED:
             return self._through(time)
         fading = math.exp(-since / MENDED)
@@ -144,6 +144,11 @@ class Timeline:
         before, after = (y - x) / (b - a), (z - y) / (c - b)
         bend, t = (after - before) / (c - a), self._known[k][0]
         return before + bend * (2.0 * t - a - b)
+
+    def _set_anew(self, time: float, sent: float) -> bool:
+        """Whether the sender's clock must have been set: a packet older than all that are kept, or one from times to come."""
+        return bool(self._known) and (sent + self._offset < self._known[0][0]
+                                      or sent + self._offset - time > max(4.0 * self.period, ANEW))
 
     def _by_clock(self, time: float, sent: float) -> float:
         """When a packet would have arrived by the sender's clock, whose offset is what packets are late by on the average."""

@@ -6,6 +6,7 @@ body is, /VMC/Ext/T. Turns are local and from the T-pose; axes are Unity's, left
 
 from __future__ import annotations
 
+import re
 import socket
 
 import numpy as np
@@ -33,8 +34,10 @@ class SenderError(ValueError):
 
 
 def address(text: str) -> tuple[str, int]:
-    """Host and port of "HOST", "HOST:PORT" or ":PORT". SenderError for anything else."""
-    host, _, port = text.rpartition(":") if ":" in text else (text, "", str(PORT))
+    """Host and port of "HOST", "HOST:PORT" or ":PORT", HOST in brackets if it has colons. SenderError for anything else."""
+    found = re.fullmatch(r"(?:\[([^\[\]]+)\]|([^:\[\]]*))(?::([^:]*))?", text)
+    bracketed, bare, port = found.groups() if found else ("", "", "")
+    host, port = bracketed or bare, str(PORT) if port is None else port
     if not port.isascii() or not port.isdigit() or not 0 < int(port) < 65536:
         raise SenderError(f"{printable(text)!r} is no address: give HOST:PORT, such as 127.0.0.1:{PORT}")
     return host or "127.0.0.1", int(port)
