@@ -3,7 +3,7 @@
     python scripts/bench/scale.py DATABASE [--copies 9] [--folder FOLDER]
 
 Each copy moves every joint by up to 3 degrees, smoothly and otherwise in every take. Printed are for both sizes: the time to build the
-index, of a query by it and by looking at everything, and how many of the hundred nearest it finds; the time to ready what `ours` and the
+indices, of a query by them and by looking at everything, and how many of the hundred nearest they find; the time to ready what `ours` and the
 network for trackers learn from, and of a batch of either; and memory of the process's own, without what is mapped of the file.
 Times are the process's own, on one thread.
 """
@@ -25,12 +25,12 @@ import numpy as np
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.baselines import Samples
 from gambol.controllers.reconstruction.database import Database, Writer
-from gambol.controllers.reconstruction.neighbours import Cells, Exact, Segments
+from gambol.controllers.reconstruction.neighbours import Cells, Exact, Lists, Segments, at_hand
 from gambol.controllers.reconstruction.ours import learn
 from gambol.controllers.reconstruction.regression import Solver
 from gambol.controllers.reconstruction.trackers import Moments
 
-OFF, KNOTS, K, QUERIES, BATCHES = np.radians(3.0), 30, 100, 40, 60
+OFF, KNOTS, K, RUNS, QUERIES, BATCHES = np.radians(3.0), 30, 100, 5, 16, 60
 
 
 def copied(database: Database, copies: int, path: Path) -> Database:
@@ -77,29 +77,44 @@ def own_memory() -> float:
     return sum(int(line.split()[1]) for line in lines if line.startswith("RssAnon")) / 1e6
 
 
+def asked(segments: Segments) -> tuple[list[list[tuple[np.ndarray, int, np.ndarray]]], float]:
+    """Queries in runs of frames that go on: the feature, the recording that is forbidden, and the nearest in truth; and what such a look at
+    everything takes [s]."""
+    rng, exact, runs, times = np.random.default_rng(1), Exact(segments), [], []
+    for start in rng.integers(len(segments) - QUERIES, size=RUNS):
+        runs.append([])
+        for which in range(start, start + QUERIES):
+            feature = segments.features(np.array([which]))[0]
+            feature, own = feature + rng.normal(0.0, 0.02, feature.shape).astype(np.float32), int(segments.recordings[which])
+            began = time.process_time()
+            true, _, _ = exact.query(feature, K, None, own)
+            times.append(time.process_time() - began)
+            runs[-1].append((feature, own, true))
+    return runs, float(np.median(times))
+
+
 def measured(database: Database) -> None:
     """Print the figures of a database."""
     print(f"{len(database):,} poses of {len(database.takes):,} takes, {database.path.stat().st_size / 1e9:.2f} GB; {own_memory():.1f} GB before")
     controls = parse("4", SKELETON)
-    with Watched() as watched:
-        segments = Segments.of(database, 3, 4, controls.joints)
-        cells = Cells(segments)
-    print(f"  index: {watched.time:.0f} s, {watched.memory:.1f} GB at most, {own_memory():.1f} kept")
-    rng, exact, found, times, hint = np.random.default_rng(1), Exact(segments), [], [], None
-    start = int(rng.integers(len(segments) - QUERIES))
-    for which in range(start, start + QUERIES):
-        feature = segments.features(np.array([which]))[0]
-        feature = feature + rng.normal(0.0, 0.02, feature.shape).astype(np.float32)
-        own = int(segments.recordings[which])
-        began = time.process_time()
-        near, _, hint = cells.query(feature, K, hint, own)
-        then = time.process_time()
-        true, _, _ = exact.query(feature, K, None, own)
-        times.append((then - began, time.process_time() - then))
-        found.append(len(np.intersect1d(near, true)) / K)
-    ours, every = 1e3 * np.median(times[1:], axis=0)
-    print(f"  a query: {ours:.2f} ms; looking at everything {every:.0f}; it finds {100 * np.mean(found):.0f} % of the {K} nearest")
-    del cells, exact, segments
+    segments = Segments.of(database, 3, 4, controls.joints)
+    queries, every = asked(segments)
+    print(f"  looking at everything: {1e3 * every:.0f} ms a query")
+    for kind in (Cells, Lists) if at_hand() else (Cells,):
+        with Watched() as watched:
+            search = kind(segments)
+        print(f"  {kind.__name__}: {watched.time:.0f} s, {watched.memory:.1f} GB at most, {own_memory():.1f} kept", end="; ")
+        found, times = [], []
+        for run in queries:
+            hint = None
+            for feature, own, true in run:
+                began = time.process_time()
+                near, _, hint = search.query(feature, K, hint, own)
+                times.append(time.process_time() - began)
+                found.append(len(np.intersect1d(near, true)) / K)
+        print(f"a query {1e3 * np.median(times):.2f} ms, {1e3 * np.max(times):.1f} at most; it finds {100 * np.mean(found):.1f} % of the {K} nearest")
+        del search
+    del segments
     solver = Solver(controls, 1 / database.fps)
     with Watched() as watched:
         samples = Samples.of(database, solver)

@@ -66,9 +66,9 @@ def test_another_body_is_struck_turns_and_stops_as_the_standard_one():
             state, _ = controller.step(state, Intent(np.array([1.2 * factor**0.5, 0.0, 0.0])), DT * factor**0.5)
         for step in range(200):
             state, _ = controller.step(state, Intent(), DT * factor**0.5)
+            times[factor] = step
             if np.abs(state.velocity[0]) < 0.02 * factor**0.5:
                 break
-        times[factor] = step
         state, speed = controller.start(), np.array([0.0, 2.0 * factor**-0.5, 0.0])
         for _ in range(60):
             state, _ = controller.step(state, Intent(speed, towards=np.array([2.0, 0.0])), DT * factor**0.5)

@@ -9,6 +9,7 @@ from scipy.spatial.distance import cdist
 from gambol.controllers.reconstruction import pose_vector as chart
 from gambol.controllers.reconstruction.neighbours.cells import Cells, cluster, nearest
 from gambol.controllers.reconstruction.neighbours.graph import Graph
+from gambol.controllers.reconstruction.neighbours.lists import Lists, at_hand
 from gambol.controllers.reconstruction.neighbours.search import Exact, Projection
 from gambol.controllers.reconstruction.neighbours.segments import Segments
 from gambol.controllers.reconstruction.neighbours.tree import Tree
@@ -18,7 +19,9 @@ JOINTS = tuple(chart.SKELETON.index(name) for name in ("LeftHand", "RightHand", 
 K = 30
 KINDS = {"exact": Exact, "tree": lambda s: Tree(s, candidates=120), "cells": lambda s: Cells(s, candidates=120),
          "graph": lambda s: Graph(s, Cells(s, candidates=120), beam=120, expand=40)}
-LEAST = {"exact": 1.0, "tree": 0.99, "cells": 0.98, "graph": 0.97}
+LEAST = {"exact": 1.0, "tree": 0.99, "cells": 0.98, "graph": 0.97, "lists": 0.98}
+if at_hand():
+    KINDS["lists"] = lambda s: Lists(s, candidates=120)
 
 
 @pytest.fixture(scope="module")
@@ -129,3 +132,16 @@ def test_every_point_is_in_the_cell_of_its_nearest_centre(seed):
     distances = cdist(points, centres)
     assert np.allclose(distances[np.arange(300), cell], distances.min(1), atol=1e-5)
     assert np.array_equal(nearest(points, centres), cell)
+
+
+def test_lists_from_disk_find_the_same(segments, searches, tmp_path):
+    if "lists" not in searches:
+        pytest.skip('Faiss is not installed: pip install -e ".[search]"')
+    searches["lists"].save(tmp_path / "kept")
+    again = Lists.load(tmp_path / "kept", segments)
+    for query in performance(segments, 3, np.random.default_rng(5), 3):
+        for one, two in zip(searches["lists"].query(query, K, None, 3), again.query(query, K, None, 3), strict=True):
+            assert np.array_equal(one, two)
+    (tmp_path / "kept" / "lists").write_bytes(b"nothing")
+    with pytest.raises(ValueError, match="is no index"):
+        Lists.load(tmp_path / "kept", segments)

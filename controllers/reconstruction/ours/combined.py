@@ -23,7 +23,7 @@ from ...body import Pose, Skeleton
 from ..baselines import Samples
 from ..control_points import ControlPoints
 from ..database import Database, kept
-from ..neighbours import Cells, Segments
+from ..neighbours import MANY, Cells, Lists, Segments, at_hand
 from ..pose_vector import FORWARD, LEFTWARD, SKELETON, WIDTH, YAW_RATE
 from ..regression import (FAR, FLOOR, SPAN, Fused, Gaussian, Local, LocalRegression, Memory, Method, Prior, Regression,
                           Solver, posed, seen_kernel)
@@ -230,9 +230,10 @@ def ours(database: Database, controls: ControlPoints, *, skeleton: Skeleton = SK
     return Ours(Method(prior, replace(plain, skeleton=skeleton)), steady)
 
 
-def cells(database: Database, controls: ControlPoints, m: int = 3, stride: int = 4) -> Cells:
-    """A database's segments to search, with these points; made on the first call, and kept on disk."""
+def cells(database: Database, controls: ControlPoints, m: int = 3, stride: int = 4) -> Cells | Lists:
+    """A database's segments to search, with these points; made on the first call, and kept on disk. By Faiss where there are many and it is
+    at hand."""
     segments = Segments.of(database, m, stride, controls.joints)
-    return kept("cells", database, (m, stride, segments.joints), lambda: Cells(segments), Cells.save,
-                lambda path: Cells.load(path, segments),
-                ("pose_vector.py", "neighbours/segments.py", "neighbours/features.py", "neighbours/search.py", "neighbours/cells.py"))
+    how, source = (Lists, "neighbours/lists.py") if len(segments) >= MANY and at_hand() else (Cells, "neighbours/cells.py")
+    return kept("cells", database, (m, stride, segments.joints), lambda: how(segments), how.save, lambda path: how.load(path, segments),
+                ("pose_vector.py", "neighbours/segments.py", "neighbours/features.py", "neighbours/search.py", source))
