@@ -164,6 +164,13 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
         known(name, points)
 
 
+def known(file: Path) -> None:
+    """Read an input log before anything takes time. LogError for one that can't be read."""
+    from ..session import read
+
+    read(file)
+
+
 def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
     """An input log and who moves in it; what its comparisons need is learnt. LogError for one that can't be played."""
     from ..session import of_library, performer_of, read, wanted

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .base import (Library, Mistake, Preset, Quality, Wearing, app, learn, overlays_of, person_of, pixels_of, plainly,
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, known, learn, overlays_of, person_of, pixels_of, plainly,
                    progress_bar, replayed, say)
 from .motion import write_motion
 
@@ -23,7 +23,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
            size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
-           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path, jump, balance, forces, points, errors.")] = None,
+           overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path, jump, balance, forces, points, errors, cameras.")] = None,
            library: Library = None, character: Wearing = None,
            background: Annotated[bool, typer.Option("--background", hidden=True, help="Yield to other programs; print progress as lines.")] = False) -> None:
     """Film a scenario or an input log without a display, or write a scenario's motion as BVH."""
@@ -34,6 +34,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     if replay is not None:
         if out.lower().endswith(".bvh"):
             raise Mistake(f"{out}: a log is filmed; name a .mp4 file or a folder for PNG frames")
+        known(replay)
         _film_log(replay, start, end, out, pixels_of(size or "1920x1080"), fps or 60, preset, overlay,
                   person_of(library, character), background)
         return
@@ -42,8 +43,11 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
             raise Mistake(f"{option} goes with --replay")
 
     from ..scenario import scenario as scenarios
+    from ..session import SUFFIX
 
     assert scenario is not None  # for there is no log
+    if scenario.lower().endswith(SUFFIX):
+        raise Mistake(f"{scenario}: is an input log; film it by --replay {scenario}")
     film = scenarios.load(scenario)
     film = film if fps is None else film.at_fps(fps)
     if out.lower().endswith(".bvh"):
@@ -132,6 +136,8 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     from ..scenario import overlays, scenario as scenarios
 
     output_file(out, ".png")
+    if start is not None and end is not None and not start < end:
+        raise Mistake(f"--from {start:g} --to {end:g}: nothing lies between")
     film = scenarios.load(scenario)
     rows = len(film.actors) if actor is None else 1
     pixels = (2400, min(480 * rows, 8192)) if size is None else pixels_of(size)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Wearing, app, learn, person_of, plainly, progress_bar, replayed, say
+from .base import Library, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say
 
 
 @app.command()
@@ -27,6 +27,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
         film = scenarios.load(what)
         write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character))
         return
+    known(Path(what))
     log, controller = replayed(Path(what), person_of(library, character))
     with progress_bar() as bar:
         moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)

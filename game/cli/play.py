@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import (Library, Mistake, Preset, Quality, Wearing, app, body_of, in_body, learn, person_of, pixels_of, plainly, replayed,
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, body_of, in_body, known, learn, person_of, pixels_of, plainly, replayed,
                    say, unswept)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
@@ -32,6 +32,13 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     from ..input import load as load_bindings
 
     pixels, hands, body = pixels_of(size), load_bindings(bindings), body_of(character)
+    if replay is not None:  # what can't be is told of before anything is compiled
+        known(replay)
+    sending = None
+    if send is not None:
+        from ..app import Sending
+
+        sending = Sending(send)
     with unswept():
         from gambol.controllers.locomotion import Locomotion
         from gambol.controllers.person import person, preparing
@@ -39,11 +46,10 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         walker = Locomotion.load(library)
         programs = preparing.begun(walker, library)  # while the rest is loaded
 
-        from ..app import OUT, Capture, Opening, Play, Preparing, Sending, Teacher, log_file
+        from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
         from ..session import LogWriter
         from ..world import methods
 
-    sending = None if send is None else Sending(send)
     controller = in_body(person(walker), body)
     tape, clip, database = None, None, None
     if replay is not None:

@@ -155,6 +155,8 @@ def read_footage(folder: str | Path) -> Footage:
 
 def _read(folder: Path) -> dict[str, Any]:
     file = folder / ABOUT
+    if folder.is_dir() and not file.exists():
+        raise FootageError(f"{folder}: holds no footage; gambol film and gambol footage make some")
     try:
         told = json.loads(contents(file, 64 << 20))
     except OSError as fault:

@@ -36,12 +36,12 @@ def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size
     if actor is not None and actor not in names:
         raise ScenarioError(f"no actor is called {actor!r}; there are {', '.join(names)}")
     cast = range(len(names)) if actor is None else [names.index(actor)]
+    _check(scenario, start or 0.0, scenario.duration if end is None else end)
     frames = list(run(scenario.at_fps(60), controller))
     if start is None and end is None:
         start, end = _first_jump(frames, cast)
     start, end = start or 0.0, frames[-1].time if end is None else min(end, frames[-1].time)
-    if not start < end:
-        raise ScenarioError(f"nothing lies from {start:g} to {end:g} s of {scenario.title!r}, which has {scenario.duration:g} s")
+    _check(scenario, start, end)
     chosen = [frames[round(time * 60)] for time in np.linspace(start, end, count)]
     drawn = [explained(figures(f.before, f.after, f.alpha), f.before, f.after, f.alpha, shown) for f in chosen]
     headings = [float(chosen[0].after.characters[who].state.ground[2]) for who in cast]
@@ -64,6 +64,11 @@ def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size
                                 (f"{frame.time - chosen[0].time:.2f} s",),
                                 part=(number / count, row / len(cast), 1.0 / count, 1.0 / len(cast))))
     return tuple(scenes)
+
+
+def _check(scenario: Scenario, start: float, end: float) -> None:
+    if not start < min(end, scenario.duration):
+        raise ScenarioError(f"nothing lies from {start:g} to {end:g} s of {scenario.title!r}, which has {scenario.duration:g} s")
 
 
 def _up(character: Character) -> bool:

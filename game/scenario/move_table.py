@@ -74,7 +74,7 @@ class MoveTable(Table):
         if self.until is not None and kinds[0] != "velocity":
             raise ValueError("`until` goes with velocity: where it has changed to at the end")
         if self.speed is not None and not walks:
-            raise ValueError("`speed` goes with walk_to or path; velocity has its own")
+            raise ValueError("`speed` goes with walk_to or path; velocity has its own, and who goes to a place walks as people do, or as `arrive` asks")
         if self.facing is not None and kinds[0] == "velocity":
             raise ValueError("`facing` goes with walk_to, path or stop; velocity has its own ω")
         if self.facing is not None and jumps:

@@ -183,6 +183,22 @@ def _fields(loc: tuple[str | int, ...]) -> set[str]:
     return {field.alias or name for table in tables for name, field in table.model_fields.items()}
 
 
+def _instead(loc: tuple[str | int, ...]) -> str:
+    """What was meant by a field that there is not where a fault is; else in which tables there is one, or what there is instead."""
+    name, known = str(loc[-1]), _fields(loc)
+    tables, homes = [("", Scenario)], []
+    while tables:
+        path, table = tables.pop(0)
+        inner = [(field.alias or own, one) for own, field in table.model_fields.items() for one in _tables(field.annotation)]
+        tables += [(f"{path}.{own}".strip("."), one) for own, one in inner]
+        if path and name in {field.alias or own for own, field in table.model_fields.items()}:
+            homes.append(path)
+    near = did_you_mean(name, known)
+    if near and len(name) > 2 or not homes:
+        return near if len(name) > 2 and near else f"; there are {', '.join(sorted(known))}"
+    return f"; it goes into {' or '.join(dict.fromkeys(homes))}"
+
+
 def _tables(annotation: object) -> list[type[Table]]:
     """The tables that a field may hold."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
@@ -199,7 +215,7 @@ def _fault(file: File, fault: Mapping[str, Any]) -> str:
         where += f"[{part}]" if isinstance(part, int) else f"{'.' if where else ''}{part}"
     kind, text = fault["type"], fault["msg"].removeprefix("Value error, ")
     if kind == "extra_forbidden":
-        text = "there is no such field" + did_you_mean(fault["loc"][-1], _fields(fault["loc"]))
+        text = "there is no such field" + _instead(fault["loc"])
     elif kind == "missing":
         text = "is missing, and needed"
     elif kind == "union_tag_invalid":

@@ -38,6 +38,9 @@ def test_all_that_is_shipped_loads_and_is_what_the_issue_lists():
 
 FAULTS = [
     ("title", "colour = 1\ntitle", "colour: there is no such field"),
+    ("title", 'panels = ["space"]\ntitle', "panels: there is no such field; it goes into shots"),
+    ("for = 1, velocity = [1.2", "at = 3, for = 1, velocity = [1.2", "actors[0].moves[0].at: there is no such field; it goes into shots or actors.strikes"),
+    ("for = 1, velocity = [1.2", "duratino = 1, velocity = [1.2", "actors[0].moves[0].duratino: there is no such field; there are ahead, aim, airtime"),
     ("title", "tilte", "tilte: there is no such field; did you mean title?"),
     ("for = 1, velocity = [1.2", "fro = 1, velocity = [1.2", "actors[0].moves[0].fro: there is no such field; did you mean for?"),
     ("walk_to = [0, 0]", "walkto = [0, 0]", "actors[0].moves[1].walkto: there is no such field; did you mean walk_to?"),
