@@ -216,3 +216,19 @@ def test_changes_are_told():
     told = re.findall(r"^## (.*)$", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.M)
     versions = [tuple(map(int, one.split(" ")[0].split("."))) for one in told if one != "Unreleased"]
     assert told[0] == "Unreleased" and versions and versions == sorted(versions, reverse=True)
+
+
+def test_the_page_of_a_scenarios_fields_is_what_the_program_prints():
+    """Made anew by `gambol scenarios --fields > docs/fields.md`; and every field is told of in words."""
+    from gambol.game.scenario.described import described, told
+    from gambol.game.scenario.scenario import Scenario, tables_of
+
+    assert (ROOT / "docs" / "fields.md").read_text("utf-8") == described() + "\n"
+    tables, seen = [Scenario], set()
+    while tables:
+        table = tables.pop()
+        seen.add(table)
+        for own, field in table.model_fields.items():
+            assert re.search(rf"\b{field.alias or own}\b", told(table)), f"{table.__name__}.{own}"
+            tables += [one for one in tables_of(field.annotation) if one not in seen]
+    assert len(seen) > 12

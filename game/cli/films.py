@@ -163,9 +163,13 @@ def _told(scenes, frames: int, every: int):
 
 @app.command()
 @plainly
-def scenarios() -> None:
+def scenarios(fields: Annotated[bool, typer.Option("--fields", help="Print all that a scenario may say instead.")] = False) -> None:
     """List the scenarios that come with Gambol."""
-    from ..scenario import load, shipped
+    from ..scenario import described, load, shipped
+
+    if fields:
+        typer.echo(described())
+        return
 
     for name in shipped():
         film = load(name)

@@ -58,7 +58,8 @@ class StrikeTable(Table):
 
 
 class ActorTable(Table):
-    """Somebody. start: x, z [m], on whatever is highest there, and heading [degrees].
+    """Somebody. name: who; files are named after it. tint: red, green, blue, 0 … 1. start: x, z [m], on whatever is highest there, and heading
+    [degrees], 0 along z, 90 along x. moves: what he does, one after the other.
 
     body: an adult by default. gravity: what pulls it down as it jumps [m/s²]; the scenario's by default. follows: whose
     points it follows instead of moves of its own. tracks: whom cameras see, whose motion is tracked. ghost: one sees through it.

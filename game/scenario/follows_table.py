@@ -24,7 +24,7 @@ Points = Annotated[str, BeforeValidator(lambda v: str(v) if isinstance(v, int) a
 
 
 class HiddenTable(Table):
-    """Points that are not seen from one moment to another [s]."""
+    """Which points are not seen, `from` one moment `to` another [s]."""
 
     points: Points
     start: Moment = Field(alias="from")

@@ -23,9 +23,11 @@ KINDS = ("velocity", "walk_to", "go_to", "path", "stop", "jump_to", "jump", "hop
 
 
 class MoveTable(Table):
-    """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump and hops. Angles in degrees.
+    """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump and hops. Angles in degrees. for: how long [s].
 
-    walk_to: x, z [m], straight there. go_to: x, z [m] as people go there, round what stands about, to stand there with a `heading`, by
+    velocity: the whole speed [m/s], less than 0 backward, turning [rad/s], and how much of that speed is to the left [m/s]: [0.5, 0, 0.5] is
+    straight aside; until: what it has changed to at the end. walk_to: x, z [m], straight there; path: through several; speed: along them [m/s];
+    facing: a heading to keep meanwhile. go_to: x, z [m] as people go there, round what stands about, to stand there with a `heading`, by
     default as it comes; arrive: no later than this after the move began [s]. A jump may have a `heading` to land in, too: then nobody turns to
     the place first, and turns in the air.
 

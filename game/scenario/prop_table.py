@@ -12,7 +12,7 @@ from .fields import Colour, Degrees, Length, Point3, Table
 
 
 class BoxTable(Table):
-    """A wall or platform: centre and full size [m], heading [degrees]."""
+    """A wall or platform, which is meant where no kind is told: centre and full size [m], heading [degrees]; tint: red, green, blue, 0 … 1."""
 
     kind: Literal["box"] = "box"
     centre: Point3
@@ -26,8 +26,8 @@ class BoxTable(Table):
 
 
 class RampTable(Table):
-    """A ramp up to a height: the middle of its lower edge, its length, width and rise [m], the heading of the way up
-    [degrees]."""
+    """A ramp up to a height, of that kind: its foot, the middle of its lower edge, its length, width and rise [m], the heading of the way up
+    [degrees]; its tint."""
 
     kind: Literal["ramp"]
     foot: Point3
@@ -46,8 +46,8 @@ class RampTable(Table):
 
 
 class StairsTable(Table):
-    """A flight of stairs: the middle of its lowest edge, how many steps, each one's rise and tread [m], the heading of the
-    way up [degrees]."""
+    """A flight of stairs, of that kind: its foot, the middle of its lowest edge, how many steps, each one's rise and tread [m], their width [m],
+    the heading of the way up [degrees]; their tint."""
 
     kind: Literal["stairs"]
     foot: Point3
@@ -70,7 +70,7 @@ class StairsTable(Table):
 
 
 class PillarTable(Table):
-    """An upright cylinder: the middle of its foot, radius and height [m]."""
+    """An upright cylinder, of kind pillar: the middle of its foot, radius and height [m]; its tint."""
 
     kind: Literal["pillar"]
     foot: Point3
@@ -84,7 +84,7 @@ class PillarTable(Table):
 
 
 class GoalTable(Table):
-    """A place to reach: x, y, z and radius [m]."""
+    """A place to reach, of kind goal: place, x, y, z, and radius [m]; its tint. It stops nobody."""
 
     kind: Literal["goal"]
     place: Point3

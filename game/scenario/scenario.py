@@ -30,8 +30,9 @@ class Scenario(Table):
 
     title, under: shown at the beginning. duration [s], fps of the film, size of its frames in
     pixels. overlays: what is drawn where a shot says nothing else. gravity: of jumps [m/s²]. stage: what
-    stands there beside its own props. avoid: actors who walk avoid each other. poster: the moment [s] that stands for the film. database: what the methods of
-    those who follow points learn from; Gambol's own motion by default.
+    stands there beside its own props; "course" is one. avoid: actors who walk avoid each other. poster: the moment [s] that stands for the film.
+    database: what the methods of those who follow points learn from; Gambol's own motion by default. shots: what is seen, one after the other.
+    props: what stands about. actors: who is there.
     """
 
     title: str
@@ -178,7 +179,7 @@ def _fields(loc: tuple[str | int, ...]) -> set[str]:
     tables = [Scenario]
     for part in loc[:-1]:
         inner = [one for table in tables for name, field in table.model_fields.items() if (field.alias or name) == part
-                 for one in _tables(field.annotation)]
+                 for one in tables_of(field.annotation)]
         tables = inner or tables  # a list's number leads nowhere else
     return {field.alias or name for table in tables for name, field in table.model_fields.items()}
 
@@ -189,7 +190,7 @@ def _instead(loc: tuple[str | int, ...]) -> str:
     tables, homes = [("", Scenario)], []
     while tables:
         path, table = tables.pop(0)
-        inner = [(field.alias or own, one) for own, field in table.model_fields.items() for one in _tables(field.annotation)]
+        inner = [(field.alias or own, one) for own, field in table.model_fields.items() for one in tables_of(field.annotation)]
         tables += [(f"{path}.{own}".strip("."), one) for own, one in inner]
         if path and name in {field.alias or own for own, field in table.model_fields.items()}:
             homes.append(path)
@@ -199,11 +200,11 @@ def _instead(loc: tuple[str | int, ...]) -> str:
     return f"; it goes into {' or '.join(dict.fromkeys(homes))}"
 
 
-def _tables(annotation: object) -> list[type[Table]]:
+def tables_of(annotation: object) -> list[type[Table]]:
     """The tables that a field may hold."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
         return [annotation]
-    return [one for part in get_args(annotation) for one in _tables(part)]
+    return [one for part in get_args(annotation) for one in tables_of(part)]
 
 
 def _fault(file: File, fault: Mapping[str, Any]) -> str:

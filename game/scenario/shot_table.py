@@ -23,7 +23,7 @@ _HAVE = set().union(*_TAKES.values())
 
 
 class CameraTable(Table):
-    """One camera.
+    """One camera: of which kind, how far away (distance [m]), how wide it sees (fov [degrees], from top to bottom).
 
     follow: an actor, looking `around` degrees to the left of its heading at the cut and from
     `above` degrees over the horizon; with `swing` it comes round behind. orbit: the same, turning by
@@ -71,7 +71,7 @@ class CameraTable(Table):
 
 
 class ViewTable(CameraTable):
-    """One of several cameras that are shown at the same time. title: in its corner."""
+    """One of several cameras that are shown at the same time. title: in its corner. overlays: drawn instead of the shot's own."""
 
     title: str = ""
 
