@@ -108,7 +108,7 @@ def on_cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[Job, int]]:
         from distributed import Client
         from distributed import as_completed as ended
     except ImportError:
-        raise Mistake('--cluster needs Dask: pip install "gambol[cluster]"') from None
+        raise Mistake('--cluster needs Dask: .venv/bin/pip install -e ".[cluster]"') from None
     try:
         client = Client(address, timeout="10s")
     except (OSError, ValueError, TimeoutError) as fault:
