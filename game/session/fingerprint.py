@@ -13,7 +13,7 @@ from .state import SessionState
 
 
 def digest(controller: Controller) -> str:
-    """What tells the motion of one controller from that of another."""
+    """What tells the motion of one controller from that of another: its kind and its gaits, with which a library's starts, turns and idling are taken to go."""
     library, hashed = controller.library, hashlib.sha256(controller.kind.encode())
     if library is not None:
         for array in (library.velocities, library.coefficients, library.reference):
