@@ -10,6 +10,7 @@ from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
 from ..jump import GRAVITY, Physique, start_of
 from ..jump.body import measures
+from ..navigation.passing import drawn_in
 from .capture import DROPS, FALLS, Way, way
 from .recorded_pushes import response
 from .recovery import Recovery
@@ -128,6 +129,8 @@ class Struck(Controller):
         ground = np.array([centre[0], centre[2], heading]) + memory.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
         c, s = np.cos(ground[2]), np.sin(ground[2])
         velocity = np.array([s * velocity[0] + c * velocity[2], 0.0, c * velocity[0] - s * velocity[2]])
+        if made.fate < FALLS and len(intent.around):
+            pose = drawn_in(self.skeleton, pose, ground, intent.around)
         n, part = made.between(time)
         after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, time=time),
                         floor=float(made.floors[n]))

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..body import end_positions, yaw
+from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..compiled import kernel
 from ..jump.body import Physique
 from .recorded_falls import BONES, RATE, Fall, grounded, sole_places
-from .surroundings import STEP, aside_kernel, tread_kernel
+from .surroundings import STEP, abyss_kernel, aside_kernel, tread_kernel
 
 ASIDE = np.radians([0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0, 65.0, -65.0, 90.0, -90.0, 125.0, -125.0, 180.0])
 """So far from where it goes a body may fall [rad]; the nearest first."""
@@ -65,8 +65,6 @@ def chosen(physique: Physique, every: Sequence[Fall], place: np.ndarray, way: fl
 
 def _sampled(physique: Physique, fall: Fall) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A fall's flesh (N, P, 3) over a floor at 0, as it begins over the middle, facing ahead; how thick (P,) that is; and where (M, 3) its mass centre is from when it strikes the floor on."""
-    from ..body import centre_of_mass, forward_kinematics
-
     times = np.arange(fall.begins, fall.lasts, LOOKED / RATE)
     local = fall.turns(times)
     roots, _ = grounded(physique, local, np.zeros(3), 0.0)
@@ -84,7 +82,7 @@ def looked_kernel(things, points, thick, centre, floor):
             low = max(points[n, p, 1] - thick[p], floor + STEP)
             deep = max(deep, thick[p] - aside_kernel(things, points[n, p, 0], points[n, p, 2], low, max(points[n, p, 1] + thick[p], low + 1e-6), out))
     for n in range(len(centre)):
-        lost += tread_kernel(things, centre[n, 0], centre[n, 2], floor + STEP, floor) < floor - STEP
+        lost += abyss_kernel(things, centre[n, 0], centre[n, 2], floor)
     return deep, lost / max(len(centre), 1)
 
 
@@ -133,3 +131,19 @@ def lift_kernel(things, points, thick, floor, lifts):
     for n in range(len(points)):
         for p in range(len(thick)):
             lifts[n] = max(lifts[n], tread_kernel(things, points[n, p, 0], points[n, p, 2], floor + STEP, floor) + thick[p] - points[n, p, 1])
+
+
+def under(things: np.ndarray, centres: np.ndarray, floor: float) -> np.ndarray:
+    """How high (N,) [m] the ground lies under mass centres (N, 3); where something stands there, as high as the floor [m]."""
+    levels = np.full(len(centres), floor)
+    under_kernel(things, centres, floor, levels)
+    return levels
+
+
+@kernel
+def under_kernel(things, centres, floor, levels):
+    """Write how high the ground lies, see `under`."""
+    for n in range(len(centres)):
+        level = tread_kernel(things, centres[n, 0], centres[n, 2], floor + STEP, floor)
+        if level > floor - STEP or abyss_kernel(things, centres[n, 0], centres[n, 2], floor):
+            levels[n] = level

@@ -24,13 +24,16 @@ OWN = 0.06
 """A foot keeps so far to its own side of the other [m], at standard height."""
 APART = 0.27
 """How far apart feet are that rest beside each other [m], at standard height."""
+CROSSES, SIDEWAYS = (0.10, 0.16, 0.0), 0.6
+"""A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then [m], at standard height; and it does so first where the capture point is so far
+beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
 BEYOND = 0.05
 """A foot is set down so far beyond the capture point [m], at standard height: its sole brakes."""
 
 
 @kernel
 def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, target, points, corners):
-    """Write where a foot that lands in `time` [s] is set down (4,): where the capture point will be then, a little beyond, as far as legs reach, on its own side and where ground
+    """Write where a foot that lands in `time` [s] is set down (4,): where the capture point will be then, a little beyond, as far as legs reach, on its own side or well across, and where ground
     carries it. Whether that is over an edge, as none is who may not go `over` one."""
     there, moves, press, goal, free = x.copy(), v.copy(), p.copy(), np.empty(2), np.zeros(2, np.bool_)
     free[side] = True
@@ -54,7 +57,9 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     ox, oz = feet[1 - side, 0] - there[0], feet[1 - side, 1] - there[1]
     own = 1.0 - 2.0 * side
     other = c * ox - s * oz
-    if own * (left - other) < (OWN + HALF_SOLE) * size:
+    if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead):  # across the other, before it
+        ahead = max(ahead, s * ox + c * oz + CROSSES[1] * size)
+    elif own * (left - other) < (OWN + HALF_SOLE) * size:
         left = other + own * (OWN + HALF_SOLE) * size
     elif abs(left) < 0.3 * abs(ahead):  # straight on: a little to its side, as one walks
         left = left if own * (left - other) > 0.6 * APART * size else other + own * 0.6 * APART * size
@@ -95,12 +100,14 @@ def home_kernel(things, body, side, feet, heading, target):
 
 @kernel
 def which_kernel(feet, point, heading):
-    """The foot that steps: to the side that the capture point (2,) goes to, else the one that is farther behind; the right one of two alike."""
+    """The foot that steps: to the side that the capture point (2,) goes to; the other one across, if that point is beyond the foot there, which bears all the weight then; else the one that is farther behind; the right one of two alike."""
     mx, mz = 0.5 * (feet[0, 0] + feet[1, 0]), 0.5 * (feet[0, 1] + feet[1, 1])
     x, z = point[0] - mx, point[1] - mz
     c, s = math.cos(heading), math.sin(heading)
     ahead, left = s * x + c * z, c * x - s * z
-    if abs(left) > 0.6 * abs(ahead):
-        return 0 if left > 0.0 else 1
+    if abs(left) > SIDEWAYS * abs(ahead):
+        near = 0 if left > 0.0 else 1
+        beyond = (1.0 - 2.0 * near) * (c * (point[0] - feet[near, 0]) - s * (point[1] - feet[near, 1]))
+        return 1 - near if beyond > CROSSES[2] else near
     behind = (feet[0, 0] - feet[1, 0]) * x + (feet[0, 1] - feet[1, 1]) * z
     return 0 if behind < -0.03 * math.hypot(x, z) else 1

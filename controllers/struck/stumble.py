@@ -24,6 +24,10 @@ LIFTS = 0.045, 0.05
 """A foot swings so high [m] and higher by this share of how far it goes."""
 CLEARS = 0.6
 """… and by this share of how far it steps up or down: past the edge of the tread."""
+ROUND = 0.26
+"""A foot that crosses over passes the other's ball so far before or behind it [m], at standard height."""
+CROSSED, CROSSING = 0.6, 0.12
+"""Who crosses over turns pelvis and trunk by this towards where he goes [rad], in so long [s]."""
 PEELS = 0.35
 """How far a foot that leaves points down at most [rad]."""
 MOST = 1.4
@@ -53,7 +57,7 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     offsets, turned = _left_over(physique, start, angles[0], times)
     joints = carriage.joints_of(physique.skeleton)
     offsets[:, joints[:3], 2] += aside[:, None] / 3.0
-    facing = yaw(np.full(len(times), start.heading)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    facing = yaw(start.heading + _turned(feet, standing, start.heading)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
     roots, local = np.empty((len(times), 3)), np.tile(np.eye(3), (len(times), len(physique.skeleton), 1, 1))
     root, begins = np.array(start.root, float), [0, *(int(round(step[1] * RATE)) for step in way.steps if step[1] > 0.0), len(times)]
     turned = np.ascontiguousarray(turned @ facing)
@@ -103,6 +107,7 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
         up = 16.0 * share**2 * (1.0 - share) ** 2
         gone[:, 1] = np.maximum(gone[:, 1] + (LIFTS[0] * body.size + LIFTS[1] * far + CLEARS * abs(step[6] - float(levels[first, side]))) * up
                                 * (lift > 0.0 or begin[1] - low < 0.1 * body.size), low + body.sole)
+        gone[:, [0, 2]] += np.outer(up, _round(begin, end, feet[first, 1 - side], start.heading, body.size))
         gone[:, 4] += PEELS * min(far / 0.3, 1.0) * 27.0 / 4.0 * share * (1.0 - share) ** 2 * (lift > 0.0)
         lower = np.sin(np.maximum(-gone[:, 4], 0.0)) * (body.toe[2] - body.heel[2])
         gone[:, 1] = np.maximum(gone[:, 1], low + body.sole + lower)
@@ -111,6 +116,27 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
         standing[first:last, side] = False
         feet[last:, side, :5], standing[last:, side] = end, True
     return feet, standing, levels
+
+
+def _turned(feet: np.ndarray, standing: np.ndarray, heading: float) -> np.ndarray:
+    """How far (N,) [rad] pelvis and trunk are turned to the left because a foot crosses the other, or stands across it."""
+    from scipy.ndimage import gaussian_filter1d  # no game waits for it at its start
+
+    apart = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.cos(heading), -np.sin(heading)]
+    before = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.sin(heading), np.cos(heading)]
+    across = np.where(apart < 0.0, CROSSED * -np.sign(before), 0.0)
+    return gaussian_filter1d(np.concatenate([np.zeros(len(across)), across]), CROSSING * RATE, mode="nearest")[len(across):]
+
+
+def _round(begin: np.ndarray, end: np.ndarray, other: np.ndarray, heading: float, size: float) -> np.ndarray:
+    """How far (2,) x, z [m] a foot that crosses another (6,) swings out of its straight way half-way: before it, or behind it."""
+    ahead, left = np.array([np.sin(heading), np.cos(heading)]), np.array([np.cos(heading), -np.sin(heading)])
+    one, two = begin[[0, 2]] - other[[0, 2]], end[[0, 2]] - other[[0, 2]]
+    if (one @ left) * (two @ left) > 0.0 or abs((two - one) @ left) < 0.2 * size:
+        return np.zeros(2)
+    middle = 0.5 * (one + two) @ ahead
+    side = 1.0 if two @ ahead > one @ ahead else -1.0
+    return ahead * side * max(ROUND * size - side * middle, 0.0)
 
 
 def quintic(begin, rate, end, share):

@@ -91,6 +91,13 @@ def tread_kernel(things, x, z, below, floor):
 
 
 @kernel
+def abyss_kernel(things, x, z, level):
+    """Whether the ground ends at a place: it is deeper than a step below `level` [m], and nothing stands there."""
+    out = np.empty(2)
+    return tread_kernel(things, x, z, level + STEP, level) < level - STEP and aside_kernel(things, x, z, level - 0.1, level + 0.1, out) > 0.0
+
+
+@kernel
 def hold_kernel(things, floor, size, x, v):
     """Slow a mass centre at x (2,) down, in place, that goes with v (2,) [m/s] towards a wall: hands and trunk hold it there."""
     if len(things) == 0:
@@ -136,13 +143,15 @@ def stands_kernel(things, body, x, z, yaw, level):
 
 @kernel
 def place_kernel(things, body, side, feet, heading, over, target):
-    """Bring a foot (4,) ball x, z [m], yaw [rad], height [m] that is set down to where it stands whole, on its own side of the other, as near as can be. Where there is no such place it comes
+    """Bring a foot (4,) ball x, z [m], yaw [rad], height [m] that is set down to where it stands whole, on the same side of the other, as near as can be. Where there is no such place it comes
     down where it stood; if it may go `over` an edge, where it was to, as high as the other. Whether that is over an edge."""
     level = feet[1 - side, 3]
     target[3] = level
     if len(things) == 0:
         return False
     own, c, s = 1.0 - 2.0 * side, math.cos(heading), math.sin(heading)
+    if own * (c * (target[0] - feet[1 - side, 0]) - s * (target[1] - feet[1 - side, 1])) < 0.0:  # it crosses
+        own = -own
     for ring in range(9):
         for turn in range(1 if ring == 0 else 16):
             angle = turn * math.pi / 8.0
@@ -153,7 +162,7 @@ def place_kernel(things, body, side, feet, heading, over, target):
             if not math.isnan(height):
                 target[0], target[1], target[3] = x, z, height
                 return False
-    if over and tread_kernel(things, target[0], target[1], level + STEP * body.size, level) < level - STEP * body.size:
+    if over and abyss_kernel(things, target[0], target[1], level):
         return True
     target[:] = feet[side]
     if abs(target[3] - level) > STEP * body.size:

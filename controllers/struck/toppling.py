@@ -13,10 +13,10 @@ from ..body import centre_of_mass, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import faded
 from .capture import FALLS
-from .held_falls import chosen, flesh, held
+from .held_falls import chosen, flesh, held, under
 from .recorded_falls import FEET, RATE, TOUCHES, Fall, falls, grounded, places
 from .recovery import Recovery
-from .surroundings import NOTHING, STEP, tread_kernel
+from .surroundings import NOTHING, STEP
 
 PACES = 0.9, 1.35
 """Falls are played at these shares of their recorded pace, until they strike the floor; from there on in WEARS seconds at their own."""
@@ -56,9 +56,8 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     contacts = slow & (over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
     floors = np.full(len(times), floor)
     if len(things):
-        under = np.array([tread_kernel(things, x, z, floor + STEP, floor) for x, z in centres[:, [0, 2]]])
-        floors = np.where(times > toppled, under, floor)
-        contacts &= (under > floor - STEP)[:, None]
+        floors = np.where(times > toppled, under(things, centres, floor), floor)
+        contacts &= (floors > floor - STEP)[:, None]
     return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors)
 
 
