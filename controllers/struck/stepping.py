@@ -53,18 +53,18 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     over = math.hypot(ahead / (REACH[0] if ahead > 0.0 else REACH[1]), left / REACH[2]) / size
     if over > 1.0:
         ahead, left = ahead / over, left / over
+    along = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])  # from the ball to the middle of the sole
     # on its own side of the other, as this is seen from the body
     ox, oz = feet[1 - side, 0] - there[0], feet[1 - side, 1] - there[1]
     own = 1.0 - 2.0 * side
     other = c * ox - s * oz
     if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead):  # across the other, before it
-        ahead = max(ahead, s * ox + c * oz + CROSSES[1] * size)
+        ahead = max(ahead, s * ox + c * oz + CROSSES[1] * size + along)
     elif own * (left - other) < (OWN + HALF_SOLE) * size:
         left = other + own * (OWN + HALF_SOLE) * size
     elif abs(left) < 0.3 * abs(ahead):  # straight on: a little to its side, as one walks
         left = left if own * (left - other) > 0.6 * APART * size else other + own * 0.6 * APART * size
     yaw = heading + 0.08 * own
-    along = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])
     target[0] = there[0] + c * left + s * ahead - along * math.sin(yaw)
     target[1] = there[1] - s * left + c * ahead - along * math.cos(yaw)
     target[2] = yaw

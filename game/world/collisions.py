@@ -19,8 +19,8 @@ from .centre_of_mass import physique_of
 
 TRUNK = 0.19
 """The radius of a body [m], at standard height, that others run into: shoulders turn, and arms give way, before it."""
-LEAST = 0.7
-"""Who closes in slower [m/s] is brushed past."""
+LEAST, DEEP = (0.7, 0.35), 0.1
+"""Who closes in slower than the first [m/s] is brushed past, where trunks only touch; slower than the second, where they are so deep in each other [m]."""
 BACK = 0.1
 """Flesh gives back so much of the speed with which bodies meet."""
 HIGH = 0.35
@@ -47,7 +47,8 @@ def run_into(characters: Sequence[Any], intents: Sequence[Intent], number: int) 
     for k, j in np.argwhere(np.triu(meets, 1)):
         along = apart[k, j] / max(float(far[k, j]), 1e-9)
         closing = -float((flow[k] - flow[j]) @ along)
-        if closing > LEAST and far[k, j] > 1e-9:
+        into = min((TRUNK * (size[k] + size[j]) - far[k, j]) / DEEP, 1.0)
+        if closing > LEAST[0] + into * (LEAST[1] - LEAST[0]) and far[k, j] > 1e-9:
             hard = min((1.0 + BACK) * closing * mass[k] * mass[j] / (mass[k] + mass[j]), 0.5 * HARDEST) * along
             for one, impulse in ((k, hard), (j, -hard)):
                 i = who[one]
