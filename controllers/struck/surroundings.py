@@ -17,7 +17,7 @@ NEAR = 5.0
 """What is farther [m] nobody comes to who is struck."""
 STEP = 0.24
 """What lies no farther above or below a foot [m] is a tread; what stands higher is a wall, what lies lower an abyss."""
-KEEPS = 0.24
+KEEPS = 0.30
 """A wall keeps a mass centre so far away [m], at standard height."""
 STOPS = 0.10
 """Hands and trunk stop a body in so long [s]: towards a wall nobody is faster than the room that is left over this."""
