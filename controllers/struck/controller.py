@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -163,9 +164,11 @@ def _slides(skeleton: Skeleton, made: Recovery) -> float:
 
 
 def rehearse(struck: Struck) -> None:
-    """Strike somebody in a T-pose, so that what that compiles or loads does not halt a game."""
+    """Strike somebody in a T-pose who stands before a wall, so that what that compiles or loads does not halt a game: he is held by it, and falls."""
     skeleton = struck.skeleton
     pose = Pose(skeleton.offsets[0].copy(), np.tile(np.eye(3), (len(skeleton), 1, 1)))
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
-    intent = Intent(strike=Strike((0.0, 0.5 * struck.physique.mass)))
-    struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)
+    wall = SimpleNamespace(centre=(0.0, 1.0, 2.5), size=(4.0, 2.0, 0.2), heading=0.0)
+    for speed in (0.5, 4.0):
+        intent = Intent(strike=Strike((0.0, speed * struck.physique.mass)), around=(wall,))
+        struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)
