@@ -126,7 +126,7 @@ class Supervisor(Controller):
 
         The first goes on from what it can take in; what is harder is for who answers strikes, once a foot stands of one whom another moves.
         """
-        strike = _both(duty.strike, intent.strike)
+        strike = both(duty.strike, intent.strike)
         taker, change = next(((name, gain) for name, part in self.parts.items() if (gain := part.gain(strike)) is not None), ("", None))
         calm = but(intent, strike=None)
         if change is None:
@@ -194,11 +194,12 @@ class Supervisor(Controller):
         return Status("running") if state.going is None else state.going.status
 
 
-def _both(one: Strike | None, other: Strike | None) -> Strike:
-    """Two strikes as one, no harder than anybody is struck, where the later one hits."""
+def both(one: Strike | None, other: Strike | None) -> Strike:
+    """Two strikes as one, no harder than anybody is struck, where the later one hits; of one alone, that one. ValueError for none."""
     if one is None or other is None:
         found = other if one is None else one
-        assert found is not None
+        if found is None:
+            raise ValueError("nothing strikes: give at least one strike")
         return found
     both = np.add(one.impulse, other.impulse)
     return Strike(tuple(both * min(1.0, (1.0 - 1e-9) * HARDEST / max(float(np.hypot(*both)), 1e-9))), other.height)

@@ -124,7 +124,7 @@ PLAN = {
         "scaled": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles jump.prior",
         "jump.reach": "body contract navigation jump.body jump.motion jump.muscles jump.prior",
-        "struck": "compiled body contract mocap jump jump.body jump.motion jump.prior",
+        "struck": "compiled body contract mocap navigation navigation.passing jump jump.body jump.motion jump.prior",
         "reconstruction.database": "compiled files body contract mocap supervisor jump locomotion",
         "person": "compiled body contract jump.body navigation.planning supervisor jump.muscles jump locomotion scaled struck",
         "reconstruction.neighbours": "compiled reconstruction.database",

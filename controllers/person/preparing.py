@@ -26,7 +26,7 @@ from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
 from ..struck import Struck, rehearse as rehearse_strike
 
 PARTS = ("walk", "jump")
-KERNELS = 197
+KERNELS = 208
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 

@@ -1,9 +1,10 @@
 """Who is struck: a linear inverted pendulum, caught by steps to its capture point (Pratt 2006, Koolen 2012), or a fall and getting up."""
 
-from .capture import FALLS, STEPS, SWAYS
+from .capture import DROPS, FALLS, STEPS, SWAYS
 from .controller import Recovering, Struck, rehearse
+from .held_falls import flesh
 from .recorded_falls import SPACED, places
 from .recorded_pushes import TAKES, fit
 from .recovery import Recovery
 
-__all__ = ["FALLS", "SPACED", "STEPS", "SWAYS", "TAKES", "Recovering", "Recovery", "Struck", "fit", "places", "rehearse"]
+__all__ = ["DROPS", "FALLS", "SPACED", "STEPS", "SWAYS", "TAKES", "Recovering", "Recovery", "Struck", "fit", "flesh", "places", "rehearse"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -10,10 +11,13 @@ from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
 from ..jump import GRAVITY, Physique, start_of
 from ..jump.body import measures
-from .capture import FALLS, walks_kernel, way
+from ..navigation.passing import drawn_in
+from .capture import DROPS, FALLS, Way, way
 from .recorded_pushes import response
 from .recovery import Recovery
+from .stepping import walks_kernel
 from .stumble import CHEST, stumble
+from .surroundings import about
 from .toppling import topple
 
 STRUCK, HOLDS, OVER = 3.0, 1.4, 0.3
@@ -96,12 +100,24 @@ class Struck(Controller):
         c, s = np.cos(start.heading), np.sin(start.heading)
         v_f, omega, v_l = np.asarray(intent.velocity, float)
         wish = np.array([s * v_f + c * v_l, c * v_f - s * v_l]) if np.isfinite([v_f, v_l]).all() else np.zeros(2)
-        goes = way(start.centre[[0, 2]], start.velocity[[0, 2]], start.feet[:, [0, 2, 3]], free, start.heading, self.rate, wish, self.physique.tables)
         height = CHEST * size if strike.height is None else strike.height
-        if goes.fate == FALLS:
-            return topple(self.physique, start, floor, self.rate)
-        made = stumble(self.physique, start, goes, free, response(), floor, height)
-        return made if _slides(self.skeleton, made) < SLIDES else topple(self.physique, start, floor, self.rate)
+        things = about(intent.around, start.centre[[0, 2]])
+
+        def going(over: bool) -> Way:
+            return way(start.centre[[0, 2]], start.velocity[[0, 2]], start.feet[:, [0, 2, 3]], free, start.heading, self.rate, wish, self.physique.tables, floor, things, over)
+
+        def played(goes: Way) -> Recovery:
+            return stumble(self.physique, start, goes, free, response(), floor, height)
+
+        goes = going(False)
+        if goes.fate != FALLS:
+            made = played(goes)
+            if _slides(self.skeleton, made) < SLIDES:
+                return made
+        made = topple(self.physique, start, floor, self.rate, things)
+        if made.supported or (goes := going(True)).fate != DROPS:
+            return made
+        return played(goes)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds. ValueError unless 0 < dt ≤ 0.1."""
@@ -114,8 +130,11 @@ class Struck(Controller):
         ground = np.array([centre[0], centre[2], heading]) + memory.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
         c, s = np.cos(ground[2]), np.sin(ground[2])
         velocity = np.array([s * velocity[0] + c * velocity[2], 0.0, c * velocity[0] - s * velocity[2]])
+        if made.fate < FALLS and len(intent.around):
+            pose = drawn_in(self.skeleton, pose, ground, intent.around)
         n, part = made.between(time)
-        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, time=time))
+        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, time=time),
+                        floor=float(made.floors[n]))
         if np.abs(intent.velocity).max() > WISHES and self._walks_on(after) and not made.stands(time):
             after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
         return after, pose
@@ -145,9 +164,11 @@ def _slides(skeleton: Skeleton, made: Recovery) -> float:
 
 
 def rehearse(struck: Struck) -> None:
-    """Strike somebody in a T-pose, so that what that compiles or loads does not halt a game."""
+    """Strike somebody in a T-pose who stands before a wall, so that what that compiles or loads does not halt a game: he is held by it, and falls."""
     skeleton = struck.skeleton
     pose = Pose(skeleton.offsets[0].copy(), np.tile(np.eye(3), (len(skeleton), 1, 1)))
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
-    intent = Intent(strike=Strike((0.0, 0.5 * struck.physique.mass)))
-    struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)
+    wall = SimpleNamespace(centre=(0.0, 1.0, 2.5), size=(4.0, 2.0, 0.2), heading=0.0)
+    for speed in (0.5, 4.0):
+        intent = Intent(strike=Strike((0.0, speed * struck.physique.mass)), around=(wall,))
+        struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)

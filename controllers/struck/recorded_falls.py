@@ -62,13 +62,21 @@ def places(physique: Physique, positions: np.ndarray, turned: np.ndarray) -> tup
             for place in (positions[:, at(side + first)], stop):
                 out.append(place)
                 over.append(place[:, 1] - radius * physique.size)
+    for place, low in sole_places(physique, positions, turned):
+        out.append(place)
+        over.append(low)
+    return np.stack(out, 1), np.stack(over, 1)
+
+
+def sole_places(physique: Physique, positions: np.ndarray, turned: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Heel, ball and tip (N, 3) [m] of either foot, and how far (N,) its sole is over y = 0 there [m]."""
+    skeleton, at, found = physique.skeleton, physique.skeleton.index, []
     for side in ("Left", "Right"):
         foot, toe = at(side + "Foot"), at(side + "Toe")
         for joint, from_it in ((foot, heel_offset(skeleton)), (toe, np.zeros(3)), (toe, skeleton.end_offsets[skeleton.end_index[side + "Toe"]])):
             place = positions[:, joint] + turned[:, joint] @ from_it
-            out.append(place)
-            over.append(place[:, 1] - contact_height(skeleton))
-    return np.stack(out, 1), np.stack(over, 1)
+            found.append((place, place[:, 1] - contact_height(skeleton)))
+    return found
 
 
 def grounded(physique: Physique, local: np.ndarray, start: np.ndarray, floor: float) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,8 @@ import numpy as np
 from ..body import yaw
 from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
 from ..jump.motion import FADE, faded, ground_kernel
-from .capture import RATE, Way
+from .capture import DROPS, Way
+from .pendulum import RATE
 from .recorded_pushes import SPACED
 from .recovery import Recovery
 
@@ -21,6 +22,12 @@ LOWERS = 0.09
 """Who is thrown goes down by this [m], at standard height, for each m/s (recorded: 0.06 … 0.13)."""
 LIFTS = 0.045, 0.05
 """A foot swings so high [m] and higher by this share of how far it goes."""
+CLEARS = 0.6
+"""… and by this share of how far it steps up or down: past the edge of the tread."""
+ROUND = 0.26
+"""A foot that crosses over passes the other's ball so far before or behind it [m], at standard height."""
+CROSSED, CROSSING = 0.6, 0.12
+"""Who crosses over turns pelvis and trunk by this towards where he goes [rad], in so long [s]."""
 PEELS = 0.35
 """How far a foot that leaves points down at most [rad]."""
 MOST = 1.4
@@ -36,19 +43,21 @@ CHEST = 1.25
 RESTED, STILL = 0.25, 0.05
 """So long before its end it is at rest but for trunk and arms [s], if it is slower then than this [m/s]."""
 SAID = "pushed, it sways", "pushed, it takes a step", "pushed, it stumbles"
+FALLS_OFF = "pushed over an edge"
 
 
 def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, response: np.ndarray, floor: float, height: float) -> Recovery:
-    """The motion of a body along a way. free: (2,) which feet are in the air. response: (2, ROWS, 11) as fitted. floor: [m]. height: [m] over it where it was struck."""
+    """The motion of a body along a way. free: (2,) which feet are in the air. response: (2, ROWS, 11) as fitted. floor: [m] on which it stood. height: [m] over it where it was
+    struck."""
     body, size = physique.tables, physique.size
     times = np.arange(len(way.centre)) / RATE
-    feet, standing = _feet(start, way, free, floor, body, times)
-    centres, velocities = _centres(physique, start, way, feet, standing, floor, times)
+    feet, standing, levels = _feet(start, way, free, body, times)
+    centres, velocities = _centres(physique, start, way, feet, standing, levels, times)
     angles, aside = _carriage(start, way, response, times, (height / size - 1.0) / (CHEST - 1.0))
     offsets, turned = _left_over(physique, start, angles[0], times)
     joints = carriage.joints_of(physique.skeleton)
     offsets[:, joints[:3], 2] += aside[:, None] / 3.0
-    facing = yaw(np.full(len(times), start.heading)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    facing = yaw(start.heading + _turned(feet, standing, start.heading)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
     roots, local = np.empty((len(times), 3)), np.tile(np.eye(3), (len(times), len(physique.skeleton), 1, 1))
     root, begins = np.array(start.root, float), [0, *(int(round(step[1] * RATE)) for step in way.steps if step[1] > 0.0), len(times)]
     turned = np.ascontiguousarray(turned @ facing)
@@ -64,13 +73,23 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     contacts[:, 1::2] = standing
     contacts[:, ::2] = standing & (feet[..., 4] < 0.03)
     return Recovery(times, roots, local, centres, velocities, contacts, np.full(len(times), start.heading), way.fate, way.caught,
-                    way.steps[:, [0, 2]].copy(), float(times[-1]) - RESTED if np.abs(way.velocity[-1]).max() < STILL else np.inf, SAID[min(way.caught, 2)])
+                    way.steps[:, [0, 2]].copy(), float(times[-1]) - RESTED if np.abs(way.velocity[-1]).max() < STILL else np.inf,
+                    FALLS_OFF if way.fate == DROPS else SAID[min(way.caught, 2)], _floors(way, floor, times))
 
 
-def _feet(start: Start, way: Way, free: np.ndarray, floor: float, body, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The feet (N, 2, 6): balls, yaw, pitch, 1; and whether they stand (N, 2)."""
-    planted = start.planted(floor, body)
-    feet = np.ones((len(times), 2, 6))
+def _floors(way: Way, floor: float, times: np.ndarray) -> np.ndarray:
+    """How high it stands (N,) [m]: as the foot does that came down last on something."""
+    floors = np.full(len(times), floor)
+    for step in way.steps if way.fate != DROPS else way.steps[:-1]:
+        floors[times >= step[2]] = step[6]
+    return floors
+
+
+def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The feet (N, 2, 6): balls, yaw, pitch, 1; whether they stand (N, 2); and how high the ground lies (N, 2) [m] where they stand, or will."""
+    planted = start.planted(0.0, body)
+    planted[:, 1] += way.levels
+    feet, levels = np.ones((len(times), 2, 6)), np.tile(way.levels, (len(times), 1))
     feet[..., :5] = planted + faded(start.feet - planted, start.feet_rates, FOOT_FADE, times)
     feet[..., 1] = np.maximum(feet[..., 1], planted[:, 1])
     standing = np.tile(~np.asarray(free, bool), (len(times), 1))
@@ -82,18 +101,42 @@ def _feet(start: Start, way: Way, free: np.ndarray, floor: float, body, times: n
         begin, rate = feet[first, side, :5].copy(), np.zeros(5)
         if lift == 0.0:
             begin, rate = start.feet[side].copy(), start.feet_rates[side].copy()
-        end = np.array([step[3], floor + body.sole, step[4], begin[3] + np.remainder(step[5] - begin[3] + np.pi, 2.0 * np.pi) - np.pi, 0.0])
+        low, end = min(float(levels[first, side]), step[6]), np.array([step[3], step[6] + body.sole, step[4], begin[3] + np.remainder(step[5] - begin[3] + np.pi, 2.0 * np.pi) - np.pi, 0.0])
         gone = quintic(begin, rate * (land - lift), end, share)
         far = float(np.hypot(*(end - begin)[[0, 2]]))
         up = 16.0 * share**2 * (1.0 - share) ** 2
-        gone[:, 1] = np.maximum(gone[:, 1] + (LIFTS[0] * body.size + LIFTS[1] * far) * up * (lift > 0.0 or begin[1] - floor < 0.1 * body.size), floor + body.sole)
+        gone[:, 1] = np.maximum(gone[:, 1] + (LIFTS[0] * body.size + LIFTS[1] * far + CLEARS * abs(step[6] - float(levels[first, side]))) * up
+                                * (lift > 0.0 or begin[1] - low < 0.1 * body.size), low + body.sole)
+        gone[:, [0, 2]] += np.outer(up, _round(begin, end, feet[first, 1 - side], start.heading, body.size))
         gone[:, 4] += PEELS * min(far / 0.3, 1.0) * 27.0 / 4.0 * share * (1.0 - share) ** 2 * (lift > 0.0)
         lower = np.sin(np.maximum(-gone[:, 4], 0.0)) * (body.toe[2] - body.heel[2])
-        gone[:, 1] = np.maximum(gone[:, 1], floor + body.sole + lower)
+        gone[:, 1] = np.maximum(gone[:, 1], low + body.sole + lower)
+        levels[first:, side] = step[6]
         feet[flight, side, :5] = gone
         standing[first:last, side] = False
         feet[last:, side, :5], standing[last:, side] = end, True
-    return feet, standing
+    return feet, standing, levels
+
+
+def _turned(feet: np.ndarray, standing: np.ndarray, heading: float) -> np.ndarray:
+    """How far (N,) [rad] pelvis and trunk are turned to the left because a foot crosses the other, or stands across it."""
+    from scipy.ndimage import gaussian_filter1d  # no game waits for it at its start
+
+    apart = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.cos(heading), -np.sin(heading)]
+    before = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.sin(heading), np.cos(heading)]
+    across = np.where(apart < 0.0, CROSSED * -np.sign(before), 0.0)
+    return gaussian_filter1d(np.concatenate([np.zeros(len(across)), across]), CROSSING * RATE, mode="nearest")[len(across):]
+
+
+def _round(begin: np.ndarray, end: np.ndarray, other: np.ndarray, heading: float, size: float) -> np.ndarray:
+    """How far (2,) x, z [m] a foot that crosses another (6,) swings out of its straight way half-way: before it, or behind it."""
+    ahead, left = np.array([np.sin(heading), np.cos(heading)]), np.array([np.cos(heading), -np.sin(heading)])
+    one, two = begin[[0, 2]] - other[[0, 2]], end[[0, 2]] - other[[0, 2]]
+    if (one @ left) * (two @ left) > 0.0 or abs((two - one) @ left) < 0.2 * size:
+        return np.zeros(2)
+    middle = 0.5 * (one + two) @ ahead
+    side = 1.0 if two @ ahead > one @ ahead else -1.0
+    return ahead * side * max(ROUND * size - side * middle, 0.0)
 
 
 def quintic(begin, rate, end, share):
@@ -113,28 +156,29 @@ def _leaves(feet: np.ndarray, standing: np.ndarray, first: int, times: np.ndarra
             feet[flight, side, 4] += was * (1.0 - share) ** 3 * (1.0 + 3.0 * share)
 
 
-def _centres(physique: Physique, start: Start, way: Way, feet: np.ndarray, standing: np.ndarray, floor: float, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The mass centre (N, 3): along the floor as the pendulum has it, and as low as legs and the push ask."""
+def _centres(physique: Physique, start: Start, way: Way, feet: np.ndarray, standing: np.ndarray, levels: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The mass centre (N, 3): along the floor as the pendulum has it, and as low as legs and the push ask. levels: (N, 2) how high the ground lies under the feet [m]."""
     body, size, stand = physique.tables, physique.size, measures(physique).stand
     hips = stand - (physique.skeleton.offsets[0, 1] + physique.skeleton.offsets[body.hip[0], 1])  # the mass centre over the hips
     leg, ankle = STRAIGHT * (body.thigh + body.shank), body.sole - body.toe[1]
-    most = np.full(len(times), stand)
+    carried = stand + levels.mean(1)
+    most = carried.copy()
     for side in range(2):
         facing = np.stack([np.sin(feet[:, side, 3]), np.cos(feet[:, side, 3])], -1)
         foot = feet[:, side, [0, 2]] - body.toe[2] * facing
         off = BENT * np.linalg.norm(way.centre - foot, axis=-1) - abs(physique.skeleton.offsets[body.hip[0], 0]) * 0.5
         behind = ((way.centre - foot) * facing).sum(-1) > 0.0
         reach = leg + np.where(behind, HEELS * size, 0.0)
-        high = ankle + np.sqrt(np.maximum(reach**2 - off**2, (0.45 * leg) ** 2)) + hips
+        high = ankle + np.sqrt(np.maximum(reach**2 - off**2, (0.45 * leg) ** 2)) + hips + levels[:, side]
         most = np.where(standing[:, side], np.minimum(most, high), most)
     pace = np.maximum.accumulate(np.linalg.norm(way.velocity, axis=-1)[::-1])[::-1]
-    most = np.minimum(most, stand - LOWERS * size * np.minimum(np.maximum(pace - 0.15, 0.0), MOST) * np.clip(times / 0.3, 0.0, 1.0))
+    most = np.minimum(most, carried - LOWERS * size * np.minimum(np.maximum(pace - 0.15, 0.0), MOST) * np.clip(times / 0.3, 0.0, 1.0))
     from scipy.ndimage import gaussian_filter1d, minimum_filter1d  # no game waits for it at its start
 
     wide = int(0.15 * RATE)
     low = gaussian_filter1d(minimum_filter1d(most, 2 * wide + 1, mode="nearest"), 0.45 * wide, mode="nearest")
-    off, rate = start.centre[1] - floor - low[0], start.velocity[1] - (low[1] - low[0]) * RATE
-    height = floor + low + faded(np.array([off]), np.array([rate]), 0.12, times)[:, 0]
+    off, rate = start.centre[1] - low[0], start.velocity[1] - (low[1] - low[0]) * RATE
+    height = low + faded(np.array([off]), np.array([rate]), 0.12, times)[:, 0]
     centres = np.stack([way.centre[:, 0], height, way.centre[:, 1]], -1)
     velocities = np.stack([way.velocity[:, 0], np.gradient(height, 1.0 / RATE), way.velocity[:, 1]], -1)
     return centres, velocities

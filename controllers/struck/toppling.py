@@ -13,8 +13,10 @@ from ..body import centre_of_mass, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import faded
 from .capture import FALLS
+from .held_falls import chosen, flesh, held, under
 from .recorded_falls import FEET, RATE, TOUCHES, Fall, falls, grounded, places
 from .recovery import Recovery
+from .surroundings import NOTHING, STEP
 
 PACES = 0.9, 1.35
 """Falls are played at these shares of their recorded pace, until they strike the floor; from there on in WEARS seconds at their own."""
@@ -26,13 +28,12 @@ SLIDES = 0.3
 WHY = "struck too hard to be caught by a step: it falls, and gets up"
 
 
-def topple(physique: Physique, start: Start, floor: float, rate: float) -> Recovery:
-    """The fall, lying and getting up of a body whose mass centre has start.velocity [m/s] as it begins. floor: [m]. rate: ω [1/s] of the pendulum."""
+def topple(physique: Physique, start: Start, floor: float, rate: float, things: np.ndarray = NOTHING) -> Recovery:
+    """The fall, lying and getting up of a body whose mass centre has start.velocity [m/s] as it begins. floor: [m]. rate: ω [1/s] of the pendulum. things: (K, 9) what stands about, as
+    of `about`."""
     flat = start.velocity[[0, 2]]
     pace = float(np.hypot(*flat))
-    way = math.atan2(flat[0], flat[1]) - start.heading
-    fall = min(falls(physique), key=lambda one: abs(math.remainder(way - one.way, math.tau)))
-    turn = math.remainder(way - fall.way, math.tau)
+    fall, turn = chosen(physique, falls(physique), start.centre, math.atan2(flat[0], flat[1]), start.heading, floor, things)
     times, shown, toppled = _paced(fall, pace, rate)
     facing = start.heading + turn * np.clip(times / toppled, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(times / toppled, 0.0, 1.0))
     local = fall.turns(shown)
@@ -45,11 +46,19 @@ def topple(physique: Physique, start: Start, floor: float, rate: float) -> Recov
     slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
     roots, centres = roots + slip, centres + slip
     positions, turned = forward_kinematics(physique.skeleton, roots, local)
+    if len(things):
+        off = held(*flesh(physique, positions, turned), floor, things)
+        roots, centres, positions = roots + off, centres + off, positions + off[:, None]
+        over = over + off[:, 1:2]
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
     slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
     contacts = slow & (over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
-    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY)
+    floors = np.full(len(times), floor)
+    if len(things):
+        floors = np.where(times > toppled, under(things, centres, floor), floor)
+        contacts &= (floors > floor - STEP)[:, None]
+    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors)
 
 
 def _paced(fall: Fall, pace: float, rate: float) -> tuple[np.ndarray, np.ndarray, float]:

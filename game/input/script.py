@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from gambol.controllers.contract import CharacterState, Goal, Intent, Leap, Status, Strike, but
 from gambol.controllers.jump import Jumping
 from gambol.controllers.navigation import Path, follow, steer
+from gambol.controllers.supervisor import both
 
 from .pilot import STEERING
 
@@ -108,7 +110,8 @@ class Script:
 
     def step(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         """The script `dt` seconds later, what it asks of a character in `state` meanwhile, and what strikes him."""
-        hit = next((strike for number, strike in self.strikes if number == self.made), None)
+        hits = [strike for number, strike in self.strikes if number == self.made]
+        hit = reduce(both, hits) if hits else None
         script, intent = replace(self, made=self.made + 1)._wished(state, dt)
         return script, intent if hit is None else but(intent, strike=hit)
 

@@ -1,12 +1,16 @@
 """Figures of those who are struck: how hard a push walkers and runners take in with their next steps, how hard it takes to make people step, stumble and fall, whether momentum is
-kept, what slides, what goes through the floor.
+kept, what slides, what goes through the floor; and what becomes of those who are struck in random rooms, beside walls, on platforms and on stairs.
 
-    python scripts/measure/struck.py
+    python scripts/measure/struck.py [--rooms 40] [--seed 0] [--only-rooms]
 """
 
 from __future__ import annotations
 
+import argparse
+
 import numpy as np
+
+from _struck_rooms import report
 
 from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Strike
@@ -47,7 +51,15 @@ def _goes_on(somebody, state, wish, impulse):
 
 def main() -> None:
     """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rooms", type=int, default=40, help="so many of each kind")
+    parser.add_argument("--seed", type=int, default=0, help="of the rooms")
+    parser.add_argument("--only-rooms", action="store_true", help="nothing of how hard it takes")
+    given = parser.parse_args()
     body, somebody = Physique(), person()
+    report(somebody, given.seed, given.rooms)
+    if given.only_rooms:
+        return
     struck = somebody.parts["struck"]
     for wish in ((0.0, 0.0, 0.0), (1.2, 0.0, 0.0), (3.0, 0.0, 0.0)):
         states, walked, state = [], [], somebody.start()

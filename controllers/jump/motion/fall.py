@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...body import Pose, Skeleton, contact_points, end_positions, forward_kinematics
+from ...body import Pose, Skeleton, contact_points, end_positions, forward_kinematics, sole_corners
 from ...navigation import floor_at, gap
 from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
                     turns, vectors)
@@ -40,6 +40,11 @@ ASIDE = ((0.25, 0.17), (1.15, 0.36))
 """What stands or hangs at a height over the feet [m] is so far from them [m] when they come down."""
 ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
+TUCKS, TUCKED, EARLY = np.array([0.5, 1.0, 1.5]), np.array([-0.7, 1.3, -0.6]), 0.4
+"""A leg that would go into something, as into the edge that it leaves, is drawn up by one of these, hip, knee and ankle by so many [rad] of each, after so much of the time in which legs
+get to where they land."""
+GRAZES, SHIN = 0.01, 0.045
+"""So deep [m] legs may be in something; how thick shins are [m], at standard height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +109,35 @@ def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any
     features = prior.features(falls, 0.0, 0.0, physique.size, False)
     way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre, start.centre, heading=start.heading,
                keys=prior.keys(features, features))
-    return _Fall(physique, start, way, landing_feet(place, start.heading, physique.tables)).plan()
+    landing, tucks = landing_feet(place, start.heading, physique.tables), np.zeros(2)
+    best = _Fall(physique, start, way, landing, tucks).plan()
+    deep = least = _deep(physique, best, around)
+    for tuck in TUCKS:
+        if deep.max() < GRAZES:
+            break
+        tucks = np.where(deep < GRAZES, tucks, tuck)
+        made = _Fall(physique, start, way, landing, tucks).plan()
+        deep = _deep(physique, made, around)
+        if deep.max() < least.max():
+            best, least = made, deep
+    return best
+
+
+def _deep(physique: Physique, made: Plan, around: Sequence[Any]) -> np.ndarray:
+    """How deep (2,) [m] shins and soles of either leg go into anything while they fall, beyond how deep they were in it."""
+    if not around:
+        return np.zeros(2)
+    air, skeleton, out = slice(0, int(np.searchsorted(made.times, made.touch_down)), 2), physique.skeleton, np.zeros(2)
+    positions, turned = forward_kinematics(skeleton, made.roots[air], made.local[air])
+    soles = sole_corners(skeleton, positions, turned).reshape(len(positions), 2, -1, 3)
+    for side, name in enumerate(("Left", "Right")):
+        knee, ankle = (positions[:, skeleton.index(name + joint)] for joint in ("Leg", "Foot"))
+        shin = knee[:, None] + np.linspace(0.3, 0.9, 4)[:, None] * (ankle - knee)[:, None]
+        points, thick = np.concatenate([soles[:, side], shin], 1), np.append(np.zeros(soles.shape[2]), np.full(4, SHIN * physique.size))
+        for thing in around:
+            far = thick - gap(points.reshape(-1, 3), thing).reshape(points.shape[:2])
+            out[side] = max(out[side], float((far - np.maximum(far[:1], 0.0)).max()))
+    return out
 
 
 def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: Sequence[Any],
@@ -131,9 +164,10 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: 
 
 
 class _Fall(Airborne):
-    """One fall in the making."""
+    """One fall in the making. tucks: (2,) how far legs are drawn up half-way, see TUCKS."""
 
-    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray):
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, tucks: np.ndarray):
+        self.tucks = tucks
         touch = way.keys[3 * BETWEEN, :LEGS]
         share = min(way.airtime / GATHERS, 1.0)
         super().__init__(physique, start, way, landing, 0.0, [0.0, way.airtime], np.stack([carriage.FALL, carriage.FALL + share * (touch - carriage.FALL)]))
@@ -188,7 +222,13 @@ class _Fall(Airborne):
         before = vectors(turns(-step * self.start.rates[ids]) @ now)
         now = vectors(now)
         times = np.array([0.0, min(airtime, REACHES), airtime + 1e-6])
-        curve = hermite(times, np.stack([now, end, end]), np.stack([(now - before) / step, 0 * end, 0 * end]), self.flying)
+        values, slopes = [now, end, end], [(now - before) / step, 0 * end, 0 * end]
+        if self.tucks.any():
+            half = 0.5 * (now + end)
+            half[:3, 0] += TUCKED * self.tucks[0]
+            half[4:7, 0] += TUCKED * self.tucks[1]
+            times, values, slopes = np.insert(times, 1, EARLY * times[1]), [now, half, end, end], [slopes[0], (end - now) / times[1], *slopes[1:]]
+        curve = hermite(times, np.stack(values), np.stack(slopes), self.flying)
         curve[:, [1, 5], 0] = np.maximum(curve[:, [1, 5], 0], np.minimum(now[[1, 5], 0], 0.05))  # knees don't bend back
         self.air[1:, ids] = turns(curve)[1:]
         self.momentum[:] = momentum
