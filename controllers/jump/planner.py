@@ -72,7 +72,7 @@ class _Draft(Airborne):
         contacts[:len(self.times), 1::2], contacts[:len(self.times), ::2] = on, on & ~heel_up
         contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, heels
         if way.lands is not None:
-            contacts[-len(after):, 2 - 2 * way.lands:4 - 2 * way.lands] = False
+            contacts[-len(after):, 2 - 2 * way.lands:4 - 2 * way.lands] = (after >= self.stands)[:, None]
         flying = self.flying[1:]
         return Plan(
             np.concatenate([self.times, self.leave + flying, self.down + after]),
@@ -105,7 +105,7 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
-        risen = (HEEL_UP if start.single is None else RUNNERS_HEEL[1]) * late**2
+        risen = (RUNNERS_HEEL[1] if start.runs else HEEL_UP) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))
