@@ -24,6 +24,8 @@ TAKE_OFF_REACH, TOUCH_REACH = 0.982, 0.93
 """How straight legs are, as shares of their length, as they take off and touch down."""
 HOP_REACH = 0.957
 """And as they take off together from a springy landing: knees bent by 34°, as recorded."""
+HOP_HEEL = 0.45
+"""How far a foot points down as it leaves it from a springy landing [rad]."""
 FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
@@ -74,6 +76,11 @@ class Start:
     def straight(self) -> float:
         """How straight legs are as they take off, as a share of their length."""
         return HOP_REACH if self.springs and self.single is None else TAKE_OFF_REACH
+
+    @property
+    def heel_up(self) -> float:
+        """How far a foot points down as it leaves the floor [rad]."""
+        return HOP_HEEL if self.springs else HEEL_UP
 
     def pushing(self, planted: np.ndarray) -> np.ndarray:
         """Of planted feet (2, 5) those that push (2, 5): one of them twice if the other is in the air."""

@@ -44,7 +44,7 @@ LEAST = 0.02
 """And at least, likewise."""
 CATCH = 0.6
 """How much of the capture point's lead counts: arms, trunk and a heel's edge brake, too."""
-QUARTER = 0.145
+QUARTER = 0.13
 """So long [s] a springy landing gives whatever the fall, as recorded (0.13 … 0.19): a mass on a spring comes to its lowest point
 after a quarter of its time. At standard height."""
 HARDEST = 3.3, 5.0

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body import yaw
-from ..body import FLAT, HEEL_UP, Measures, Physique, Start, over, stretched
+from ..body import FLAT, Measures, Physique, Start, over, stretched
 from ..muscles import crouch_depth, strength
 from .pendulum import waiting_kernel
 from .thrust import MOMENTS, moments, risen, upward
@@ -78,7 +78,7 @@ class TakeOff(NamedTuple):
 def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, heading: float, guess: np.ndarray) -> float:
     """How high [m] the centre of mass is over `guess`'s (3,) place as feet (2, 5) leave the floor, the body carried by `angles` (11,)."""
     lifted = 0.0 if start.single is None else LIFTED * physique.size
-    return stretched(physique, angles, feet, HEEL_UP, start.straight, heading, guess) + lifted
+    return stretched(physique, angles, feet, start.heel_up, start.straight, heading, guess) + lifted
 
 
 @dataclass(frozen=True, eq=False)
