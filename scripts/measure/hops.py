@@ -24,7 +24,7 @@ from compare_jump import MOCAP
 from gambol.controllers.body import Clip, centre_of_mass, contact_points, log
 from gambol.controllers.contract import CharacterState, Intent, Leap
 from gambol.controllers.jump import Jump, Jumping
-from gambol.controllers.jump.prior.recorded import flights
+from gambol.controllers.jump.prior import flights
 from gambol.controllers.mocap import calibrate, load, retarget
 from gambol.controllers.person import person
 
