@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,16 +22,18 @@ class Leap:
 
     airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
+    on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or run on.
     """
 
     place: np.ndarray | None
     airtime: float | None = None
     slack: float = 0.0
     heading: float | None = None
+    on: Literal["left", "right", "both"] | None = None
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
-        return (other is not None and (self.airtime, self.slack, self.heading) == (other.airtime, other.slack, other.heading)
+        return (other is not None and (self.airtime, self.slack, self.heading, self.on) == (other.airtime, other.slack, other.heading, other.on)
                 and (self.place is None) == (other.place is None) and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
 
 

@@ -18,7 +18,7 @@ from .motion import Plan, fall, over_nothing, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
-from .starting import Jumping, landed, ready, rebounding, start_of, turning
+from .starting import FEET, Jumping, landed, ready, rebounding, start_of, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -96,6 +96,8 @@ class Jump(Reach, Controller):
             raise Refused("nobody asked for a jump")
         if leap.heading is not None and not np.isfinite(leap.heading):
             raise Refused(f"the heading must be a finite number of radians, or None, got {leap.heading!r}")
+        if leap.on not in (None, *FEET):
+            raise Refused(f"a leap lands on 'left', 'right' or 'both' to hop on, or None to stand, got {leap.on!r}")
         start, floor = self.start_of(state, leap), float(level(state.floor))
         here = self.middle(start, floor)
         place = here if leap.place is None else np.asarray(leap.place, float)

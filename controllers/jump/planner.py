@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .body import HEEL_UP, Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
+from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
 from .motion import (FADE, FREE, GROUND_RATE, HEEL, RUNNERS_HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel,
                      heels_rise, settling, sinking)
 from .prior import BETWEEN, EACH, LEGS
@@ -72,7 +72,7 @@ class _Draft(Airborne):
         contacts[:len(self.times), 1::2], contacts[:len(self.times), ::2] = on, on & ~heel_up
         contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, heels
         if way.lands is not None:
-            contacts[-len(after):, 2 - 2 * way.lands:4 - 2 * way.lands] = False
+            contacts[-len(after):, 2 - 2 * way.lands:4 - 2 * way.lands] = (after >= self.stands)[:, None]
         flying = self.flying[1:]
         return Plan(
             np.concatenate([self.times, self.leave + flying, self.down + after]),
@@ -105,7 +105,7 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
-        risen = (HEEL_UP if start.single is None else RUNNERS_HEEL[1]) * late**2
+        risen = (RUNNERS_HEEL[1] if start.runs else start.heel_up) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))

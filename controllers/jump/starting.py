@@ -18,6 +18,8 @@ FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""
 HALF_TURN = 1e-3
 """So little short of half a turn [rad] is one."""
+FEET = "left", "right", "both"
+"""On which feet one may land to hop on."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 SPRINGS = 0.05
@@ -45,9 +47,9 @@ class Jumping:
 
     @property
     def rebounds(self) -> bool:
-        """Whether its legs give to a landing on both feet, so that another leap could go off from there."""
+        """Whether its legs give to a landing on both feet, or on one to hop on, so that another leap could go off from there."""
         made = self.plan
-        return not self.fault and made.path.lands is None and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
+        return not self.fault and (made.path.lands is None or made.path.hops) and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
 
     @property
     def landed(self) -> bool:
@@ -75,7 +77,10 @@ def start_of(physique: Physique, state: CharacterState, crouched: bool = False) 
 
 
 def turning(start: Start, leap: Leap | None) -> Start:
-    """The same start of one who lands in the heading that a leap says, if it says one: the shorter way round, to the left where both are half a turn."""
+    """The same start of one who lands on the feet and in the heading that a leap says, if it says any: the shorter way round, to the left where both
+    are half a turn."""
+    if leap is not None and leap.on in FEET:
+        start = replace(start, onto=FEET.index(leap.on))
     if leap is None or leap.heading is None or not math.isfinite(leap.heading):
         return start
     turn = math.remainder(leap.heading - start.heading, math.tau)
@@ -87,7 +92,8 @@ def rebounding(start: Start, made: Plan, time: float) -> Start:
     n = int(np.clip(np.searchsorted(made.times, time), 1, len(made.times) - 1))
     gains = (made.velocities[n] - made.velocities[n - 1]) / (made.times[n] - made.times[n - 1])
     low = min(float(start.centre[1]), float(made.centres[n:, 1].min()))
-    return replace(start, heading=made.path.heading + made.path.turn, velocity=made.moving(time)[1], acceleration=gains, ready=True, low=low, single=None)
+    return replace(start, heading=made.path.heading + made.path.turn, velocity=made.moving(time)[1], acceleration=gains, ready=True, low=low,
+                   single=made.path.lands, springs=made.path.hops)
 
 
 def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterState:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Jump:
 
     within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
     take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming. heading: [rad] in which it lands; None: as it went off.
-    hop: instead of a place, so far ahead [m] of where its feet stand.
+    hop: instead of a place, so far ahead [m] of where its feet stand. on: the feet on which it lands to hop on, see `Leap`.
     """
 
     place: tuple[float, float, float] | None = None
@@ -46,6 +46,7 @@ class Jump:
     aims: float = 0.0
     heading: float | None = None
     hop: float | None = None
+    on: Literal["left", "right", "both"] | None = None
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,7 @@ class Script:
             ready = True
         if not ready:
             return self, intent
-        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading)
+        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])

@@ -21,6 +21,12 @@ from .fields import Airtime, Degrees, Length, Pace, Place, Point, Seconds, Table
 KINDS = ("velocity", "walk_to", "go_to", "path", "stop", "jump_to", "jump", "hops")
 """What a move may be."""
 
+TURNS: dict[str, tuple[Literal["left", "right", "both"], ...]] = {
+    "both": ("both",), "left": ("left",), "right": ("right",), "alternate": ("left", "right"), "skip": ("left", "left", "right", "right")}
+"""On which feet hops land, one after the other."""
+STEP = 0.12
+"""Who skips is in the air so long [s] for the step from one foot to the other, on Earth."""
+
 
 class MoveTable(Table):
     """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump and hops. Angles in degrees. for: how long [s].
@@ -35,7 +41,9 @@ class MoveTable(Table):
     velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
     [m] it jumps. airtime: [s]; by default of the least effort. aim: so long [s] one crouches before a jump without a run-up.
 
-    hops: how many hops on both feet, each off the landing of the one before, and each so far `ahead` [m] (0: on the spot); airtime: of each.
+    hops: how many hops, each off the landing of the one before, and each so far `ahead` [m] (0: on the spot); airtime: of each. on: both feet, the
+    left or the right one, one after the other, the left first, or, to skip, steps and hops in turn, on the left foot, then on the right; the last
+    lands on both.
     """
 
     seconds: Seconds | None = Field(None, alias="for")
@@ -53,6 +61,7 @@ class MoveTable(Table):
     within: Length | None = None
     hops: Annotated[int, Field(ge=1, le=100)] | None = None
     ahead: Annotated[float, Field(ge=0, le=5, allow_inf_nan=False)] | None = None
+    on: Literal["both", "left", "right", "alternate", "skip"] | None = None
     aim: Seconds | None = None
     speed: Pace | None = None
     facing: Degrees | None = None
@@ -68,6 +77,7 @@ class MoveTable(Table):
         for name, fits, with_ in (("aim", jumps and not feet, "jump, hops or jump_to without a run-up"),
                                   ("airtime", self.jump_to is not None or self.hops is not None, "jump_to or hops; a jump has its height"),
                                   ("ahead", self.hops is not None, "hops: how far ahead each goes"),
+                                  ("on", self.hops is not None, "hops: which feet they are on"),
                                   ("within", self.jump_to is not None and bool(feet), "jump_to and a run-up")):
             if getattr(self, name) is not None and not fits:
                 raise ValueError(f"`{name}` goes with {with_}")
@@ -97,8 +107,15 @@ class MoveTable(Table):
     def moves(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> tuple[Move, ...]:
         """The same in SI units, for somebody who jumps among props: one move, or one for each hop."""
         made = self.move(jumper, props)
-        again = made if made.jump is None else replace(made, jump=replace(made.jump, aims=0.0))
-        return (made, *[again] * ((self.hops or 1) - 1))
+        if made.jump is None or self.hops is None:
+            return (made,)
+        feet = TURNS[self.on or "both"]
+        jumps = [replace(made.jump, aims=made.jump.aims if n == 0 else 0.0, on=feet[n % len(feet)] if n < self.hops - 1 else None)
+                 for n in range(self.hops)]
+        if self.on == "skip":
+            step = STEP * math.sqrt(9.81 / -jumper.gravity[1])
+            jumps[:-1:2] = [replace(jump, airtime=step) for jump in jumps[:-1:2]]
+        return tuple(replace(made, jump=jump) for jump in jumps)
 
     def move(self, jumper: JumpController = JumpController(), props: tuple[Prop, ...] = ()) -> Move:
         """The same in SI units, for somebody who jumps among props; of hops the first."""

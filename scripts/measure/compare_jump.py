@@ -115,10 +115,13 @@ def compare(clip: Clip, one: Recorded, prior: Prior, plots: Path | None, number:
     rms["arm"] = float(np.degrees(np.sqrt(np.mean(np.arccos(np.clip((ours.arms * theirs.arms[air]).sum(-1), -1.0, 1.0)) ** 2))))
     whole = [made.at(t) for t in np.arange(0.0, made.duration, 1 / 120)]
     all_ours = curves(jump, np.stack([p.root for p in whole]), np.stack([p.rotations for p in whole]))
+    thin = max(round(1 / (60.0 * clip.frame_time)), 1)
     off, down = round(made.take_off * 120), round(made.touch_down * 120)
     low = down + int(all_ours.centre[down:, 1].argmin())
     rms |= {"knee off": ours.knee[0], "knee off theirs": theirs.knee[first], "trunk landed": all_ours.trunk[low], "trunk landed theirs": theirs.trunk[landed],
             "crouch": all_ours.centre[0, 1] - all_ours.centre[:off, 1].min(), "crouch theirs": one.depth,
+            "knee turns": fastest(jump, np.stack([p.rotations for p in whole[::2]]), 60.0),
+            "knee turns theirs": fastest(jump, clip.rotations[start:upright:thin], 1.0 / (thin * clip.frame_time)),
             "sinks": ours.centre[-1, 1] - all_ours.centre[low, 1], "sinks theirs": theirs.centre[last, 1] - theirs.centre[landed, 1]}
     print(f"{told}  RMS knee {rms['knee']:4.1f}°, hip {rms['hip']:4.1f}°, trunk {rms['trunk']:4.1f}°, arm {rms['arm']:4.1f}°; ours / theirs: knee at take-off {rms['knee off']:.0f} / "
           f"{rms['knee off theirs']:.0f}°, trunk landed {rms['trunk landed']:.0f} / {rms['trunk landed theirs']:.0f}°, crouch {rms['crouch']:.2f} / {one.depth:.2f} m, "
@@ -127,6 +130,12 @@ def compare(clip: Clip, one: Recorded, prior: Prior, plots: Path | None, number:
         plots.mkdir(parents=True, exist_ok=True)
         strip(plots / f"{clip.name}_{number}.png", told.strip(), jump, clip, one, made)
     return rms
+
+
+def fastest(jump: Jump, local: np.ndarray, rate: float) -> float:
+    """How fast [rad/s] a knee turns at most in poses (T, ...), so many a second."""
+    knees = local[:, [jump.skeleton.index(side + "Leg") for side in ("Left", "Right")]]
+    return float(np.linalg.norm(log(np.swapaxes(knees[:-1], -1, -2) @ knees[1:]), axis=-1).max() * rate)
 
 
 def strip(path: Path, title: str, jump: Jump, clip: Clip, one: Recorded, made) -> None:
@@ -178,6 +187,8 @@ def beside(takes: Sequence[str], plots: Path | None) -> None:
                 f"{np.median([np.median([r[key] for r in some if r['take'] == take]) for take in takes]):.0f}°" for key in ANGLES))
             print("  ours / theirs, median: " + "; ".join(f"{key} {np.median([r[key] for r in some]):.2f} / {np.median([r[key + ' theirs'] for r in some]):.2f}"
                                                           for key in ("knee off", "trunk landed", "crouch", "sinks")))
+            print("  knees turn fastest, ours / theirs, median (worst): " + " / ".join(f"{np.median([r[key] for r in some]):.1f} ({max(r[key] for r in some):.1f})"
+                                                                                      for key in ("knee turns", "knee turns theirs")) + " rad/s")
 
 
 def main() -> int:

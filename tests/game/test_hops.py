@@ -51,3 +51,15 @@ def test_each_goes_off_from_the_landing_before_after_half_a_second_at_most(hoppe
 def _pose(plan):
     pose = plan.at(plan.lowest)
     return pose.root, pose.rotations
+
+
+@pytest.mark.parametrize("on, lands, airtimes", [("left", [0, 0, None], [0.26] * 3), ("alternate", [0, 1, None], [0.26] * 3), ("skip", [0, 0, 1, None], [0.12, 0.26, 0.12, 0.26])])
+def test_hops_are_on_the_feet_that_the_script_says(tmp_path, on, lands, airtimes):
+    text = TEXT.replace("{ hops = 2, airtime = 0.4 }, { hops = 3, ahead = 0.4, airtime = 0.3 }", f'{{ hops = {len(lands)}, on = "{on}", ahead = 0.4, airtime = 0.26 }}')
+    plans, refused = [], ()
+    for frame in film.run(load(written(tmp_path, text)), person()):
+        now, refused = jumping(frame.after.characters[0].state), frame.refused
+        if now is not None and all(now.plan is not plan for plan in plans):
+            plans.append(now.plan)
+    assert not refused and [plan.path.lands for plan in plans] == lands
+    assert [plan.path.airtime for plan in plans] == pytest.approx(airtimes)

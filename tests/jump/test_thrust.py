@@ -6,17 +6,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad_vec
 
-from gambol.controllers.jump.motion.thrust import RISE, push, risen
+from gambol.controllers.jump.motion.thrust import SPRING, push, risen
 
 speed = st.floats(-3.0, 3.0)
-cases = st.tuples(speed, speed, st.floats(0.05, 4.0), speed, st.floats(-0.5, 0.5), st.floats(0.02, 0.6), st.floats(0.5, 25.0))
+cases = st.tuples(speed, speed, st.floats(0.05, 4.0), speed, st.floats(-0.5, 0.5), st.floats(0.02, 0.6), st.floats(0.5, 25.0), st.booleans())
 
 
 def of(case):
-    before_x, after_x, after_y, before_z, way_x, way_y, g = case
+    before_x, after_x, after_y, before_z, way_x, way_y, g, springs = case
     before, after = np.array([before_x, 0.0, before_z]), np.array([after_x, after_y, before_z])
     way, gravity = np.array([way_x, way_y, 0.1]), np.array([0.0, -g, 0.0])
-    return push(way, before, after, gravity), way, before, after
+    return push(way, before, after, gravity, springs), way, before, after
 
 
 @given(cases)
@@ -43,7 +43,8 @@ def test_vertical_force_has_its_shape_and_never_pulls(case):
     made = of(case)[0]
     s = np.array([0.0, 0.5, 0.9])
     shape = made.force(s * made.duration)[:, 1] / made.level
-    np.testing.assert_allclose(shape, 1.0 - s**4 + RISE * s * (1.0 - s**3), rtol=1e-9)
+    wanted = s[:, None] ** np.arange(len(SPRING)) @ SPRING if made.springs else 1.0 - s**4 + 0.3 * s * (1.0 - s**3)
+    np.testing.assert_allclose(shape, wanted, rtol=1e-9)
     assert (made.force(np.linspace(0.0, made.duration, 50))[:, 1] >= -1e-9).all()
 
 
@@ -53,6 +54,11 @@ def test_a_push_of_the_way_it_rises_takes_that_long(duration, velocity, g):
     if way > 1e-3:
         made = push([0.0, way, 0.0], np.zeros(3), [0.0, velocity, 0.0], np.array([0.0, -g, 0.0]))
         assert made.duration == pytest.approx(duration, rel=1e-9)
+
+
+def test_off_a_springy_landing_it_is_the_second_half_of_what_a_spring_gives():
+    s = np.linspace(0.0, 1.0, 50)
+    assert np.abs(s[:, None] ** np.arange(len(SPRING)) @ SPRING - np.cos(0.5 * np.pi * s)).max() < 0.004
 
 
 @pytest.mark.parametrize("rise", [0.0, -0.1, np.nan])

@@ -22,6 +22,10 @@ HEEL_UP, TOES_DOWN = 0.70, 0.30
 """How far a foot points down as it leaves the floor and as it lands: toes last, toes first [rad]."""
 TAKE_OFF_REACH, TOUCH_REACH = 0.982, 0.93
 """How straight legs are, as shares of their length, as they take off and touch down."""
+HOP_REACH = 0.957
+"""And as they take off together from a springy landing: knees bent by 34°, as recorded."""
+HOP_HEEL = 0.45
+"""How far a foot points down as it leaves it from a springy landing [rad]."""
 FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
@@ -43,7 +47,8 @@ class Start:
     (2, 5) ball x, y, z [m], yaw, pitch [rad] and how fast they change. heading [rad]. single: the foot that pushes off a run, 0 left
     or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told. low: it comes down from a
     jump, and its legs give until the centre of mass is so high [m]; None where it does not. acceleration: (3,) [m/s²] of the centre then.
-    turn: how far to the left it turns until it lands [rad], looking where it goes; None where nobody told.
+    turn: how far to the left it turns until it lands [rad], looking where it goes; None where nobody told. springs: the landing was made to hop on
+    from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on.
     """
 
     root: np.ndarray
@@ -59,6 +64,27 @@ class Start:
     low: float | None = None
     acceleration: np.ndarray = field(default_factory=lambda: np.zeros(3))
     turn: float | None = None
+    springs: bool = False
+    onto: int | None = None
+
+    @property
+    def runs(self) -> bool:
+        """Whether it pushes off one foot out of a run."""
+        return self.single is not None and not self.springs
+
+    @property
+    def straight(self) -> float:
+        """How straight legs are as they take off, as a share of their length."""
+        return HOP_REACH if self.springs and self.single is None else TAKE_OFF_REACH
+
+    @property
+    def heel_up(self) -> float:
+        """How far a foot points down as it leaves the floor [rad]."""
+        return HOP_HEEL if self.springs else HEEL_UP
+
+    def pushing(self, planted: np.ndarray) -> np.ndarray:
+        """Of planted feet (2, 5) those that push (2, 5): one of them twice if the other is in the air."""
+        return planted if self.single is None else planted[[self.single, self.single]]
 
     @property
     def lands(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +25,10 @@ FREE = -1.0
 """A foot's freedom (see `planted_pose.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 RUNS_ON = 0.06, 0.14
 """Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
+WAITS = 0.06
+"""Who could hop on off one foot and goes too fast to stop over it walks on so long after the lowest point [s]."""
+DOWN = 0.34
+"""And who can stop puts the other foot down beside it within so long from there [s]."""
 PLANT = 0.07
 """From the toes' landing to the heels' [s]."""
 HEEL = 0.03
@@ -63,11 +68,12 @@ class Airborne:
         self.down = leave + way.airtime
         self.support = soles(landing if way.lands is None else landing[way.lands:way.lands + 1], self.body)
         goal = self.support.mean(0) + [0.0, measures(physique).stand, 0.0]
-        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None)
+        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None and not way.hops, way.hops)
         self.after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
         self.sunk = self.absorbs.motion(self.after)
         landed = self._landing_times(goal[1])
-        self.lowest = float(landed[BETWEEN - 1])
+        self.lowest, self.up = float(landed[BETWEEN - 1]), float(landed[-1])
+        self.stands = self.lowest + DOWN if way.hops and way.lands is not None and not self.absorbs.passes else math.inf
         self.swings = slice(0, 0)  # joints of the leg that goes on swinging
         if way.lands is not None:
             free = self.legs[4 - 4 * way.lands:8 - 4 * way.lands]
@@ -177,10 +183,33 @@ class Airborne:
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         if self.way.lands is not None:
             local[:, self.swings] = self.swung(after)
-        ground_kernel(body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c, feet,
-                      self.air_roots[-1].copy(), roots, local)
+        pose = partial(ground_kernel, body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c)
+        pose(feet, self.air_roots[-1].copy(), roots, local)
+        if np.isfinite(self.stands):
+            self._put_down(after, feet, roots, local)
+            pose(feet, self.air_roots[-1].copy(), roots, local)
         return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, (
-            max(landing.until(after), PLANT + 0.02) if self.way.lands is None else float(np.clip(self.lowest, *RUNS_ON)))
+            max(landing.until(after), PLANT + 0.02) if self.way.lands is None else
+            self._steps_on() if self.way.hops else float(np.clip(self.lowest, *RUNS_ON)))
+
+    def _steps_on(self) -> float:
+        """When [s] after touch-down one who could hop on, but is not asked to, stands on both feet, or walks on if he can't stop."""
+        return max(self.stands + 0.5 * DOWN, self.up) if np.isfinite(self.stands) else self.lowest + WAITS
+
+    def _put_down(self, after: np.ndarray, feet: np.ndarray, roots: np.ndarray, local: np.ndarray) -> None:
+        """Write how the foot in the air comes to stand beside the other, from how it is in these poses (M, ...) at the lowest point, into feet (M, 2, 6)."""
+        free, first = int(self.way.lands == 0), int(np.searchsorted(after, self.lowest))
+        ankle, ball, seen = self.body.hip[free] + 2, self.body.hip[free] + 3, np.empty((2, 5))
+        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
+        for row, n in zip(seen, (first - 1, first)):
+            place_kernel(self.body, roots[n], local[n], positions, turned)
+            ahead = turned[ankle, :, 2]
+            row[:] = *positions[ball], self.landing[free, 3], np.arcsin(np.clip(-ahead[1], -1.0, 1.0))
+        times = after[first:] - after[first]
+        way = hermite(np.array([0.0, DOWN]), np.stack([seen[1], self.landing[free]]),
+                      np.stack([(seen[1] - seen[0]) / (after[first] - after[first - 1]), np.zeros(5)]), np.minimum(times, DOWN))
+        way[:, 1] = np.maximum(way[:, 1], self.landing[free, 1])
+        feet[first:, free, :5], feet[first:, free, 5] = way, 0.0
 
     def _free(self, feet: np.ndarray) -> None:
         """Let go of the foot (..., 2, 6) on which it does not land, if any."""
@@ -189,7 +218,7 @@ class Airborne:
 
     def _toes_down(self, time) -> np.ndarray:
         """How far feet point down (...) [rad] so long after they touched [s]: toes first, but for strides, which are flat."""
-        return (self.way.lands is None) * TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
+        return (self.way.lands is None or self.way.hops) * TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
 
 
 def keyed_leg(times: np.ndarray, rows: np.ndarray):

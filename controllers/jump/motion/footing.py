@@ -33,9 +33,9 @@ def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndar
 def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np.ndarray) -> float:
     """When in the push (0 … 1) the heels rise: not before a standing jumper, its mass at centres (N, 3) when so much (N,) of the push is
     over, is over the balls of the feet."""
-    if start.single is not None:
+    if start.runs:
         return RUNNERS_HEEL[0]
-    past = (centres[:, None] - planted[:, :3]) @ yaw(start.heading)[:, 2]
+    past = (centres[:, None] - start.pushing(planted)[:, :3]) @ yaw(start.heading)[:, 2]
     over = (past > 0.0).all(-1) & (share > 0.0)
     return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
 

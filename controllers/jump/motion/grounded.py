@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..body import FLAT, FLEX, HEEL_UP, TAKE_OFF_REACH, Physique, Start, hermite, measures, over, stretched, take_off_velocity
+from ..body import FLAT, FLEX, Physique, Start, hermite, measures, over, take_off_velocity
 from ..prior import BETWEEN, LEGS
 from .centroidal import course_kernel
 from .descent import descent, sinking
 from .footing import heels_down, heels_rise, settling, standing_soles
 from .path_estimate import Course, Path
-from .take_off import STRIDE
+from .take_off import STRIDE, top
 from .thrust import push
 
 KNOTS = 41
@@ -108,9 +108,10 @@ def _left(physique: Physique, start: Start, way: Path, planted: np.ndarray, cour
     """The path that leaves where the course does, as high as its legs then reach."""
     leave = way.leave.copy()
     leave[[0, 2]] = course.place[-1]
-    if start.single is None:
-        leave[1] = stretched(physique, way.keys[2 * BETWEEN, :LEGS], planted, HEEL_UP, TAKE_OFF_REACH, start.heading, leave)
+    if not start.runs:
+        leave[1] = top(physique, start, way.keys[2 * BETWEEN, :LEGS], start.pushing(planted), start.heading, leave)
     else:
+        assert start.single is not None  # who runs pushes off one foot
         tall, ball = STRIDE * measures(physique).leave(0.0), planted[start.single, :3]
         before, after = (over(tall, float(np.linalg.norm((place - ball) * FLAT))) for place in (way.leave, leave))
         leave[1] += after - before
@@ -123,7 +124,8 @@ def _on(way: Path, course: Course) -> Path:
     low, passing, leave = way.low.copy(), way.passing.copy(), way.leave.copy()
     leave[[0, 2]] = course.place[-1]
     low[[0, 2]] = hermite(course.times, course.place, course.velocity, [way.wind_up])[0]
+    assert way.push is not None
     before, after = (hermite(course.times, course.place, course.velocity, [way.wind_up + shift])[0] for shift in (-1e-4, 1e-4))
     passing[[0, 2]] = (after - before) / 2e-4
     velocity = take_off_velocity(leave, way.land, way.airtime, way.gravity)
-    return replace(way, low=low, passing=passing, leave=leave, velocity=velocity, push=push(leave - low, passing, velocity, way.gravity), course=course)
+    return replace(way, low=low, passing=passing, leave=leave, velocity=velocity, push=push(leave - low, passing, velocity, way.gravity, way.push.springs), course=course)

@@ -14,6 +14,7 @@ from ...body import yaw
 from ..body import (FLAT, TRAIL, Physique, Start, apex_airtime, carriage, carried, hermite, least_effort, measures, monotone, soles,
                     take_off_velocity, TURNED)
 from ..prior import BETWEEN, EACH, LEGS, Prior
+from .hopping import hopping
 from .take_off import Running, Standing
 from .thrust import Push, push
 
@@ -40,6 +41,8 @@ FOLDED = 0.64
 TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
 """How far hips and knees are bent [rad] of legs that are drawn up over something, by which share of the way at each row of the flight, and
 how long a flight needs for all of it [s]."""
+ON_ONE = 0.06
+"""So much higher a body comes down that hops onto one foot [m], at standard height: on a straighter leg, the other held up."""
 LEAST_PUSH = 0.01
 """A push that rises less [m], at standard height, is none."""
 ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
@@ -66,8 +69,8 @@ class Path:
 
     stance: (3,) [m] the middle of the soles that push; pressed: (3,) from where they begin to. dip: how long before the lowest point it starts to go down [s]. strong:
     whether the muscles can. far, up: how far and how much higher the feet land [m]. heading [rad]. running: it pushes off one
-    foot. keys: how the body is carried, as in `prior`. low_arms: the arms stay down. lands: on which foot it lands to run
-    on, 0 left, 1 right; None on both. turn: [rad] to the left from `heading` until it lands.
+    foot out of a run; single: off one at all. keys: how the body is carried, as in `prior`. low_arms: the arms stay down. lands: on which foot it lands to run
+    on, 0 left, 1 right; None on both. hops: it lands to hop on from there. turn: [rad] to the left from `heading` until it lands.
     course: how it goes along the floor, None where that was only estimated (see `grounded`).
     """
 
@@ -88,8 +91,10 @@ class Path:
     up: float = 0.0
     heading: float = 0.0
     running: bool = False
+    single: bool = False
     low_arms: bool = False
     lands: int | None = None
+    hops: bool = False
     keys: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
     turn: float = 0.0
     course: Course | None = None
@@ -133,25 +138,26 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     # where it leaves, how far behind its feet and how much lower it lands
     guess = np.array([middle[0], floor + upright.leave(0.0), middle[2], 0.0, 0.0])
     turn = start.turn or 0.0
+    runner = start.single if start.runs else None
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     heights, crouch = upright, 0.0
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
-        height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand)
+        height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(leave, land, start.velocity * FLAT if start.single is not None else np.zeros(3), gravity),
             (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
-        features = [prior.features(speed, ahead, pace, size, start.single is not None)
+        features = [prior.features(speed, ahead, pace, size, start.runs)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
-        angles = [_low(prior.row(number * BETWEEN, some, start.single), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
+        angles = [_low(prior.row(number * BETWEEN, some, runner), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
-        if start.single is None:
+        if not start.runs:
             # who waits needs no more than the muscles do, and pushes from as deep as it is
             crouch = upright.stand + floor - float(start.centre[1] if start.low is None else start.low) if start.ready else size * prior.crouch(features[0])
-            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet, angles[0], crouch)
+            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet if len(feet) == 2 else feet[[0, 0]], angles[0], crouch)
         else:
             pushing = Running(physique, start, heights, balls, floor, gravity)
         found = pushing.take_off(leave, land, velocity, flight)
@@ -166,14 +172,19 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         guess = guess + relaxed * lacks
     low, leave, passing, wind_up, dip, strong, pressed = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
-    lands = _stride(start, velocity, flight, gravity, size)
-    keys = _folded(_tuck(_low(prior.keys(features[0], features[1], start.single), low_arms), flight, tucked), lands)
+    keys = _tuck(_low(prior.keys(features[0], features[1], runner), low_arms), flight, tucked)
+    if start.onto is None and not start.springs:
+        lands = _stride(start, velocity, flight, gravity, size)
+        keys = _folded(keys, lands)
+    else:
+        lands = start.onto if start.onto in (0, 1) else None
+        keys = hopping(keys, start.single, lands)
     if start.ready:  # it has gone down already
         keys[:BETWEEN] = keys[BETWEEN]
     rises = leave[1] - low[1] > LEAST_PUSH * size
     return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
-                push(leave - low, passing, velocity, gravity) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
-                start.heading, start.single is not None, low_arms, lands, keys, turn)
+                push(leave - low, passing, velocity, gravity, start.springs) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
+                start.heading, start.runs, start.single is not None, low_arms, lands, start.onto is not None, keys, turn)
 
 
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:

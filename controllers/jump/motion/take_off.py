@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body import yaw
-from ...compiled import kernel
-from ..body import FLAT, HEEL_UP, TAKE_OFF_REACH, Measures, Physique, Start, over, stretched
+from ..body import FLAT, Measures, Physique, Start, over, stretched
 from ..muscles import crouch_depth, strength
-from .thrust import MOMENTS, risen, upward
+from .pendulum import waiting_kernel
+from .thrust import MOMENTS, moments, risen, upward
 
 TOES = 0.03
 """At take-off the ground pushes so far ahead of the balls of the feet [m], at standard height."""
@@ -50,6 +50,8 @@ SLACK = 0.03
 """So much higher a runner may leave, on a straighter leg [m], at standard height."""
 STRIKE = -0.5
 """How a runner's centre of mass is accelerated as the foot has struck, over gravity: half its weight is carried."""
+LIFTED = 0.035
+"""How much higher the centre of mass of one is who hops on one foot [m], at standard height: the other leg is held up."""
 LEAST_CROUCH = 0.07
 """A body crouches at least so deep [m], at standard height."""
 LEAST_RISE = 0.05
@@ -73,11 +75,17 @@ class TakeOff(NamedTuple):
     pressed: np.ndarray
 
 
+def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, heading: float, guess: np.ndarray) -> float:
+    """How high [m] the centre of mass is over `guess`'s (3,) place as feet (2, 5) leave the floor, the body carried by `angles` (11,)."""
+    lifted = 0.0 if start.single is None else LIFTED * physique.size
+    return stretched(physique, angles, feet, start.heel_up, start.straight, heading, guess) + lifted
+
+
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """A body that pushes off both feet: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
+    """A body that pushes off both feet, or hops on one: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
     the soles can press [m]. floor [m], gravity (3,) [m/s²]. crouch: how deep [m] people go down for it, whatever the muscles
-    need. feet: (2, 5) that push. angles: (11,) as they leave the floor, see `carriage`.
+    need. feet: (2, 5) that push, one of them twice. angles: (11,) as they leave the floor, see `carriage`.
     """
 
     physique: Physique
@@ -109,8 +117,11 @@ class Standing:
         deep = crouch_depth(self.physique, velocity, rise, self.gravity)
         strong = deep == deep  # not a number where the muscles can't
         able = float(strength(self.physique).depth[-1])
-        deep = max(deep, min(self.crouch, able), LEAST_CROUCH * size, LEAST_RISE * size - rise) if strong else able
-        duration, level = upward(max(deep + rise, 0.02 * size), 0.0, float(velocity[1]), g)
+        if self.start.springs:  # what the landing stored pushes, not muscles that shorten from rest; how hard it may is asked of the finished path
+            deep, strong = max(self.crouch, LEAST_RISE * size - rise), True
+        else:
+            deep = max(deep, min(self.crouch, able), LEAST_CROUCH * size, LEAST_RISE * size - rise) if strong else able
+        duration, level = upward(max(deep + rise, 0.02 * size), 0.0, float(velocity[1]), g, self.start.springs)
         low_height, start = self.heights.stand - deep, self.start
         facing = self.facing
         toes = self.balls + TOES * size * facing
@@ -130,7 +141,7 @@ class Standing:
         if start.ready and start.low is None:  # who waits leaning ahead pushes from the heels at first
             flat = (land - leave) * FLAT
             pressed = pressed - HEELS * self.reach * flat / max(float(np.linalg.norm(flat)), 0.3 * size)
-        fixed = (duration, early, late, rate, start.centre, start.velocity, pressed, toes, land, flight)
+        fixed = (duration, moments(self.start.springs), early, late, rate, start.centre, start.velocity, pressed, toes, land, flight)
         found = np.empty((4, 3))
         longest = quick if pace >= SLOW and not start.ready or start.low is not None else MOST * max(math.sqrt(9.81 / g), 1.0) * usual
         wind_up = waiting_kernel(quick, longest, self.reach, self.middle, fixed, found)
@@ -138,7 +149,7 @@ class Standing:
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
         ahead = self.balls * FLAT + lead + [0.0, leave[1], 0.0]
-        ahead[1] = stretched(self.physique, self.angles, self.feet, HEEL_UP, TAKE_OFF_REACH, start.leaves, ahead)
+        ahead[1] = top(self.physique, start, self.angles, self.feet, start.leaves, ahead)
         leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf
@@ -206,57 +217,3 @@ class Running:
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""
         return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0))
-
-
-@kernel
-def waiting_kernel(quick, longest, reach, middle, fixed, found):
-    """How long [s] a body falls ahead before it pushes: `quick`, or longer, if it would have to press farther than `reach` [m]
-    from the middle (3,) of its soles. fixed, found: as `fall_kernel` takes and writes them."""
-    if _short(quick, middle, fixed, found) <= reach or longest <= quick:
-        return quick
-    if _short(longest, middle, fixed, found) > reach:
-        return longest
-    low, high = quick, longest
-    while high - low > 1e-4:
-        wind_up = 0.5 * (low + high)
-        if _short(wind_up, middle, fixed, found) > reach:
-            low = wind_up
-        else:
-            high = wind_up
-    fall_kernel(high, fixed, found)
-    return high
-
-
-@kernel
-def _short(wind_up, middle, fixed, found):
-    """How far [m] from the middle of the soles a body presses that falls so long [s]."""
-    fall_kernel(wind_up, fixed, found)
-    return math.hypot(found[3, 0] - middle[0], found[3, 2] - middle[2])
-
-
-@kernel
-def fall_kernel(wind_up, fixed, found):
-    """The fall of `wind_up` seconds that ends in a push, to be at `land` (3,) after `flight` [s].
-
-    fixed: the push's duration [s]; early, late: [1/s] the speed that it gives for each metre that the body is ahead of what it
-    presses, as it begins and as it ends; rate: [1/s] of a pendulum of that height; centre, velocity: (3,) of the start; pressed:
-    (3,) where the push begins; toes, land: (3,); flight. found: (4, 3) written: where the body is lowest and where it leaves,
-    the velocity with which it is lowest, and where it presses until then. Heights are not told.
-    """
-    duration, early, late, rate, centre, velocity, pressed, toes, land, flight = fixed
-    m0, m1, m2 = MOMENTS
-    falls = rate / math.tanh(0.5 * rate * wind_up)  # a pendulum's speed for each metre that it has fallen
-    swing = rate * wind_up
-    # unknown are the lowest point and the take-off: the speed gained, then the way gone
-    a, b = falls + early * (m0 - m1), late * m1 + 1.0 / flight
-    c = 1.0 + duration * (falls + early * (m0 - 2.0 * m1 + m2))
-    d = duration * late * (m1 - m2) - 1.0
-    for i in range(3):
-        begun = falls * centre[i] + velocity[i]
-        gains = land[i] / flight + begun + early * (m0 - m1) * pressed[i] + late * m1 * toes[i]
-        goes = duration * (begun + early * (m0 - 2.0 * m1 + m2) * pressed[i] + late * (m1 - m2) * toes[i])
-        low = (d * gains - b * goes) / (a * d - b * c)
-        fallen = (low - centre[i] - velocity[i] * math.sinh(swing) / rate) / (math.cosh(swing) - 1.0)
-        found[0, i], found[1, i] = low, (a * goes - c * gains) / (a * d - b * c)
-        found[2, i], found[3, i] = falls * (low - centre[i]) - velocity[i], centre[i] - fallen
-    found[2, 1] = 0.0

@@ -73,8 +73,8 @@ def continued(vectors: np.ndarray) -> np.ndarray:
     return out
 
 
-def flights(skeleton: Skeleton, anatomy: Anatomy, clip: Clip) -> Iterator[tuple[int, int]]:
-    """First and last frame in the air of every jump of a clip."""
+def flights(skeleton: Skeleton, anatomy: Anatomy, clip: Clip, lasts: tuple[float, float] = LASTS) -> Iterator[tuple[int, int]]:
+    """First and last frame in the air of every jump of a clip that flies for so long [s]."""
     positions, turned = clip.kinematics()
     low = contact_points(skeleton, positions, turned)[..., 1].min(-1)
     reach = max(round(AROUND / clip.frame_time), 1)
@@ -82,7 +82,7 @@ def flights(skeleton: Skeleton, anatomy: Anatomy, clip: Clip) -> Iterator[tuple[
     height = centre_of_mass(anatomy, positions, turned)[:, 1]
     for first, last in np.flatnonzero(np.diff(np.pad((low - floor > ALOFT).astype(int), 1))).reshape(-1, 2):
         count, time = last - first, np.arange(len(low)) * clip.frame_time
-        if not LASTS[0] < count * clip.frame_time < LASTS[1] or first < 3 or last > len(low) - 4:
+        if not lasts[0] < count * clip.frame_time < lasts[1] or first < 3 or last > len(low) - 4:
             continue
         inner = slice(first + max(count // 6, 1), last - max(count // 6, 1))
         if inner.stop - inner.start < 3:

@@ -58,9 +58,10 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if way.push is None:
         return f"no push leaves the floor for {way.airtime:.2f} s in the air"
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
-    if way.running and force > RUNNER * 9.81 * physique.strength:
-        return (f"no leg pushes off so hard from this run: {force / 9.81:.1f} times its weight on Earth, "
-                f"where this one has {RUNNER * physique.strength:.1f}")
+    legs = 1 if way.single else 2
+    if (way.running or way.push.springs) and force > RUNNER * legs * 9.81 * physique.strength:
+        return (f"no leg pushes off so hard from this {'run' if way.running else 'hop'}: {force / 9.81:.1f} times its weight on Earth, "
+                f"where {'this one has' if legs == 1 else 'these have'} {RUNNER * legs * physique.strength:.1f}")
     if way.course is not None and (way.course.outside > ASIDE * physique.size or way.course.lean > SLIP):
         gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.course.velocity[0])
         return f"too {'far' if gains else 'near'} for this {'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"
