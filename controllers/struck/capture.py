@@ -15,7 +15,7 @@ import numpy as np
 
 from ..body import margin_kernel
 from ..compiled import kernel
-from .pendulum import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
+from .swaying import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
 from .stepping import aim_kernel, far_kernel, home_kernel, walks_kernel, which_kernel
 from .surroundings import NOTHING, point_kernel, tread_kernel
 

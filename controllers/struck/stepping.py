@@ -8,7 +8,7 @@ import numpy as np
 
 from ..body import HALF_SOLE
 from ..compiled import kernel
-from .pendulum import RATE, middle_kernel, support_kernel, sway_kernel
+from .swaying import RATE, middle_kernel, support_kernel, sway_kernel
 from .surroundings import place_kernel
 
 WALKS = (-0.75, 4.3, 0.55)

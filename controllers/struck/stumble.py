@@ -8,7 +8,7 @@ from ..body import yaw
 from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
 from ..jump.motion import FADE, faded, ground_kernel
 from .capture import DROPS, Way
-from .pendulum import RATE
+from .swaying import RATE
 from .recorded_pushes import SPACED
 from .recovery import Recovery
 

@@ -11,9 +11,11 @@ from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish
                       player_of, wheel_wish, wishes)
 from .help import help_sheet
 from .key_names import MOUSE, PAD_BUTTONS, button_label, key_label
+from .making import aloft, jumping, landing, leaving
+from .moves import Jump, Move
 from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, user_file
-from .script import Jump, Move, Script, aloft, jumping, landing, leaving
+from .script import Script
 from .wish import STEPS, Wish, push
 
 __all__ = [

@@ -13,7 +13,7 @@ from gambol.controllers.navigation import gap
 from gambol.game.app.views import previews, scenes
 from gambol.game.explain.jump_preview import previewed
 from gambol.game.explain.jump_sketches import CAN, CANNOT, aimed
-from gambol.game.input.script import jumping
+from gambol.game.input.making import jumping
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box, Overlays, Patch
 from gambol.game.session.state import begin, opening

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import person
 from gambol.game.camera.line_of_sight import blocked
-from gambol.game.input.script import jumping
+from gambol.game.input.making import jumping
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load, shipped
 from gambol.game.scenario.shot_table import parts

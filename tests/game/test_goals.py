@@ -15,7 +15,8 @@ from gambol.game.app.point_picking import project
 from gambol.game.explain import led, on_the_way
 from gambol.game.explain.way import cost_of
 from gambol.game.hosts.events import MouseMove, Scroll
-from gambol.game.input.script import Move, Script
+from gambol.game.input.moves import Move
+from gambol.game.input.script import Script
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load
 from gambol.game.scene.scene import Box, Camera, Line, Overlays
@@ -49,7 +50,7 @@ def test_a_scenario_sends_somebody_from_goal_to_goal(walker, tmp_path):
     move = scenario.actors[0].moves[1].move()
     assert move.goal == Goal((0.0, 2.2), math.pi / 2, 60.0) and math.isinf(move.seconds)
     for act in film.acts(scenario, walker.parts["locomotion"]):  # alone he is put under a supervisor
-        if act.scripts[0].index == 2 and act.scripts[0].steps == 0:
+        if act.scripts[0].index == 2 and act.scripts[0].now.steps == 0:
             break
         if act.scripts[0].done or act.world.time > 20:
             break

@@ -6,7 +6,7 @@ import pytest
 from gambol.controllers.body.support_polygon import sole_corners
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.person import person
-from gambol.game.input.script import jumping
+from gambol.game.input.making import jumping
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import load
 from scenarios import written

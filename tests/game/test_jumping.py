@@ -8,7 +8,7 @@ from gambol.controllers.jump import Crouching, Physique
 from gambol.controllers.person import person
 from gambol.game.explain.forces import pushed
 from gambol.game.explain.jump import LAYERS, explained
-from gambol.game.input.script import jumping
+from gambol.game.input.making import jumping
 from gambol.game.output.pose_strip import strip
 from gambol.game.render.sketches import sketched
 from gambol.game.scenario import film

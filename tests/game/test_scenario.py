@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from gambol.controllers.contract import Intent
-from gambol.game.input.script import Move, Script
+from gambol.game.input.moves import Move
+from gambol.game.input.script import Script
 from gambol.game.scenario import film
 from gambol.game.scenario.scenario import Scenario, ScenarioError, load, shipped
 from gambol.game.scenario.shot_table import OVERLAYS

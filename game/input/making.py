@@ -1,0 +1,155 @@
+"""How a move is made: what it asks for in every step, and when it is over."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.contract import CharacterState, Intent, Leap, Status, but
+from gambol.controllers.jump import Jumping
+from gambol.controllers.navigation import Path, follow, steer
+
+from .moves import Jump, Move
+from .pilot import STEERING
+
+ARRIVED = 0.12
+"""A path is walked when no more than this is left of it [m]."""
+BRAKE = 0.25
+"""Wishes along a path fade over so much of its end [m]: walkers have let go of them before."""
+NEAR = 0.12
+"""A jump no farther than this [m] goes straight up: nobody turns for it."""
+ASKEW = 0.15
+"""A standing body faces where it jumps to within this [rad]."""
+PATIENCE = 1.0
+"""So long [s] a jump that can't be made from a stand is asked for."""
+AHEAD = 0.85, 0.5
+"""A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Making:
+    """How far somebody is with a move.
+
+    steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for; aimed: for how many it was aimed at; jumped:
+    whether it began. hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
+    """
+
+    steps: int = 0
+    path: Path | None = None
+    progress: float = 0.0
+    asked: int = 0
+    aimed: int = 0
+    jumped: bool = False
+    hops: tuple[float, float, float] | None = None
+    hopped: tuple[float, float, float] | None = None
+
+    def step(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
+        """The same `dt` seconds later, and what is asked of a character in `state` meanwhile."""
+        now = replace(self, path=_from_here(state.ground, move.points)) if move.points and self.steps == 0 else self
+        now, intent = now._ask(move, state, dt)
+        if move.jump is not None:
+            now, intent = now._ask_jump(move, move.jump, state, intent, dt)
+        return replace(now, steps=now.steps + 1), intent
+
+    def over(self, move: Move, state: CharacterState, dt: float) -> bool:
+        """Whether it is done, or has been asked for long enough."""
+        now = jumping(state)
+        if move.jump is not None and self.jumped:
+            return now is None or now.landed
+        if self.steps * dt >= move.seconds - 0.5 * dt:
+            return True
+        if move.jump is not None and not move.runs:
+            return self.asked * dt > PATIENCE and (now is None or now.landed)
+        way = way_of(move, state)
+        if way is not None:
+            return self.steps > 0 and way.kind != "running"
+        if move.points:
+            return self.steps > 0 and (self.path is None or self.progress >= self.path.length - ARRIVED)
+        return False
+
+    def _ask(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
+        if move.goal is not None:
+            return self, Intent(goal=move.goal)
+        if not move.points:
+            if move.facing is not None:
+                return self, steer(state.ground, np.zeros(2), move.facing, state.velocity[1], STEERING)
+            velocity = np.array(move.velocity)
+            if move.until is not None:
+                velocity = velocity + (np.array(move.until) - velocity) * min(self.steps * dt / move.seconds, 1.0)
+            return self, Intent(velocity)
+        wish, progress = np.zeros(2), self.progress
+        if self.path is not None:
+            wish, progress = follow(self.path, state.ground, np.float64(progress), move.speed, brake=BRAKE)
+        intent = steer(state.ground, wish, move.facing, state.velocity[1], STEERING)
+        if self.path is not None and move.jump is None:
+            intent = but(intent, halt=np.array([*self.path.points[-1], math.nan if move.facing is None else move.facing]))
+        return replace(self, progress=float(progress)), intent
+
+    def _ask_jump(self, move: Move, jump: Jump, state: CharacterState, intent: Intent, dt: float) -> tuple[Making, Intent]:
+        """The same with the jump, once it is time for it: near enough at a run, turned to it, and aimed, at rest."""
+        now = jumping(state)
+        if self.jumped or now is not None and not now.landed:  # one that has landed gets up for the next
+            return replace(self, jumped=True), Intent()
+        place, onward = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place), jump.place
+        if jump.hop is not None:
+            before = self.hopped or (state.ground[0], state.ground[1], float(state.ground[2]))
+            place = onward = np.array([before[0] + jump.hop * math.sin(before[2]), float(state.floor), before[1] + jump.hop * math.cos(before[2])])
+        way = place[[0, 2]] - state.ground[:2]
+        far = float(np.hypot(*way))
+        if move.runs:
+            speed = float(np.hypot(state.velocity[0], state.velocity[2]))
+            ready = far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
+        elif far > NEAR and jump.heading is None:
+            heading = math.atan2(*way)
+            intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
+            ready = abs(math.remainder(heading - float(state.ground[2]), math.tau)) < ASKEW
+        else:
+            ready = True
+        if not ready:
+            return self, intent
+        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
+        if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
+            return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
+        hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
+        return replace(self, asked=self.asked + 1, hops=hops), replace(intent, leap=leap)
+
+
+def jumping(state: CharacterState) -> Any:
+    """What somebody who jumps remembers of it; None for everybody else, and for who crouches first."""
+    memory = state.memory.memory if state.active == "jump" else None
+    return memory if isinstance(memory, Jumping) else None
+
+
+def way_of(move: Move, state: CharacterState) -> Status | None:
+    """How the walk to a move's goal stands; None where that is not what it is about."""
+    return state.going.status if move.goal is not None and state.going is not None and state.going.goal == move.goal else None
+
+
+def _from_here(ground: np.ndarray, points) -> Path | None:
+    """The path from where a character stands through points; None if it stands on the only one."""
+    way = [tuple(ground[:2])]
+    for point in points:
+        if math.dist(point, way[-1]) > 1e-3:
+            way.append(point)
+    return Path(np.array(way)) if len(way) > 1 else None
+
+
+def leaving(state: CharacterState) -> bool:
+    """Whether somebody has begun a jump and is about to leave the floor."""
+    made = jumping(state)
+    return made is not None and made.time <= made.plan.take_off
+
+
+def aloft(state: CharacterState) -> bool:
+    """Whether somebody flies."""
+    made = jumping(state)
+    return made is not None and made.plan.take_off < made.time < made.plan.touch_down
+
+
+def landing(jump: Any, state: CharacterState) -> CharacterState:
+    """The state of somebody who jumps as he will stand once he has landed on both feet; of everybody else as it is."""
+    made = jumping(state)
+    return state if made is None else replace(jump.landing(replace(state, memory=made)), memory=state.memory)
