@@ -18,7 +18,7 @@ from ..contract import CharacterState, Controller, Intent, Status, Unable, level
 from ..driven import driven
 from .control_points import ControlPoints
 from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
-                        spread)
+                        spread, unbroken)
 from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
@@ -28,10 +28,12 @@ LOST = 1.0
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 LEAP = 0.03
-"""A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more."""
+"""A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more …"""
+TAKEN = 0.01
+"""… and no joint takes more of it [m] at once."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
-SHORTEST, LONGEST, HURRY = 0.06, 0.3, 1.8
+SHORTEST, LONGEST, HURRY = 0.06, 0.3, 2.4
 """What was leapt fades with such a half-life, between these [s], that it moves no joint faster than this [m/s]."""
 _SWIFTEST = 2.0 * math.log(2.0) / math.e  # of what settles from rest: its distances a half-life
 
@@ -183,7 +185,7 @@ class Reconstruction(Controller):
         shown = following.pose
         if following.ahead > 0.0:
             shown = moved(shown, difference(following.before, shown) * (following.ahead / self.dt))
-        shown = moved(shown, offset)
+        shown = unbroken(moved(shown, offset), shown)
         floor = (float(state.floor) - following.level) / self.factor
         pose = self._grown(above(self.body, shown, *joints_of(shown, self.body), floor), following.level)
         return driven(state, self.skeleton, pose, following, dt), pose
@@ -216,9 +218,9 @@ class Reconstruction(Controller):
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
         if leap <= LEAP:
             return after
-        # of what it would have leapt the body makes as much as bodies do, and the rest fades
+        # a little of it may be how bodies change their pace, and the rest fades
         step = difference(following.pose, following.before)
-        step = step + LEAP / leap * (difference(pose, following.pose) - step)
+        step = step + TAKEN / leap * (difference(pose, following.pose) - step)
         ahead = moved(following.pose, step)
         return self._fading(replace(after, before=moved(pose, -step)), moved(ahead, following.offset))
 
