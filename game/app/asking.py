@@ -14,7 +14,7 @@ from gambol.controllers.body.human import human
 
 from ..camera import Follow, between
 from ..hosts import Event, KeyEvent
-from ..scene import Dot, Figure, Hint, Scene
+from ..scene import Dot, Figure, Hint, Overlays, Scene
 from .app import Play
 
 GHOST, SEEN = (0.30, 0.52, 0.60), (0.95, 0.75, 0.25)
@@ -25,12 +25,13 @@ _BODY = human()
 @dataclass(frozen=True, eq=False)
 class Asked:
     """words: what is asked for. pose: (J, 3, 3) rotations of it. left: for how long it is still waited for [s]; None for as long as it takes.
-    points: (n, 3) [m] where trackers are beside a standing body, NaN where not known; None before that is known."""
+    points: (n, 3) [m] where trackers are beside a standing body, NaN where not known; None before that is known. known: what is known so far, and how surely."""
 
     words: str = ""
     pose: np.ndarray | None = None
     left: float | None = None
     points: np.ndarray | None = None
+    known: str = ""
 
 
 class Left(Exception):
@@ -85,7 +86,8 @@ class Asking:
             Dot("points", place, SEEN, 0.035, through=True, look="ball") for place in asked.points if np.isfinite(place).all())
         ghost = Figure(*stood(pose), GHOST, sketches=points, opacity=0.55)
         words = asked.words + ("" if asked.left is None else f"   {asked.left:.0f} s")
-        return Scene(between(camera, camera, 1.0), (ghost,), text=(self.said,) if self.said else (), hint=Hint(((words, False),)) if words else None)
+        return Scene(between(camera, camera, 1.0), (ghost,), overlays=Overlays(points=True), text=tuple(filter(None, (asked.known or self.said,))),
+                     hint=Hint(((words, False),)) if words else None)
 
     def take(self, pixels: np.ndarray) -> None:
         """Keep the picture that the game asked for."""

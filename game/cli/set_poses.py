@@ -25,9 +25,7 @@ def worn(source: Any, placement: Any, place: np.ndarray, turn: np.ndarray, times
 
     source: whose points are the room's. times: [s] to ask it at, as they come. tell: hears what is asked (`app.Asked`), each time. say: says what is known.
     """
-    import numpy as np
-
-    from gambol.controllers.reconstruction.calibration import POSES, Wearer, apart, stance
+    from gambol.controllers.reconstruction.calibration import POSES, apart, stance
 
     first = stance(source.controls, place, turn)
     found = [(place, turn, first)]
@@ -39,22 +37,34 @@ def worn(source: Any, placement: Any, place: np.ndarray, turn: np.ndarray, times
         words, pose = list(POSES.items())[number]
         say(f"{count} of {len(asked)}: {words}; hold still for a second ({MOST:.0f} s)")
 
-        def shown(left: float, points: np.ndarray, words: str = f"{count} of {len(asked)}: {words}, for a second", pose: np.ndarray = pose) -> None:
+        known = "" if tell is None or len(found) < LEAST else _fitted(source, placement, found).said(source.controls.names)
+
+        def shown(left: float, points: np.ndarray, words: str = f"{count} of {len(asked)}: {words}, for a second", pose: np.ndarray = pose,
+                  known: str = known) -> None:
             if tell is not None:
                 from ..app import Asked
 
-                tell(Asked(words, pose, left, placement(points)))
+                tell(Asked(words, pose, left, placement(points), known))
         seen = _held(source, times, found[-1][0], words, shown, say)
         if seen is not None:
             found.append((*seen, number))
     if len(found) < LEAST:
         say("too few poses were seen: move about instead")
         return None
-    places, turns, numbers = (list(some) for some in zip(*found, strict=True))
-    wearer = Wearer.posed(source.controls, placement, np.array(places), np.array(turns), numbers)
+    wearer = _fitted(source, placement, found)
     left_out = len(found) - wearer.known.heard
     say(f"{wearer.known.heard} poses were seen" + (f", {left_out} more were not as asked and don't count" if left_out else ""))
     return wearer
+
+
+def _fitted(source: Any, placement: Any, found: list) -> Any:
+    """The `Wearer` who stood so: places, turns and the pose's number of each."""
+    import numpy as np
+
+    from gambol.controllers.reconstruction.calibration import Wearer
+
+    places, turns, numbers = (list(some) for some in zip(*found, strict=True))
+    return Wearer.posed(source.controls, placement, np.array(places), np.array(turns), numbers)
 
 
 def _held(source: Any, times: Iterator[float], before: np.ndarray, words: str, shown: Callable[[float, np.ndarray], None],
