@@ -34,7 +34,7 @@ TAKEN = 0.01
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
 SHORTEST, LONGEST, HURRY = 0.06, 0.16, 2.4
-"""What was leapt fades with such a half-life, between these [s], that it moves no joint faster than this [m/s]."""
+"""What was leapt fades with such a half-life, between these [s], that it moves no joint faster than this [m/s]; farther than 0.75 m it does."""
 _SWIFTEST = 2.0 * math.log(2.0) / math.e  # of what settles from rest: its distances a half-life
 
 

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gambol.controllers.body import forward_kinematics
-from gambol.controllers.body.human import human
+from gambol.controllers.body import forward_kinematics, human
 
 from ..camera import Follow, between
 from ..hosts import Event, KeyEvent
