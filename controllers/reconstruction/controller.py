@@ -18,7 +18,7 @@ from ..contract import CharacterState, Controller, Intent, Status, Unable, level
 from ..driven import driven
 from .control_points import ControlPoints
 from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
-                        spread)
+                        spread, unbroken)
 from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
@@ -27,13 +27,15 @@ LOST = 1.0
 """Without a point for so long [s] it gives up."""
 ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
-LEAP = 0.2
-"""A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind."""
-FRESH, NEWS = 0.02, 0.15
-"""… and farther than this within so long [s] after points came back that had all been lost: what it knows has changed."""
+LEAP = 0.03
+"""A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more …"""
+TAKEN = 0.01
+"""… and no joint takes more of it [m] at once."""
 FADE = 0.15
-"""Half-life of the difference between the pose that was taken over, or leapt from, and the reconstructed one [s]."""
-_CALMED = 0.5
+"""Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
+SHORTEST, LONGEST, HURRY = 0.06, 0.16, 2.4
+"""What was leapt fades with such a half-life, between these [s], that it moves no joint faster than this [m/s]; farther than 0.75 m it does."""
+_SWIFTEST = 2.0 * math.log(2.0) / math.e  # of what settles from rest: its distances a half-life
 
 
 class Reconstructor(Protocol):
@@ -54,9 +56,9 @@ class Following:
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). pose, before: the newest
     frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
-    and joints until it has settled. level: how high [m] height 0 lies in the world, the floor where it began; points
+    and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
-    point was followed. news: [s] since points came back that had all been lost. fault: what went wrong.
+    point was followed. fault: what went wrong.
     """
 
     memory: Any
@@ -68,8 +70,8 @@ class Following:
     offset: np.ndarray
     rate: np.ndarray
     level: float = 0.0
+    fade: float = FADE
     lost: float = 0.0
-    news: float = NEWS
     fault: str = ""
 
 
@@ -178,12 +180,12 @@ class Reconstruction(Controller):
             following = self._frame(following, points, turns)
         if due:
             following = replace(following, seen=seen)
-        offset, rate = settle(following.offset, following.rate, FADE, dt)
+        offset, rate = settle(following.offset, following.rate, following.fade, dt)
         following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
         shown = following.pose
         if following.ahead > 0.0:
             shown = moved(shown, difference(following.before, shown) * (following.ahead / self.dt))
-        shown = moved(shown, offset)
+        shown = unbroken(moved(shown, offset), shown)
         floor = (float(state.floor) - following.level) / self.factor
         pose = self._grown(above(self.body, shown, *joints_of(shown, self.body), floor), following.level)
         return driven(state, self.skeleton, pose, following, dt), pose
@@ -200,7 +202,7 @@ class Reconstruction(Controller):
         now, earlier = joints_of(following.pose, self.body), joints_of(following.before, self.body)
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
-        gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt)
+        gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt, following.lost)
         back = following.lost > 0.0 and gate.trusted.any()
         if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
             return self._anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
@@ -212,25 +214,29 @@ class Reconstruction(Controller):
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if gate.trusted.any() else following.lost + self.dt
-        news = 0.0 if back else following.news + self.dt
-        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost, news=news)
+        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
-        if leap <= (FRESH if news < NEWS else LEAP):
+        if leap <= LEAP:
             return after
-        # the body goes on as it did, and what it would have leapt fades; less fast each time, or leaps upon leaps
-        # would carry it away
-        step = _CALMED * difference(following.pose, following.before)
+        # a little of it may be how bodies change their pace, and the rest fades
+        step = difference(following.pose, following.before)
+        step = step + TAKEN / leap * (difference(pose, following.pose) - step)
         ahead = moved(following.pose, step)
-        return replace(after, before=moved(pose, -step), offset=difference(moved(ahead, following.offset), pose))
+        return self._fading(replace(after, before=moved(pose, -step)), moved(ahead, following.offset))
+
+    def _fading(self, following: Following, shown: Pose) -> Following:
+        """With an offset by which a pose is shown for now."""
+        away = float(np.linalg.norm(joints_of(shown, self.body)[0] - joints_of(following.pose, self.body)[0], axis=-1).max())
+        return replace(following, offset=difference(shown, following.pose), fade=min(max(SHORTEST, _SWIFTEST * away / HURRY), LONGEST))
 
     def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray | None) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
-        offset = np.zeros_like(following.offset) if far else difference(ahead, begun.pose)
-        return replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, offset=offset,
-                       rate=np.zeros_like(offset) if far else following.rate, lost=0.0)
+        after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, lost=0.0)
+        zero = np.zeros_like(following.offset)
+        return replace(after, offset=zero, rate=zero) if far else self._fading(after, ahead)
 
     def _seen(self, intent: Intent, level: float) -> np.ndarray:
         """The points that are wanted (n, 3) as of a standard body on a floor there. Unable for another number of them."""

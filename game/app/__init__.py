@@ -1,6 +1,7 @@
 """The game as a person plays it: events in, scenes out. It needs no window; a host gives it one."""
 
 from .app import Play
+from .asking import Asked, Asking
 from .capture import OUT, Capture, log_file
 from .hints import Teacher
 from .opening import Opening
@@ -9,5 +10,5 @@ from .sending import Sending, sure
 from .views import filmed, frames
 
 __all__ = [
-    "OUT", "Capture", "Opening", "Play", "Preparing", "Sending", "Teacher", "filmed", "frames", "log_file", "sure",
+    "OUT", "Asked", "Asking", "Capture", "Opening", "Play", "Preparing", "Sending", "Teacher", "filmed", "frames", "log_file", "sure",
 ]

@@ -131,9 +131,11 @@ def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
         yield now
 
 
-def stand(source: Any, height: float | None, calibration: Path | None = None, posing: bool = False) -> None:
+def stand(source: Any, height: float | None, calibration: Path | None = None, posing: bool = False, tell: Callable[[Any], None] | None = None,
+          say: Callable[[str], None] = say) -> None:
     """Tell the source where floor and body are: as somebody does who stands still, and if a file is named how trackers are worn, too: as it says if
-    it is there; else it is written then. posing: whether set poses are asked for."""
+    it is there; else it is written then. posing: whether set poses are asked for. tell, say: who
+    hears what is asked for (`app.Asked`), each time, and what is known, in words."""
     from gambol.controllers.reconstruction.calibration import load, save
 
     if calibration is not None and calibration.exists():
@@ -142,7 +144,7 @@ def stand(source: Any, height: float | None, calibration: Path | None = None, po
         return
     if calibration is not None and not calibration.parent.is_dir():
         raise Mistake(f"{calibration}: there is no folder {calibration.parent}")
-    _stood(source, height, calibration is not None, posing)
+    _stood(source, height, calibration is not None, posing, tell, say)
     if source.worn is not None and calibration is not None:
         say(source.worn.said(source.controls.names))
         save(calibration, source.worn)
@@ -160,7 +162,7 @@ def moved(source: Any, calibration: Path | None) -> None:
         say(f"{calibration}: written; with it nobody need stand still the next time")
 
 
-def _stood(source: Any, height: float | None, calibrating: bool, posing: bool) -> None:
+def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, tell: Callable[[Any], None] | None, say: Callable[[str], None]) -> None:
     """Wait until somebody who wears the trackers stands still; where they sit is told, too, if it is asked for."""
     import numpy as np
 
@@ -175,12 +177,16 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool) -
     times = _times(source, None, False)
     for now in times:
         seen = source.at(now)
+        if tell is not None:
+            from ..app import Asked
+
+            tell(Asked("stand upright for a second, in T-pose or with the arms down"))
         standing = standing.watch(now, seen, source.turns)
         if standing.place is not None:
             try:
                 placement = placed(standing.place, source.controls, height, standing.turn)
                 if calibrating and (turn := standing.turn) is not None and calibratable(source.controls, turn):
-                    worn = set_poses.worn(source, placement, standing.place, turn, times) if posing else None
+                    worn = set_poses.worn(source, placement, standing.place, turn, times, tell, say) if posing else None
                     source.worn = worn or Wearer.standing(source.controls, placement, standing.place, turn, CalibrationNetwork.load())
                 source.placement = placement
                 return

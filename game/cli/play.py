@@ -25,6 +25,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          replay: Annotated[Path | None, typer.Option(help="Watch an input log; who walks plays on from there.")] = None,
          cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
          footage: Annotated[Path | None, typer.Option(help="A folder of footage, of `gambol film` or `gambol footage`: the first who is seen in it moves as a tracker makes them, and is whom you watch.")] = None,
+         network: Annotated[Path | None, typer.Option(help="A network that gambol database tune taught, .npz, in the place of the one that ships.")] = None,
          send: Annotated[str | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539.")] = None,
          crowd: Annotated[int, typer.Option(min=0, max=50, help="So many passers-by walk about, past each other and you.")] = 0,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
@@ -39,6 +40,8 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         from ..app import Sending
 
         sending = Sending(send)
+    if network is not None:
+        _own(network, replay)
     with unswept():
         from gambol.controllers.locomotion import Locomotion
         from gambol.controllers.person import person, preparing
@@ -51,7 +54,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         from ..world import methods
 
     controller = in_body(person(walker), body)
-    tape, clip, database = None, None, None
+    tape, clip, database = None, None, network
     if replay is not None:
         tape, controller = replayed(replay, controller)
         players, clip, database = tape.players, tape.clip or None, tape.database or None
@@ -83,6 +86,19 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     show(Opening(begun, beside), pixels, preset, log, capture)
 
 
+def _own(network: Path, replay: Path | None) -> None:
+    """ArraysError for a file that is no network; Mistake for another kind of file, and where a log says which one it is."""
+    from gambol.controllers.reconstruction.trackers import Network
+
+    from ..world import taught
+
+    if replay is not None:
+        raise Mistake("--network: goes without --replay: a log says which network it needs")
+    if not taught(network):
+        raise Mistake(f"--network {network}: is no .npz file that `gambol database tune` wrote")
+    Network.load(network)
+
+
 def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:
     """Run a game, or what opens one, in a window until it is over; exit code NO_DISPLAY where none can be opened."""
     with unswept():
@@ -102,10 +118,11 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
 
 
 def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
-          size: str = "1280x720", preset: Preset = Preset.full, send: str | None = None) -> None:
+          size: str = "1280x720", preset: Preset = Preset.full, send: str | None = None, ask: Any = None) -> None:
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
     send: HOST:PORT that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
+    ask: asks whoever wears the stream's trackers how they stand (`live.stand`), in the window, before the game begins.
     """
     from gambol.controllers.reconstruction import SETS
 
@@ -116,7 +133,7 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
-    from ..app import OUT, Capture, Play, Sending, log_file
+    from ..app import OUT, Asking, Capture, Play, Sending, log_file
     from ..input import load as load_bindings
     from ..session import Comparison, LogWriter
     from ..world import Recorded, methods
@@ -124,10 +141,19 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
     capture = Capture(OUT)
-    game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream,
-                sending=None if send is None else Sending(send))
-    game.open(Comparison(wanted, points))
-    show(game, pixels, preset, log, capture)
+    sending = None if send is None else Sending(send)
+
+    def begun() -> Play:
+        game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream, sending=sending)
+        game.open(Comparison(wanted, points))
+        return game
+
+    def asked(tell: Any, told: Any) -> None:
+        def both(text: str) -> None:
+            say(text)
+            told(text)
+        ask(tell=tell, say=both)
+    show(begun() if ask is None else Asking(asked, begun), pixels, preset, log, capture)
 
 
 @app.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -84,8 +85,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     method = method or _usual(names, database)
     with live.heard(worn_on, clip, port, host, keep) as source:
         if out is None and (send is None or window):
-            live.stand(source, height, calibration, poses)
-            watch(method, names, database, stream=source, send=send)
+            watch(method, names, database, stream=source, send=send, ask=partial(live.stand, source, height, calibration, poses))
         else:
             with live.sent(send) as sender:
                 live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration, poses)

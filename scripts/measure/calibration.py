@@ -8,6 +8,7 @@ stand in T-pose, arms 6° low, other joints 1.5° off about each axis, then the 
 the other set poses their arms are as low, joints 4° off, those of trunk and legs 2°, and knees bent by 15° more or less; of these are the last columns.
 Beside it: arms as they were asked; trackers right on their joints, for the performer's own proportions; and what exact mounts and bones would
 give. All distances are centimetres in the room over 19 joints.
+With --raw: every third of the takes that are tested, as they were captured, against the performers' own joints, with six and four trackers.
 """
 
 from __future__ import annotations
@@ -31,10 +32,11 @@ from gambol.controllers.reconstruction.live import placed
 from gambol.controllers.reconstruction.trackers import Network, Trackers
 from _performers import people, performing, posing
 from reconstruction_figures import table
-from reconstruction_trackers import FPS, Performance
+from reconstruction_trackers import FPS, Performance, raw
 
 OFF, TURNED, UNREST, RESTLESS = 0.10, np.radians(20.0), np.radians(1.5), np.radians(4.0)
 SETS = {"6": ("Hips", "Head", "LeftHand", "RightHand", "LeftFoot", "RightFoot"), "3": ("Head", "LeftHand", "RightHand")}
+RAW = {"6": SETS["6"], "4": SETS["6"][2:]}
 CASES = {"10 cm and 20° off, arms 6° low": (OFF, np.radians(6.0), RESTLESS), "10 cm and 20° off, arms as asked": (OFF, 0.0, RESTLESS),
          "on their joints, arms 6° low": (0.0, np.radians(6.0), RESTLESS), "on their joints, arms as asked": (0.0, 0.0, RESTLESS),
          "10 cm and 20° off, arms 12° low, poses twice as careless": (OFF, np.radians(12.0), 2.0 * RESTLESS)}
@@ -117,6 +119,7 @@ def main() -> None:
     parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
     parser.add_argument("--network", type=Path, default=SHIPPED)
     parser.add_argument("--tuned", action="store_true", help="long takes that settings are chosen on, instead of strangers")
+    parser.add_argument("--raw", action="store_true", help="tested takes as they were captured, instead of strangers' motion on others' limbs")
     parser.add_argument("--cases", type=int, nargs="+", default=list(range(len(CASES))), help="numbers of cases, from 0 on: " + "; ".join(CASES))
     parser.add_argument("--seeds", type=int, default=SEEDS)
     parser.add_argument("--out", type=Path)
@@ -130,15 +133,19 @@ def main() -> None:
                           if take.stop - take.start > 5 * FPS)
     except (DatabaseError, ValueError) as error:
         sys.exit(str(error))
+    if options.raw:
+        small = small_of(large, options.small)
+        takes = trials.split(small.only([one for one in small.takes if not one.interpolated])).test[::3]
     if not takes:
         sys.exit(f"{options.small}: has no take of five seconds that settings are chosen on")
-    bodies = people(options.small / "cmu")
+    bodies = [] if options.raw else people(options.small / "cmu")
     rows = []
     for name, case in list(CASES.items()):
         if list(CASES).index(name) not in options.cases:
             continue
-        for count, which in SETS.items():
-            found = np.array([off(networks, performing(large, take, bodies[(options.seeds * number + seed) % len(bodies)]), which, case,
+        for count, which in (RAW if options.raw else SETS).items():
+            found = np.array([off(networks, raw(options.small, take) if options.raw else
+                                  performing(large, take, bodies[(options.seeds * number + seed) % len(bodies)]), which, case,
                                   np.random.default_rng([seed, number])) for number, take in enumerate(takes) for seed in range(options.seeds)])
             rows.append([name, count, *(f"{number:.2f}" for number in found.mean(0))])
             print(" | ".join(rows[-1]), flush=True)

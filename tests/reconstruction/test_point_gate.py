@@ -72,6 +72,18 @@ def test_a_point_that_comes_back_elsewhere_comes_there_without_a_pop(lost, count
     assert np.allclose(goals[-1], seen[-1], atol=1e-3)
 
 
+def test_after_all_were_lost_points_are_where_they_are_seen_and_as_far_as_somebody_goes():
+    """The body's own place tells nothing then, and its pose is what is eased."""
+    gate = Gate.before(np.zeros((1, 3)), np.zeros((1, 3)))
+    seen = np.array([[0.0, 0.0, NEAR + 0.3]])
+    for lost, followed in ((0.0, False), (0.25, True)):
+        after = gate
+        for _ in range(2):
+            after, goals = after.admit(seen, np.zeros((1, 3)), np.zeros((1, 3)), DT, lost)
+        assert bool(np.isfinite(goals).all()) is followed
+    assert np.array_equal(goals, seen)
+
+
 @pytest.mark.parametrize("frames", [1, 5, 600])
 def test_a_point_that_leaps_three_metres_is_not_followed(frames):
     seen = swinging(frames + 240)

@@ -108,15 +108,14 @@ class Wearing:
 
 
 @pytest.mark.parametrize(("first", "ignored", "heard"), [(0, (), 8), (1, (), 8), (0, (3,), 8), (0, tuple(range(1, 8)), 0)])
-def test_one_pose_is_asked_for_after_the_other(first, ignored, heard, monkeypatch):
+def test_one_pose_is_asked_for_after_the_other(first, ignored, heard):
     """One that is ignored is not heard, and whoever ignores all has to move about."""
     said: list[str] = []
-    monkeypatch.setattr(set_poses, "say", said.append)
     order = [first, *(number for number in range(8) if number != first)]
     source = Wearing(order, said, ignored)
     place, turn = source.places[first], source.turned[first]
     assert stance(CONTROLS, place, turn) == first
-    found = set_poses.worn(source, placed(place, CONTROLS, turns=turn), place, turn, (k / 30 for k in range(9000)))
+    found = set_poses.worn(source, placed(place, CONTROLS, turns=turn), place, turn, (k / 30 for k in range(9000)), say=said.append)
     assert sum(" of 8: " in line for line in said) == 7
     if not heard:
         assert found is None
@@ -124,11 +123,10 @@ def test_one_pose_is_asked_for_after_the_other(first, ignored, heard, monkeypatc
         assert not found.moving and found.known.heard >= heard - len(ignored)
 
 
-def test_a_stream_that_ends_before_the_poses_is_no_mistake(monkeypatch):
+def test_a_stream_that_ends_before_the_poses_is_no_mistake():
     said: list[str] = []
-    monkeypatch.setattr(set_poses, "say", said.append)
     source = Wearing([0, 1, 2, 3, 4, 5, 6, 7], said)
-    assert set_poses.worn(source, placed(source.places[0], CONTROLS), source.places[0], source.turned[0], (k / 30 for k in range(20))) is None
+    assert set_poses.worn(source, placed(source.places[0], CONTROLS), source.places[0], source.turned[0], (k / 30 for k in range(20)), say=said.append) is None
     assert "too few poses" in said[-1]
 
 

@@ -100,7 +100,9 @@ def test_what_can_be_wrong_is_told_in_a_line(own, tmp_path):
     broken.write_bytes(b"nothing")
     for arguments, words in ((["database", "tune", slow], "has 30 frames a second"), (["database", "tune", own[0], "--network", broken], "is no network of trackers"),
                              (["database", "tune", own[0], "-o", tmp_path / "mine.bin"], "ends in .npz"),
-                             (["reconstruct", "none.bvh", "--network", broken], "broken.npz: is no network of trackers")):
+                             (["reconstruct", "none.bvh", "--network", broken], "broken.npz: is no network of trackers"),
+                             (["play", "--network", broken], "broken.npz: is no network of trackers"), (["play", "--network", own[0]], "is no .npz file"),
+                             (["play", "--network", broken, "--replay", "some.gambol"], "a log says which network")):
         done = CliRunner().invoke(cli.app, [str(one) for one in arguments])
         assert done.exit_code == 2 and words in done.output and "Traceback" not in done.output
     shipped().save(tmp_path / "good.npz")

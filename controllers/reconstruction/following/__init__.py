@@ -4,11 +4,11 @@ of the floor, and taking a body over without a pop; the way to points that are f
 
 from .approach import APART, FAR, reached, spread, towards
 from .feet import above
-from .hand_over import difference, guessed_past, joints_of, moved
+from .hand_over import difference, guessed_past, joints_of, moved, unbroken
 from .initial_pose import Beginning, Starts
 from .point_gate import Gate
 
 __all__ = [
     "APART", "FAR", "Beginning", "Gate", "Starts", "above", "difference", "guessed_past", "joints_of", "moved", "reached", "spread",
-    "towards",
+    "towards", "unbroken",
 ]

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...body import Pose, Skeleton, exp, forward_kinematics, log
-from ..pose_vector import SKELETON, YAW_RATE, encode
+from ..pose_vector import REFERENCE, SKELETON, YAW_RATE, encode
 from ..regression import SPAN
 from .initial_pose import backed
 
+_HINGES = np.array([SKELETON.index(side + name) for side in ("Left", "Right") for name in ("ForeArm", "Leg")])
+_BENT = log(REFERENCE[_HINGES])
+_AXES = _BENT / np.linalg.norm(_BENT, axis=-1, keepdims=True)  # elbows and knees are bent about these on the average
+_BONES = np.stack([SKELETON.offsets[np.flatnonzero(SKELETON.parents == joint)[0]] for joint in _HINGES])
 _FADING = 0.1  # s, of the joints' velocities, backward in time, where the past is not known
 
 
@@ -25,6 +29,22 @@ def difference(to: Pose, start: Pose) -> np.ndarray:
 def moved(pose: Pose, by: np.ndarray) -> Pose:
     """The inverse of `difference`."""
     return Pose(pose.root + by[0], pose.rotations @ exp(by[1:]))
+
+
+def unbroken(pose: Pose, of: Pose) -> Pose:
+    """A pose whose elbows and knees bend no farther back than straight, or than those of another one: what fades may lead beyond."""
+    back = np.minimum(_bends(of), 0.0) - _bends(pose)
+    if not (back > 0.0).any():
+        return pose
+    rotations = np.array(pose.rotations, float)
+    rotations[_HINGES] = exp(np.maximum(back, 0.0)[:, None] * _AXES) @ rotations[_HINGES]
+    return Pose(pose.root, rotations)
+
+
+def _bends(pose):
+    """How far (4,) [rad] elbows and knees are bent."""
+    turned = (pose.rotations[_HINGES] @ _BONES[..., None])[..., 0]
+    return np.arctan2(np.sum(np.cross(_BONES, turned) * _AXES, -1), np.sum(_BONES * turned, -1))
 
 
 def guessed_past(pose: Pose, before: Pose | None, elapsed: float, dt: float) -> tuple[np.ndarray, np.ndarray]:

@@ -21,6 +21,8 @@ NEAR = 0.4
 """A point that comes back within this of where the body has it [m] is believed at once."""
 PATIENCE = 0.3
 """Farther away it has to be seen to move like a body for so long [s]."""
+STRAY = 1.5
+"""… and as much farther as somebody goes [m/s] for as long as no point was followed."""
 REACH = 1.5
 """And beyond this [m] it is never believed."""
 EASE = 0.1
@@ -71,7 +73,8 @@ class Gate:
                     seen[[i, j]], order[[i, j]] = seen[[j, i]], order[[j, i]]
         return replace(self, order=order), seen
 
-    def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
+    def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float, lost: float = 0.0
+              ) -> tuple[Gate, np.ndarray]:
         """The gate dt [s] later, and the points (n, 3) [m] to follow, NaN where there is nothing to believe.
 
         seen: (n, 3) [m] as they come, NaN where lost. body: (n, 3) [m] where the body would have them now.
@@ -88,9 +91,10 @@ class Gate:
         rate = np.where(goes_on[:, None], moved / dt, 0.0)
         smooth = np.where((self.steady > 0.0)[:, None], damp(self.smooth, rate, _RATE, dt), rate)
         gap = _length(seen - body)
-        believed = goes_on & (gap <= REACH) & (self.trusted | (gap <= NEAR) | (steady >= PATIENCE))
+        believed = goes_on & (gap <= REACH) & (self.trusted | (gap <= NEAR + STRAY * lost) | (steady >= PATIENCE))
         back = (believed & ~self.trusted)[:, None]
         offset, slip = settle(self.offset, self.slip, EASE, dt)
+        back = back & (lost == 0.0)
         offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
         slip = np.where(believed[:, None], np.where(back, _at_most(motion - smooth, SLIP), slip), 0.0)
         after = replace(self, raw=seen, rate=rate, smooth=smooth, steady=steady, trusted=believed, offset=offset, slip=slip)

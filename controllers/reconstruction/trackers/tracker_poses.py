@@ -15,7 +15,7 @@ import numpy as np
 from ...body import Pose, Skeleton, contact_height, forward_kinematics, heel_offset
 from ..control_points import ControlPoints
 from ..ours import Motion, noise, placed
-from ..pose_vector import REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
+from ..pose_vector import ANGLES, REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
 from ..regression import FAR, FLOOR, SPAN, on_ground, seen_kernel
 from .ground import GROUND, less, nothing, shown_as, turned_on
 from .network import Network
@@ -157,8 +157,9 @@ class Trackers:
         """The memory a frame later."""
         if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
             told = self._told(memory, points, turns)
-            change = RESTING * less(memory.pose, memory.before)
-            return replace(told, pose=memory.pose + change, before=memory.pose, soles=Soles.none())
+            pose = memory.pose + RESTING * less(memory.pose, memory.before)
+            pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
+            return replace(told, pose=pose, before=memory.pose, soles=Soles.none())
         return self._solved(self._told(memory, points, turns), points, turns)[0]
 
     def _told(self, memory, points, turns):
