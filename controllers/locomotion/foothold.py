@@ -17,9 +17,9 @@ from ..compiled import kernel
 from .command import look_ahead, reached
 from .control_space import SCALE
 from .foot_points import foot_points
-from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
+from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, query_kernel, series_kernel
 from .last_stride import bring_together
-from .root_motion import SHORTEST, advance, cadence_kernel, short_way
+from .root_motion import advance, short_way, time_ahead
 from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
@@ -72,7 +72,7 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
         left = (swing + 0.5 * foot - m.phase) % 1.0
         coming = left < 0.5 * (1.0 + swing)
         ahead.shares[foot] = 0.0
-        ahead.until[foot] = left / cadence_kernel(m) if coming else 0.0
+        ahead.until[foot] = time_ahead(m, table, left) if coming else 0.0
         lifts = coming and max(m.grip[2 * foot], m.grip[2 * foot + 1]) < 1.0
         if m.settled or not (left < swing or lifts):
             continue
@@ -82,7 +82,7 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
             _come_down(m, foot, ahead.until[foot], body, legs, ahead)
             _beside(m, body, foot, ahead, not m.spot)
         else:
-            later = max(ahead.until[foot] * _slower(m, table, left), SOONEST)
+            later = max(ahead.until[foot], SOONEST)
             ahead.until[foot] = later
             _foresee(m, foot, later, settings, space, table, body, legs, ahead)
             _foretell(m, foot, left, legs.paths, ahead)
@@ -91,20 +91,10 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
 
 
 @kernel
-def _slower(m, table, share):
-    """How much slower the phase runs on average for the next `share` of a cycle than it does now, by Simpson's rule."""
-    total, now = 0.0, duration_kernel(table, m.weights, m.phase)
-    for k in range(5):
-        duration = duration_kernel(table, m.weights, m.phase + 0.25 * k * share) if k > 0 else now
-        total += (1.0, 4.0, 2.0, 4.0, 1.0)[k] / 12.0 * duration
-    return total / max(now, SHORTEST)
-
-
-@kernel
 def _foresee(m, foot, later, settings, space, table, body, legs, ahead):
     """Write where the blend's foot comes down in `later` seconds into m.coming: its heel and ball, x and z in the world."""
     ground, command, target, moved = ahead.vectors[0], ahead.vectors[1], ahead.vectors[2], ahead.vectors[3]
-    look_ahead(m, settings, later, ground, command)
+    look_ahead(m, settings, table, later, ground, command)
     command[0] = reached(space, command[0] / SCALE[0], m.family) * SCALE[0]
     simplex = query_kernel(space, command, m.simplex[m.family], settings.correct, ahead.barycentric, target, moved)
     stays = 2.0 ** (-later / settings.weight_halflife)

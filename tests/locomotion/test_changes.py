@@ -47,6 +47,19 @@ def test_a_runner_who_stops_does_not_run_backwards(locomotion):
         assert motion.ground[-1, n, 1] - motion.ground[frame, n, 1] < 2.15
 
 
+def test_a_careful_runner_stops_without_a_step_back_and_a_quick_one_sooner(library):
+    """Where a stop ends is planned with what these legs push, at any agility."""
+    rests = []
+    for agility in (0.6, 1.0, 2.0):
+        walker = Locomotion(library, Settings(agility=agility))
+        motion, asked = changed(walker, (3.0, 0, 0), (0, 0, 0))
+        velocity, _ = mass_centre(walker, motion)
+        assert min(velocity[frame:, n, 2].min() for n, frame in enumerate(asked)) > -0.12
+        speed = np.linalg.norm(velocity[..., [0, 2]], axis=-1)
+        rests.append(np.mean([np.flatnonzero(speed[frame:, n] > 0.15)[-1] / FPS for n, frame in enumerate(asked)]))
+    assert rests[0] > rests[1] + 0.3 and rests[1] > rests[2] + 0.15
+
+
 def test_who_starts_leans_into_it_no_harder_than_legs_push(locomotion):
     motion = play(locomotion, np.concatenate([hold(1, (0, 0, 0)), hold(2, (1.3, 0, 0))]))
     velocity, acceleration = mass_centre(locomotion, motion)
