@@ -13,6 +13,7 @@ from .kernel import HIPS_AT, clamp_kernel, inner_kernel
 from .last_stride import come_over, plan_stop, quickness, time_to_stop
 from .memory import RUN, WALK
 from .root_motion import advance, cadence_kernel
+from .swing import smooth
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
@@ -25,6 +26,10 @@ GRAVITY, SPARE = 9.81, 0.15
 """Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
 QUICKENS = 0.06
 """Who stops comes to step as fast as he can with this half-life [s]."""
+ON_SPOT = 0.5
+"""Who is asked to turn and to go slower than this [m/s] …"""
+BRAKED, RUNS = 1.3, 2.3
+"""… begins to turn between these speeds [m/s]."""
 PIECES = 2
 """The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
 
@@ -43,7 +48,7 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     p[0], p[2] = p[0] * m.pace, p[2] * m.pace
     most = settings.acceleration * settings.agility
     round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
-    p[1] = min(max(p[1], -round_curve), round_curve)
+    p[1] = min(max(p[1], -round_curve), round_curve) * _turns(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]))
     for i in range(3):
         m.asked[i] = p[i]
     push = 1.0
@@ -56,6 +61,12 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
         come_over(m, stance, most, dt)
         push = 0.0
     _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m, settings, table), m.steep, dt)
+
+
+@kernel
+def _turns(asked, speed):
+    """How much of a turn somebody makes who is to have a speed [m/s] and has another: none on the spot as long as he runs, since he brakes first."""
+    return 1.0 - max(1.0 - asked / ON_SPOT, 0.0) * smooth((speed - BRAKED) / (RUNS - BRAKED))
 
 
 @kernel

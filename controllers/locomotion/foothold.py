@@ -27,6 +27,9 @@ BESIDE = 0.25
 """The most that a foot goes to its own side of where the blend has it [m]."""
 TRIES = 2
 """Then it goes away from the other by the shortest way, so often."""
+REPLANS = 20.0
+"""The place for a foot that comes down in so many seconds moves no faster than these times that many metres a second: the smoothest way to one that has moved
+so takes a push of three times as much [m/s²]."""
 SOONEST = 0.002
 """Nothing is looked up nearer than this [s]."""
 
@@ -65,7 +68,7 @@ def room_to_plan(width, joints):
 
 
 @kernel
-def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
+def plan_footholds(m, settings, space, table, turns, body, legs, ahead, dt):
     """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there."""
     for foot in range(2):
         swing = SWING[m.family]
@@ -80,14 +83,17 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
             ahead.until[foot] = max(turn_ahead(m, turns, settings.agility, left, ahead.vectors[0]), SOONEST)
             turned_row(m, turns, m.turned + left, ahead.row)
             _come_down(m, foot, ahead.until[foot], body, legs, ahead)
-            _beside(m, body, foot, ahead, not m.spot)
         else:
             later = max(ahead.until[foot], SOONEST)
             ahead.until[foot] = later
             _foresee(m, foot, later, settings, space, table, body, legs, ahead)
             _foretell(m, foot, left, legs.paths, ahead)
-            _beside(m, body, foot, ahead, True)
+        x, z = m.land[foot, 0], m.land[foot, 1]
+        m.land[foot, 0] = m.land[foot, 1] = 0.0
         bring_together(m, foot, legs.stance)
+        _beside(m, body, foot, ahead, m.turn == 0.0 or not m.spot)
+        if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0:
+            _still_reached(m, foot, x, z, ahead.until[foot], dt)
 
 
 @kernel
@@ -192,14 +198,13 @@ def _along_paths(first, last, share, paths, phase, foot, out):
 
 @kernel
 def _beside(m, body, foot, ahead, sides):
-    """Write into m.land how far aside (2,) of where the blend comes down a foot is set, so that it is a shoe's width from the other; and,
+    """Add to m.land how far aside (2,) of where it is to come down a foot is set, so that it is a shoe's width from the other; and,
     where feet have sides, on its own."""
     here, there, away = ahead.lines[0], ahead.lines[1], ahead.barycentric
-    m.land[foot, 0] = m.land[foot, 1] = 0.0
     if not other_line(m, body, foot, there):
         return
     for k in range(2):
-        here[k, 0], here[k, 1] = m.coming[foot, k, 0], m.coming[foot, k, 1]
+        here[k, 0], here[k, 1] = m.coming[foot, k, 0] + m.land[foot, 0], m.coming[foot, k, 1] + m.land[foot, 1]
     with_toe(body, here)
     side = 1.0 - 2.0 * foot
     own_side(there, here, side, away)
@@ -212,6 +217,15 @@ def _beside(m, body, foot, ahead, sides):
         m.land[foot, 0] += away[0]
         m.land[foot, 1] += away[1]
         away_kernel(there, here, away)
+
+
+@kernel
+def _still_reached(m, foot, x, z, until, dt):
+    """Take a foot on its way no farther from where it was to be set, x, z aside of the blend, than it can still swing."""
+    far = math.hypot(m.land[foot, 0] - x, m.land[foot, 1] - z)
+    share = min(REPLANS * until * dt / max(far, 1e-9), 1.0)
+    m.land[foot, 0] = x + share * (m.land[foot, 0] - x)
+    m.land[foot, 1] = z + share * (m.land[foot, 1] - z)
 
 
 @kernel
