@@ -48,6 +48,8 @@ BESIDE, DECIDED, FADED = 0.08, 0.9, 0.005
 """Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second, and no offset of the hips larger than the third [m] is left."""
 TOWARDS, PAST = 0.9, 0.25
 """Who goes to a place does so at less than the angle with this cosine; one that is this near, but not ahead, has been passed [m]."""
+TARRIES, EASY, BRISK = 0.3, 1.5, 2.0
+"""Who slows down to the end from the second speed [m/s] steps slower, too: a cycle takes him this share longer; from the third on he still brakes hard."""
 LATEST = 3.0
 """No stop takes longer than this [s]."""
 BRAKES = 0.15, 1.5
@@ -154,7 +156,8 @@ def quickness(settings):
 @kernel
 def _time_until(m, settings, table, left):
     """How long it takes until a strike `left` ahead in phase [s], of who steps as one who stops does."""
-    return time_ahead(m, table, left) * m.quick / quickness(settings)
+    slows = min(max((BRISK - math.hypot(m.command[0], m.command[2])) / (BRISK - EASY), 0.0), 1.0)
+    return time_ahead(m, table, left) * (1.0 + TARRIES * slows * min(left, 1.0)) * m.quick / quickness(settings)
 
 
 @kernel
