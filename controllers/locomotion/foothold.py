@@ -68,8 +68,9 @@ def room_to_plan(width, joints):
 
 
 @kernel
-def plan_footholds(m, settings, space, table, turns, body, legs, ahead, dt):
-    """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there."""
+def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt):
+    """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there.
+    flat: whether nothing stands about, else feet find their places on it anew."""
     for foot in range(2):
         swing = SWING[m.family]
         left = (swing + 0.5 * foot - m.phase) % 1.0
@@ -92,7 +93,7 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, dt):
         m.land[foot, 0] = m.land[foot, 1] = 0.0
         bring_together(m, foot, legs.stance)
         _beside(m, body, foot, ahead, m.turn == 0.0 or not m.spot)
-        if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0:
+        if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0 and flat:
             _still_reached(m, foot, x, z, ahead.until[foot], dt)
 
 

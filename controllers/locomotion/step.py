@@ -88,7 +88,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         foot_points(body, legs, positions, orientations, m.points)
         stride(m, m.points, positions)
         if settings.footing:
-            plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead, dt)
+            plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead, tops.shape[0] == 0, dt)
             place_feet(m, body, legs, ahead, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
