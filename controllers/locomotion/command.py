@@ -10,9 +10,10 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .control_space import SCALE
 from .kernel import HIPS_AT, clamp_kernel, inner_kernel
-from .last_stride import come_over, plan_stop, time_to_stop
+from .last_stride import come_over, plan_stop, quickness, time_to_stop
 from .memory import RUN, WALK
 from .root_motion import advance, cadence_kernel
+from .swing import smooth
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
@@ -23,6 +24,12 @@ LEFT_OVER = 0.4
 """Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
 GRAVITY, SPARE = 9.81, 0.15
 """Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
+QUICKENS = 0.06
+"""Who stops comes to step as fast as he can with this half-life [s]."""
+ON_SPOT = 0.5
+"""Who is asked to turn and to go slower than this [m/s] …"""
+BRAKED, RUNS = 1.3, 2.3
+"""… begins to turn between these speeds [m/s]."""
 PIECES = 2
 """The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
 
@@ -41,18 +48,25 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     p[0], p[2] = p[0] * m.pace, p[2] * m.pace
     most = settings.acceleration * settings.agility
     round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
-    p[1] = min(max(p[1], -round_curve), round_curve)
+    p[1] = min(max(p[1], -round_curve), round_curve) * _turns(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]))
     for i in range(3):
         m.asked[i] = p[i]
     push = 1.0
     if not m.settled:  # and not at all while no foot stands
         stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
         push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) if stands else 0.0
-    plan_stop(m, most, stance)
+    plan_stop(m, settings, table, stance)
+    m.quick += ((quickness(settings) if m.stop > 0.0 else 1.0) - m.quick) * (1.0 - 2.0 ** (-dt / QUICKENS))
     if m.waits:
         come_over(m, stance, most, dt)
         push = 0.0
-    _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m), m.steep, dt)
+    _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m, settings, table), m.steep, dt)
+
+
+@kernel
+def _turns(asked, speed):
+    """How much of a turn somebody makes who is to have a speed [m/s] and has another: none on the spot as long as he runs, since he brakes first."""
+    return 1.0 - max(1.0 - asked / ON_SPOT, 0.0) * smooth((speed - BRAKED) / (RUNS - BRAKED))
 
 
 @kernel
@@ -107,7 +121,7 @@ def _load(m, table, dt):
 
 
 @kernel
-def look_ahead(m, settings, later, ground, command):
+def look_ahead(m, settings, table, later, ground, command):
     """Where the ground frame (3,) will be in `later` seconds, and the command (3,) that the blend's weights will have come to by then,
     if the same is asked for all the while."""
     rate, now = np.empty(3), np.empty(3)
@@ -116,7 +130,7 @@ def look_ahead(m, settings, later, ground, command):
     # the moment whose command a low-pass that starts now has come to, if commands change evenly
     lag = settings.weight_halflife / math.log(2.0)
     moment = later / (1.0 - math.exp(-later / lag)) - lag
-    left = time_to_stop(m)
+    left = time_to_stop(m, settings, table)
     for k in range(2 * PIECES):
         dt = (moment if k < PIECES else later - moment) / PIECES
         v_f, omega, v_l = now[0], now[1], now[2]

@@ -104,7 +104,7 @@ class Locomotion(Controller):
         memory["weights"][..., self.library.rest] = 1.0
         memory["settled"] = 1
         memory["phase"] = 0.25
-        memory["row"][..., DURATION_AT] = memory["stretch"] = memory["pace"] = 1.0
+        memory["row"][..., DURATION_AT] = memory["stretch"] = memory["pace"] = memory["quick"] = 1.0
         memory["library"] = self._library
         memory["luck"] = _luck(ground)
         if len(self.tables.idle.must) > ENDS:

@@ -17,9 +17,9 @@ from ..compiled import kernel
 from .command import look_ahead, reached
 from .control_space import SCALE
 from .foot_points import foot_points
-from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, query_kernel, series_kernel
+from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, query_kernel, series_kernel
 from .last_stride import bring_together
-from .root_motion import SHORTEST, advance, cadence_kernel, short_way
+from .root_motion import advance, short_way, time_ahead
 from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
@@ -27,6 +27,9 @@ BESIDE = 0.25
 """The most that a foot goes to its own side of where the blend has it [m]."""
 TRIES = 2
 """Then it goes away from the other by the shortest way, so often."""
+REPLANS = 20.0
+"""The place for a foot that comes down in so many seconds moves no faster than these times that many metres a second: the smoothest way to one that has moved
+so takes a push of three times as much [m/s²]."""
 SOONEST = 0.002
 """Nothing is looked up nearer than this [s]."""
 
@@ -65,14 +68,15 @@ def room_to_plan(width, joints):
 
 
 @kernel
-def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
-    """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there."""
+def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt):
+    """Plan where the feet that swing, or leave in the second half of their stance, will come down, and foretell the blend's way there.
+    flat: whether nothing stands about, else feet find their places on it anew."""
     for foot in range(2):
         swing = SWING[m.family]
         left = (swing + 0.5 * foot - m.phase) % 1.0
         coming = left < 0.5 * (1.0 + swing)
         ahead.shares[foot] = 0.0
-        ahead.until[foot] = left / cadence_kernel(m) if coming else 0.0
+        ahead.until[foot] = time_ahead(m, table, left) if coming else 0.0
         lifts = coming and max(m.grip[2 * foot], m.grip[2 * foot + 1]) < 1.0
         if m.settled or not (left < swing or lifts):
             continue
@@ -80,31 +84,24 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead):
             ahead.until[foot] = max(turn_ahead(m, turns, settings.agility, left, ahead.vectors[0]), SOONEST)
             turned_row(m, turns, m.turned + left, ahead.row)
             _come_down(m, foot, ahead.until[foot], body, legs, ahead)
-            _beside(m, body, foot, ahead, not m.spot)
         else:
-            later = max(ahead.until[foot] * _slower(m, table, left), SOONEST)
+            later = max(ahead.until[foot], SOONEST)
             ahead.until[foot] = later
             _foresee(m, foot, later, settings, space, table, body, legs, ahead)
             _foretell(m, foot, left, legs.paths, ahead)
-            _beside(m, body, foot, ahead, True)
+        x, z = m.land[foot, 0], m.land[foot, 1]
+        m.land[foot, 0] = m.land[foot, 1] = 0.0
         bring_together(m, foot, legs.stance)
-
-
-@kernel
-def _slower(m, table, share):
-    """How much slower the phase runs on average for the next `share` of a cycle than it does now, by Simpson's rule."""
-    total, now = 0.0, duration_kernel(table, m.weights, m.phase)
-    for k in range(5):
-        duration = duration_kernel(table, m.weights, m.phase + 0.25 * k * share) if k > 0 else now
-        total += (1.0, 4.0, 2.0, 4.0, 1.0)[k] / 12.0 * duration
-    return total / max(now, SHORTEST)
+        _beside(m, body, foot, ahead, m.turn == 0.0 or not m.spot)
+        if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0 and flat:
+            _still_reached(m, foot, x, z, ahead.until[foot], dt)
 
 
 @kernel
 def _foresee(m, foot, later, settings, space, table, body, legs, ahead):
     """Write where the blend's foot comes down in `later` seconds into m.coming: its heel and ball, x and z in the world."""
     ground, command, target, moved = ahead.vectors[0], ahead.vectors[1], ahead.vectors[2], ahead.vectors[3]
-    look_ahead(m, settings, later, ground, command)
+    look_ahead(m, settings, table, later, ground, command)
     command[0] = reached(space, command[0] / SCALE[0], m.family) * SCALE[0]
     simplex = query_kernel(space, command, m.simplex[m.family], settings.correct, ahead.barycentric, target, moved)
     stays = 2.0 ** (-later / settings.weight_halflife)
@@ -202,14 +199,13 @@ def _along_paths(first, last, share, paths, phase, foot, out):
 
 @kernel
 def _beside(m, body, foot, ahead, sides):
-    """Write into m.land how far aside (2,) of where the blend comes down a foot is set, so that it is a shoe's width from the other; and,
+    """Add to m.land how far aside (2,) of where it is to come down a foot is set, so that it is a shoe's width from the other; and,
     where feet have sides, on its own."""
     here, there, away = ahead.lines[0], ahead.lines[1], ahead.barycentric
-    m.land[foot, 0] = m.land[foot, 1] = 0.0
     if not other_line(m, body, foot, there):
         return
     for k in range(2):
-        here[k, 0], here[k, 1] = m.coming[foot, k, 0], m.coming[foot, k, 1]
+        here[k, 0], here[k, 1] = m.coming[foot, k, 0] + m.land[foot, 0], m.coming[foot, k, 1] + m.land[foot, 1]
     with_toe(body, here)
     side = 1.0 - 2.0 * foot
     own_side(there, here, side, away)
@@ -222,6 +218,15 @@ def _beside(m, body, foot, ahead, sides):
         m.land[foot, 0] += away[0]
         m.land[foot, 1] += away[1]
         away_kernel(there, here, away)
+
+
+@kernel
+def _still_reached(m, foot, x, z, until, dt):
+    """Take a foot on its way no farther from where it was to be set, x, z aside of the blend, than it can still swing."""
+    far = math.hypot(m.land[foot, 0] - x, m.land[foot, 1] - z)
+    share = min(REPLANS * until * dt / max(far, 1e-9), 1.0)
+    m.land[foot, 0] = x + share * (m.land[foot, 0] - x)
+    m.land[foot, 1] = z + share * (m.land[foot, 1] - z)
 
 
 @kernel

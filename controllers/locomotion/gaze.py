@@ -7,6 +7,7 @@ import math
 from ..body import spring_kernel
 from ..compiled import kernel
 from .kernel import HIPS_AT, LANES
+from .root_motion import short_way
 
 AHEAD = 0.35
 """A turning body looks to where it will face so much later [s] …"""
@@ -33,7 +34,7 @@ def gaze_kernel(m, wish, amount, neck, row, dt):
             turn += ASIDE * math.atan2(wish[2], max(wish[0], 1e-6)) * speed * speed / (speed * speed + SLOW * SLOW)
     else:
         x, z = m.look[0] - m.ground[0], m.look[2] - m.ground[1]
-        turn = (math.atan2(x, z) - m.ground[2] + math.pi) % (2.0 * math.pi) - math.pi
+        turn = short_way(math.atan2(x, z) - m.ground[2])
         nod = -math.atan2(m.look[1] - row[HIPS_AT + 1] - EYES, max(math.hypot(x, z), 0.1))
         behind = min(max((math.pi - abs(turn)) / (math.pi - 2.0), 0.0), 1.0)  # nobody looks through the back of his head
         turn, nod = turn * behind, nod * behind

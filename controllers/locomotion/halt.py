@@ -25,9 +25,9 @@ SOONEST = 0.25
 
 
 @kernel
-def heed_halt(m, wish, most, dt):
+def heed_halt(m, wish, settings, table, dt):
     """Take the wish (3,) away from somebody who comes to rest at a place, once it is time for that, and leave him the turn that he still has
-    to make. most: what legs push [m/s²]."""
+    to make."""
     if m.halts == NOWHERE:
         return
     turn = 0.0 if math.isnan(m.halt[2]) else short_way(m.halt[2] - m.ground[2])
@@ -36,13 +36,13 @@ def heed_halt(m, wish, most, dt):
         if math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) <= THERE and abs(turn) <= STRAIGHT:
             wish[0] = wish[1] = wish[2] = 0.0
         return
-    if m.halts == AHEAD and lets_go(m, most):
+    if m.halts == AHEAD and lets_go(m, settings, table):
         m.halts = STOPS
     if m.halts >= STOPS:
         wish[0] = wish[2] = 0.0
-        wish[1] = 2.0 * turn / max(time_to_stop(m), SOONEST)
+        wish[1] = 2.0 * turn / max(time_to_stop(m, settings, table), SOONEST)
         if m.halts == STOPS and m.stop > 0.0 and to_halt(m) > NEAR and m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0:
-            _bend(m, most, dt)
+            _bend(m, settings.acceleration * settings.agility, dt)
 
 
 @kernel

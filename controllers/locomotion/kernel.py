@@ -208,6 +208,24 @@ def duration_kernel(table, weights, phase):
     return total
 
 
+@kernel
+def time_kernel(table, weights, phase, share):
+    """How long [s] the weighted sum of all primitives' series takes from `phase` on for that share of a cycle: the integral of `duration_kernel`, exactly."""
+    c1, s1 = math.cos(2 * math.pi * phase), math.sin(2 * math.pi * phase)
+    c2, s2 = math.cos(2 * math.pi * (phase + share)), math.sin(2 * math.pi * (phase + share))
+    total = 0.0
+    for p in range(table.shape[0]):
+        w = weights[p]
+        if w <= 0.0:
+            continue
+        total += w * share * table[p, 0, DURATION_AT]
+        c, s, d, t = c1, s1, c2, s2
+        for k in range(1, table.shape[1] - 1, 2):
+            total += w * ((t - s) * table[p, k, DURATION_AT] - (d - c) * table[p, k + 1, DURATION_AT]) / (math.pi * (k + 1))
+            c, s, d, t = c * c1 - s * s1, s * c1 + c * s1, d * c2 - t * s2, t * c2 + d * s2
+    return total
+
+
 # sin x / x and (1 − cos x) / x² as polynomials in x²: Taylor, exact to float32 for |x| < π
 _SINC = tuple(np.float32((-1) ** n / math.factorial(2 * n + 1)) for n in range(10))
 _VERS = tuple(np.float32((-1) ** n / math.factorial(2 * n + 2)) for n in range(10))

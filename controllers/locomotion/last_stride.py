@@ -18,7 +18,7 @@ from .cycles import EVENTS
 from .foot_points import shown_kernel
 from .kernel import HIPS_AT
 from .memory import WALK
-from .root_motion import cadence_kernel
+from .root_motion import short_way, time_ahead
 
 STRIKE = float(EVENTS["walk"][1])
 """The phase in which the left foot comes down; the right one does half a cycle later."""
@@ -48,6 +48,8 @@ BESIDE, DECIDED, FADED = 0.08, 0.9, 0.005
 """Feet that are farther than the first from where they rest [m] step once more, as soon as the blend is at rest by the second, and no offset of the hips larger than the third [m] is left."""
 TOWARDS, PAST = 0.9, 0.25
 """Who goes to a place does so at less than the angle with this cosine; one that is this near, but not ahead, has been passed [m]."""
+TARRIES, EASY, BRISK = 0.3, 1.5, 2.0
+"""Who slows down to the end from the second speed [m/s] steps slower, too: a cycle takes him this share longer; from the third on he still brakes hard."""
 LATEST = 3.0
 """No stop takes longer than this [s]."""
 BRAKES = 0.15, 1.5
@@ -59,10 +61,9 @@ NO_WISH = 0.02
 
 
 @kernel
-def plan_stop(m, most, stance):
+def plan_stop(m, settings, table, stance):
     """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, the place
-    where he comes to rest, and how steeply he slows down for it. most: what legs push [m/s²]. stance: where heels and balls are at
-    rest (4, 2) [m]."""
+    where he comes to rest, and how steeply he slows down for it. stance: where heels and balls are at rest (4, 2) [m]."""
     if m.settled or m.halts < STOPS and abs(m.asked[0]) + (0.0 if rounds(m) else abs(m.asked[1])) + abs(m.asked[2]) > NO_WISH:
         m.stop, m.waits = 0.0, 0
         return
@@ -72,27 +73,29 @@ def plan_stop(m, most, stance):
     if m.stop <= 0.0:
         if m.family != WALK or speed < LEAST and m.halts < STOPS:
             return
-        left, pace, far = (STRIKE - m.phase) % 0.5, cadence_kernel(m), to_halt(m) if m.halts >= STOPS else 0.0
-        while not _ends(left, pace, speed, far, most, m.halts >= STOPS):
+        left, far = (STRIKE - m.phase) % 0.5, to_halt(m) if m.halts >= STOPS else 0.0
+        while not _ends(m, settings, table, left, speed, far, m.halts >= STOPS):
             left += 0.5
         m.stop = left
         if m.halts < STOPS:
-            _choose_place(m, speed, most, stance)
-    m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
+            _choose_place(m, speed, settings, table, stance)
+    elif m.stop > STRIKE and m.halts != STOPS and speed > HARD * _most(settings) * time_to_stop(m, settings, table):
+        m.stop += 0.5  # he can't any more by then, and takes another step
+        _choose_place(m, speed, settings, table, stance)
+    m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m, settings, table) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
 
 
 @kernel
 def rounds(m):
     """Whether somebody whose feet wait after a turn only has his shoulders still to turn, over them."""
-    off = (m.towards[0] - m.ground[2] + math.pi) % (2.0 * math.pi) - math.pi
-    return m.waits and m.heads and m.spot and abs(off) < ROUND
+    return m.waits and m.heads and m.spot and abs(short_way(m.towards[0] - m.ground[2])) < ROUND
 
 
 @kernel
-def _choose_place(m, speed, most, stance):
+def _choose_place(m, speed, settings, table, stance):
     """Where somebody comes to rest who stops now: over the foot that he will stand on, if that comes down soon or stands; else as he gets there by
     slowing down evenly, or by braking as hard as he can if he brakes already."""
-    time = time_to_stop(m)
+    time, most = time_to_stop(m, settings, table), _most(settings)
     brakes = -(m.rate[0] * m.command[0] + m.rate[2] * m.command[2]) > BRAKING * most * speed
     steep = min(max(most * time / speed, EVEN), STEEPEST) if brakes else EVEN
     if m.stop < AT_PLACE:
@@ -120,27 +123,47 @@ def _to_foot(m, speed, stance):
 
 
 @kernel
-def _ends(left, pace, speed, far, most, place):
-    """Whether a walk may end with the strike `left` ahead in phase: not too soon, not with a harder push than `most`, and `far` enough [m]."""
-    time = left / pace + GLIDE
-    return left >= (AT_PLACE if place else SOONEST) and time >= speed / (HARD * most) and (0.5 * speed * time >= far or time > LATEST)
+def _ends(m, settings, table, left, speed, far, place):
+    """Whether a walk may end with the strike `left` ahead in phase: not too soon, not with a harder push than legs have, and `far` enough [m]."""
+    time = _time_until(m, settings, table, left) + GLIDE
+    return left >= (AT_PLACE if place else SOONEST) and time >= speed / (HARD * _most(settings)) and (0.5 * speed * time >= far or time > LATEST)
 
 
 @kernel
-def lets_go(m, most):
+def lets_go(m, settings, table):
     """Whether somebody who walks is so near to where he is to come to rest that he stops now: by the soonest strike by which an even stop leads there."""
-    speed, pace, far = math.hypot(m.command[0], m.command[2]), cadence_kernel(m), to_halt(m)
+    speed, far = math.hypot(m.command[0], m.command[2]), to_halt(m)
     if far <= 0.0:  # he turns to it, or is past it
         return math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) < PAST
+    most = _most(settings)
     if m.family != WALK:
         return far <= speed * BRAKES[0] + speed * speed / (BRAKES[1] * most)
-    left, soonest = (STRIKE - m.phase) % 0.5, max(AT_PLACE / pace + GLIDE, speed / (HARD * most))
+    left, soonest = (STRIKE - m.phase) % 0.5, max(_time_until(m, settings, table, AT_PLACE) + GLIDE, speed / (HARD * most))
     for _ in range(8):
-        time = left / pace + GLIDE
+        time = _time_until(m, settings, table, left) + GLIDE
         if left >= AT_PLACE and 0.5 * speed * time >= far:
-            return time < soonest + 1.0 / pace
+            return time < soonest + _time_until(m, settings, table, 1.0)
         left += 0.5
     return False
+
+
+@kernel
+def quickness(settings):
+    """How many times as fast as usual somebody takes the steps of a stop: legs that push so many times as hard need the root of that less time for them."""
+    return max(math.sqrt(settings.agility), 1.0)
+
+
+@kernel
+def _time_until(m, settings, table, left):
+    """How long it takes until a strike `left` ahead in phase [s], of who steps as one who stops does."""
+    slows = min(max((BRISK - math.hypot(m.command[0], m.command[2])) / (BRISK - EASY), 0.0), 1.0)
+    return time_ahead(m, table, left) * (1.0 + TARRIES * slows * min(left, 1.0)) * m.quick / quickness(settings)
+
+
+@kernel
+def _most(settings):
+    """What legs push [m/s²]."""
+    return settings.acceleration * settings.agility
 
 
 @kernel
@@ -188,9 +211,9 @@ def bring_together(m, foot, stance):
 
 
 @kernel
-def time_to_stop(m):
+def time_to_stop(m, settings, table):
     """How long somebody who stops is still on the way [s]; 0 for others."""
-    return m.stop / cadence_kernel(m) + GLIDE if m.stop > 0.0 else 0.0
+    return _time_until(m, settings, table, m.stop) + GLIDE if m.stop > 0.0 else 0.0
 
 
 @kernel

@@ -149,7 +149,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("blend", "f4", COLUMNS), ("blend_rate", "f4", COLUMNS),  # inertialisation after a switch
         ("fade", "f4"),  # its half-life [s]
         ("breath", "f4"),  # phase of breathing
-        ("stop", "f4"), ("steep", "f4"), ("waits", "i4"),  # how much phase is left until the strike that ends a walk, how it slows down until then; whether both feet wait after it
+        ("stop", "f4"), ("steep", "f4"), ("quick", "f4"), ("waits", "i4"),  # how much phase is left until the strike that ends a walk, how it slows down until then, how many times as fast as usual it steps; whether both feet wait after it
         ("halt", "f8", 3), ("halts", "i4"),  # where to come to rest, x, z in the world, heading or NaN; whether there is such a place, and he stops for it
         ("onset", "f4"), ("first", "i4"), ("shares", "f4", 2),  # how much phase of a start is left, its first foot, how far it shows
         ("heads", "i4"), ("towards", "f8", 2),  # whether it is told which heading and speed it is to have in the end, and these

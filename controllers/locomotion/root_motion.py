@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiled import kernel
 from .foot_points import foot_points
-from .kernel import DURATION_AT, HIPS_AT, LABELS_AT
+from .kernel import DURATION_AT, HIPS_AT, LABELS_AT, time_kernel
 
 DRIFT_HALFLIFE = 0.03
 """Of the standing foot's say where a blend's velocity is measured [s]."""
@@ -21,13 +21,25 @@ SHORTEST = 0.3
 
 @kernel
 def cadence_kernel(m):
-    """Cycles a second: those of the blend at the command's stretch, more where a foot stands far from where it should."""
+    """Cycles a second, now."""
+    return tempo_kernel(m) / max(m.row[DURATION_AT], SHORTEST)
+
+
+@kernel
+def time_ahead(m, table, share):
+    """How long the phase will run for that share of a cycle [s], at the weights and the tempo of now: within a cycle its pace changes tenfold."""
+    return max(time_kernel(table, m.weights, m.phase, share), SHORTEST * share) / tempo_kernel(m)
+
+
+@kernel
+def tempo_kernel(m):
+    """How many times as fast as the blend's own the phase runs: at the command's stretch, more where a foot stands far from where it should,
+    and as who stops is quick."""
     late = 0.0
     for foot in range(2):
         if m.standing[2 * foot] or m.standing[2 * foot + 1]:
             late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
-    hurry = 1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)
-    return hurry * math.sqrt(m.stretch) / max(m.row[DURATION_AT], SHORTEST)
+    return m.quick * (1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)) * math.sqrt(m.stretch)
 
 
 @kernel

@@ -22,7 +22,7 @@ from .foot_points import foot_points, on_floor
 from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel,
                      query_kernel, series_kernel)
 from .memory import RUN, WALK
-from .root_motion import SHORTEST, cadence_kernel, follow_command, to_world_kernel
+from .root_motion import SHORTEST, cadence_kernel, follow_command, tempo_kernel, to_world_kernel
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
 
@@ -59,7 +59,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     for n in range(memory.shape[0]):
         m = memory[n]
         on_floor(m, before)  # before a turn leads the ground frame back
-        heed_halt(m, wish[n], settings.acceleration * settings.agility, dt)
+        heed_halt(m, wish[n], settings, table, dt)
         begin_turn(m, turns, wish[n], fresh)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)
@@ -88,7 +88,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         foot_points(body, legs, positions, orientations, m.points)
         stride(m, m.points, positions)
         if settings.footing:
-            plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead)
+            plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead, tops.shape[0] == 0, dt)
             place_feet(m, body, legs, ahead, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
@@ -191,7 +191,7 @@ def _run_on(m, table, begin, dt):
     """How far the phase runs in dt from `begin` ahead of where it is: its pace changes within a cycle, by the rule of Runge and Kutta."""
     if dt <= 0.0:
         return 0.0
-    pace = cadence_kernel(m) * max(m.row[DURATION_AT], SHORTEST)
+    pace = tempo_kernel(m)
     step = total = 0.0
     for k in range(4):
         at = begin + (0.0, 0.5, 0.5, 1.0)[k] * step

@@ -21,6 +21,8 @@ BRAKE = 0.25
 """Wishes along a path fade over so much of its end [m]: walkers have let go of them before."""
 NEAR = 0.12
 """A jump no farther than this [m] goes straight up: nobody turns for it."""
+FEW, SLOW, TURNS = 1.4, 0.5, 0.35
+"""Who has no farther to go than this [m] along a path, at less than this speed [m/s], and has to turn by more than this [rad], turns first."""
 ASKEW = 0.15
 """A standing body faces where it jumps to within this [rad]."""
 PATIENCE = 1.0
@@ -83,7 +85,12 @@ class Making:
         wish, progress = np.zeros(2), self.progress
         if self.path is not None:
             wish, progress = follow(self.path, state.ground, np.float64(progress), move.speed, brake=BRAKE)
-        intent = steer(state.ground, wish, move.facing, state.velocity[1], STEERING)
+        facing = move.facing
+        if self.path is not None and facing is None and self.path.length - progress < FEW and np.hypot(state.velocity[0], state.velocity[2]) < SLOW:
+            way = math.atan2(*wish)
+            if abs(math.remainder(way - float(state.ground[2]), math.tau)) > TURNS:  # nobody turns in a stride or two
+                wish, facing = np.zeros(2), way
+        intent = steer(state.ground, wish, facing, state.velocity[1], STEERING)
         if self.path is not None and move.jump is None:
             intent = but(intent, halt=np.array([*self.path.points[-1], math.nan if move.facing is None else move.facing]))
         return replace(self, progress=float(progress)), intent

@@ -20,6 +20,7 @@ FPS = 60
 SPEEDS, FAR = (0.5, 0.8, 1.2, 1.4), (0.3, 0.6, 1.0, 1.5, 2.1, 2.6, 3.0, 3.3, 4.0)
 RUNS = (((0.0, 6.0),), 2.6), (((0.0, 6.0),), 3.2), (((0.0, 3.0), (1.0, 5.0)), 2.6)
 WAYS = (((0.0, 2.0), (2.0, 3.0)), ((0.0, 2.0), (2.0, 2.0)), ((3.0, 0.0),), ((2.0, -2.2),), ((0.1, -3.0),))
+NEAR, ASIDE = (0.3, 0.6, 0.9, 1.2), (math.pi / 2, -2.4, math.pi)
 SLOW = 0.05
 """Whoever is slower than this [m/s] from some moment on rests from then on."""
 
@@ -66,6 +67,7 @@ def main() -> None:
     someone, rng = person(), np.random.default_rng(0)
     told("walk_to, straight on", [sent(someone, ((0.0, far),), speed) for speed in SPEEDS for far in FAR])
     told("walk_to, another way or round a corner", [sent(someone, points, 1.2) for points in WAYS])
+    told("walk_to, a few steps another way", [sent(someone, ((far * math.sin(way), far * math.cos(way)),), 1.2) for way in ASIDE for far in NEAR])
     told("walk_to, running", [sent(someone, points, speed) for points, speed in RUNS])
     places = [rng.uniform((-3, 1), (3, 5)) for _ in range(asked.goals)]
     told("go_to", [planned(someone, Goal(tuple(place))) for place in places])

@@ -205,3 +205,15 @@ def test_nobody_is_sent_to_the_sky(walker):
     press(game, "T")
     wait(game, 0.3)
     assert game.now.players[0].goal is None
+
+
+def test_a_few_steps_another_way_end_at_the_place():
+    """Who walks a metre and has to turn first turns on the spot: a turn into a walk would lead past it."""
+    walker = Locomotion.load()
+    for way in (np.pi / 2, np.pi):
+        place = 0.9 * np.array([np.sin(way), np.cos(way)])
+        script, state = Script((Move(math.inf, points=(tuple(place),), speed=1.2),)), walker.start()
+        for _ in range(330):
+            script, intent = script.step(state, 1 / 60)
+            state, _ = walker.step(state, intent, 1 / 60)
+        assert np.hypot(*(state.ground[:2] - place)) < 0.02

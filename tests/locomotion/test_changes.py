@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gambol.controllers.body import anatomy, centre_of_mass, contact_points, forward_kinematics, rotations as rot
+from gambol.controllers.body import anatomy, centre_of_mass, contact_points, feet_apart, forward_kinematics, rotations as rot
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import HIPS, LABELS, Locomotion, Settings, fourier
 from playing import FPS, hold, mean_velocity, play, whims
@@ -45,6 +45,42 @@ def test_a_runner_who_stops_does_not_run_backwards(locomotion):
         assert velocity[frame:, n, 2].min() > -0.12
         assert np.abs(velocity[frame + round(1.6 * FPS):, n]).max() < 0.3
         assert motion.ground[-1, n, 1] - motion.ground[frame, n, 1] < 2.15
+
+
+def test_a_careful_runner_stops_without_a_step_back_and_a_quick_one_sooner(library):
+    """Where a stop ends is planned with what these legs push, at any agility."""
+    rests = []
+    for agility in (0.6, 1.0, 2.0):
+        walker = Locomotion(library, Settings(agility=agility))
+        motion, asked = changed(walker, (3.0, 0, 0), (0, 0, 0))
+        velocity, _ = mass_centre(walker, motion)
+        assert min(velocity[frame:, n, 2].min() for n, frame in enumerate(asked)) > -0.12
+        speed = np.linalg.norm(velocity[..., [0, 2]], axis=-1)
+        rests.append(np.mean([np.flatnonzero(speed[frame:, n] > 0.15)[-1] / FPS for n, frame in enumerate(asked)]))
+    assert rests[0] > rests[1] + 0.3 and rests[1] > rests[2] + 0.15
+
+
+def test_a_runner_told_to_turn_on_the_spot_brakes_first(locomotion):
+    motion, asked = changed(locomotion, (3.5, 0, 0), (0, 1.5, 0))
+    for n, frame in enumerate(asked):
+        velocity = np.array([s.velocity[n] for s in motion.states[frame:]])
+        assert np.abs(velocity[velocity[:, 0] > 2.3, 1]).max() < 0.2
+        assert velocity[-1, 1] == pytest.approx(1.5, abs=0.05) and abs(velocity[-1, 0]) < 0.1
+    assert feet_apart(locomotion.skeleton, motion.positions, motion.orientations)[asked.min():].min() > 0.06
+
+
+def test_a_foot_about_to_land_is_not_sent_elsewhere(locomotion):
+    """Who goes on in the very last moment of a stop has a foot on its way beside the other: it lands there, rather than whip to where it would be now."""
+    strides = 40
+    wish = np.tile([1.3, 0, 0], (round(4.5 * FPS), strides, 1)).astype(float)
+    wish[2 * FPS:] = 0.0
+    for n in range(strides):
+        wish[2 * FPS + n + 10:, n] = 1.0, -1.3, 0.0
+    motion = play(locomotion, wish)
+    second = motion.positions[4:] - 2.0 * motion.positions[2:-2] + motion.positions[:-4]
+    feet = [locomotion.skeleton.index(name) for name in ("LeftFoot", "RightFoot")]
+    over = np.linalg.norm(second * (FPS / 2) ** 2, axis=-1)[2 * FPS:, :, feet] / locomotion.library.accelerations["walk"][feet]
+    assert over.max() < 4.0
 
 
 def test_who_starts_leans_into_it_no_harder_than_legs_push(locomotion):

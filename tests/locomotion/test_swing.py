@@ -68,7 +68,7 @@ def _ways(memory, settings, space, table, turns, body, legs, joints):
     until, shares = np.empty((len(memory), 2)), np.empty((len(memory),) + ahead.shares.shape)
     way = np.empty((len(memory),) + ahead.way.shape)
     for n in range(len(memory)):
-        plan_footholds(memory[n], settings, space, table, turns, body, legs, ahead)
+        plan_footholds(memory[n], settings, space, table, turns, body, legs, ahead, True, 1 / FPS)
         until[n], shares[n], way[n] = ahead.until, ahead.shares, ahead.way
     return until, shares, way
 

@@ -6,6 +6,7 @@ installed with `pip install -e ".[search]"`.
 
 from __future__ import annotations
 
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,10 @@ def at_hand() -> bool:
     return find_spec("faiss") is not None
 
 
+def _faiss() -> Any:
+    return import_module("faiss")  # which says nothing of its types, and takes a moment to load
+
+
 class Lists:
     """Inverted lists over principal components. ImportError where Faiss is not installed.
 
@@ -34,7 +39,7 @@ class Lists:
     """
 
     def __init__(self, segments: Segments, lists: int | None = None, probes: int = 32, candidates: int = 600):
-        import faiss
+        faiss = _faiss()
 
         self.segments, self.probes, self.candidates = segments, probes, candidates
         self.projection = Projection.of(segments)
@@ -48,7 +53,7 @@ class Lists:
 
     def save(self, path: str | Path) -> None:
         """Write it into a folder of its own."""
-        import faiss
+        faiss = _faiss()
 
         Path(path).mkdir()
         faiss.write_index(self.index, str(Path(path) / "lists"))
@@ -57,7 +62,7 @@ class Lists:
     @staticmethod
     def load(path: str | Path, segments: Segments) -> Lists:
         """Read what `save` wrote of the same segments. OSError or ValueError for anything else."""
-        import faiss
+        faiss = _faiss()
 
         found = object.__new__(Lists)
         with np.load(Path(path) / "about.npz") as file:
@@ -74,7 +79,7 @@ class Lists:
     def query(self, feature: np.ndarray, k: int, hint: Any = None, forbidden: int | None = None
               ) -> tuple[np.ndarray, np.ndarray, Any]:
         """See `neighbours.Search`; there is no hint."""
-        import faiss
+        faiss = _faiss()
 
         first, end = self.segments.span(forbidden)
         allowed = faiss.IDSelectorNot(faiss.IDSelectorRange(first, end))

@@ -234,6 +234,8 @@ def cells(database: Database, controls: ControlPoints, m: int = 3, stride: int =
     """A database's segments to search, with these points; made on the first call, and kept on disk. By Faiss where there are many and it is
     at hand."""
     segments = Segments.of(database, m, stride, controls.joints)
-    how, source = (Lists, "neighbours/lists.py") if len(segments) >= MANY and at_hand() else (Cells, "neighbours/cells.py")
-    return kept("cells", database, (m, stride, segments.joints), lambda: how(segments), how.save, lambda path: how.load(path, segments),
-                ("pose_vector.py", "neighbours/segments.py", "neighbours/features.py", "neighbours/search.py", source))
+    how: type[Cells | Lists] = Lists if len(segments) >= MANY and at_hand() else Cells
+    return kept("cells", database, (m, stride, segments.joints), lambda: how(segments), lambda made, path: made.save(path),
+                lambda path: how.load(path, segments),
+                ("pose_vector.py", "neighbours/segments.py", "neighbours/features.py", "neighbours/search.py",
+                 "neighbours/lists.py" if how is Lists else "neighbours/cells.py"))
