@@ -69,6 +69,13 @@ def mean(matrix: np.ndarray, axis: int = 0) -> np.ndarray:
     return u @ vt
 
 
+def carried(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What heading carries vectors a (..., n, 3) nearest to b (..., n, 3), as arctan2(across, along) of the parts (...) along and across that
+    are given: Procrustes about the vertical. Parts of several sets add up."""
+    return (np.sum(a[..., 0] * b[..., 0] + a[..., 2] * b[..., 2], -1),
+            np.sum(b[..., 0] * a[..., 2] - b[..., 2] * a[..., 0], -1))
+
+
 def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """The smallest rotations (..., 3, 3) that carry directions a onto b, both (..., 3).
 

@@ -47,13 +47,12 @@ SWAYS, STEPS, FALLS, DROPS = range(4)
 
 
 class Way(NamedTuple):
-    """Where it goes. centre, velocity, pressed: (N, 2) x, z of the mass centre [m], its velocity [m/s], and of the pressure under the soles [m], at RATE. steps: (S, 7) of each
+    """Where it goes. centre, velocity: (N, 2) x, z of the mass centre [m] and its velocity [m/s], at RATE. steps: (S, 7) of each
     step its side, 0 left or 1 right, when it lifts and lands [s], and where its ball comes down and points: x, z [m], yaw [rad], and how high the ground lies there [m]. levels: (2,)
     how high it lies under the feet as they stand [m]. fate: SWAYS, STEPS, FALLS or DROPS. caught: how many steps it took to catch it."""
 
     centre: np.ndarray
     velocity: np.ndarray
-    pressed: np.ndarray
     steps: np.ndarray
     levels: np.ndarray
     fate: int
@@ -66,19 +65,19 @@ def way(centre: np.ndarray, velocity: np.ndarray, feet: np.ndarray, free: np.nda
     in the air. rate: ω [1/s]. wish: (2,) [m/s] in the world, how it wants to move on. floor: [m] on which it stands. things: (K, 9) what stands about, as of `about`. over: it is not to
     fall, but to go on until a foot comes down over an edge."""
     count = int(LONGEST * RATE)
-    out = np.empty((3, count, 2))
+    out = np.empty((2, count, 2))
     steps, stood = np.empty((2 * MOST + 4, 7)), np.empty((2, 4))
     stood[:, :3] = feet
     for side in range(2):
         stood[side, 3] = floor if free[side] else tread_kernel(things, stood[side, 0], stood[side, 1], floor + 0.2, float(floor))
     levels = stood[:, 3].copy()
     n, taken, fate, caught = way_kernel(np.asarray(centre, float), np.asarray(velocity, float), stood, np.array(free, bool), float(heading), float(rate),
-                                        np.asarray(wish, float), body, things, bool(over), out[0], out[1], out[2], steps)
-    return Way(out[0, :n].copy(), out[1, :n].copy(), out[2, :n].copy(), steps[:taken].copy(), levels, fate, caught)
+                                        np.asarray(wish, float), body, things, bool(over), out[0], out[1], steps)
+    return Way(out[0, :n].copy(), out[1, :n].copy(), steps[:taken].copy(), levels, fate, caught)
 
 
 @kernel
-def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, over, centres, velocities, pressures, steps):
+def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, over, centres, velocities, steps):
     """See `way`. Returns how many moments and steps, the fate, and the steps that caught it."""
     x, v, p, goal, point = centre.copy(), velocity.copy(), centre.copy(), np.empty(2), np.empty(2)
     points, corners, target, other = np.empty((8, 2)), np.empty((9, 2)), np.empty(4), np.empty(2)
@@ -92,7 +91,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
         into_kernel(corners, count, p)
     for n in range(len(centres)):
         now = n * dt
-        centres[n], velocities[n], pressures[n] = x, v, p
+        centres[n], velocities[n] = x, v
         point_kernel(things, feet[stance, 3], body.size, x, v, rate, point)
         count = support_kernel(body, feet, free, points, corners)
         if swing >= 0:

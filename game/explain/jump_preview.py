@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
@@ -25,8 +26,8 @@ STRIKES = 0.2
 """So far ahead of its centre of mass a runner's foot strikes [m], at standard height."""
 SINKS = 0.7
 """So fast a runner's centre of mass sinks as a foot strikes [m/s]."""
-ALIKE = 0.03
-"""A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places."""
+ALIKE, TURNED = 0.03, 0.1
+"""A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places, if it is to land turned by less than the second [rad]."""
 
 HITS = "would hit"
 """What is said of jumps in which something is touched."""
@@ -168,12 +169,19 @@ def _pushing(jump: Jump, start: Start) -> Start:
 
 def _moved(before: Preview, now: Preview) -> bool:
     """Whether a jump is another one than a moment ago."""
-    return bool(np.linalg.norm(before.place - now.place) > ALIKE or np.linalg.norm(before.stand - now.stand) > ALIKE)
+    return bool(np.linalg.norm(before.place - now.place) > ALIKE or np.linalg.norm(before.stand - now.stand) > ALIKE or _turned(before, now))
+
+
+def _turned(before: Preview, now: Preview) -> bool:
+    """Whether it is to land in another heading, with which it reaches other places."""
+    if before.heading is None or now.heading is None:
+        return before.heading is not now.heading
+    return abs(math.remainder(before.heading - now.heading, math.tau)) > TURNED
 
 
 def _same_way(before: Preview, now: Preview) -> bool:
     """Whether what can be reached on the way to a place is what it was a moment ago."""
-    if not before.fault or abs(before.place[1] - now.place[1]) > ALIKE or np.linalg.norm(before.stand - now.stand) > ALIKE:
+    if not before.fault or abs(before.place[1] - now.place[1]) > ALIKE or np.linalg.norm(before.stand - now.stand) > ALIKE or _turned(before, now):
         return False
     old, new = ((one.place - one.stand)[[0, 2]] for one in (before, now))
     if before.nearest is None:

@@ -92,6 +92,8 @@ def test_the_nearest_place_is_not_sought_anew_while_one_aims_the_same_way(beyond
     turned = replace(seen, nearest=seen.stand + [0.5, 0.0, 1.5])
     previews(timeline.now, (replace(turned, place=seen.stand + [0.6, 0.0, 1.8]),))
     assert len(sought) == 1
+    previews(timeline.now, (replace(seen, heading=1.0),))
+    assert len(sought) == 2, "who is to land turned another way reaches other places"
 
 
 def test_who_lets_go_is_told_why_not_without_coordinates(beyond):

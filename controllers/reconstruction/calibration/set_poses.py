@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...body import contact_height, exp, heel_offset, log, yaw
+from ...body import carried, contact_height, exp, heel_offset, log, yaw
 from ..pose_vector import SKELETON
 from .simulated import TARGETS, likely, numbers, told
 from .stood import JOINTS, Stood
@@ -134,8 +134,8 @@ class _Fit:
         joints, orientations = _kinematics(SKELETON.offsets[None], asked[None], np.zeros((1, count, 3)))
         points = (joints[:, :, JOINTS] + np.einsum("bksij,sj->bksi", orientations[:, :, JOINTS], stood.offsets[0]))[0][:, worn]
         a, b = points - points.mean(1, keepdims=True), seen - seen.mean(1, keepdims=True)
-        heading = np.arctan2(np.sum(a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2], -1), np.sum(a[..., 0] * b[..., 0] + a[..., 2] * b[..., 2], -1))
-        headings = yaw(heading)
+        along, across = carried(a, b)
+        headings = yaw(np.arctan2(across, along))
         roots = seen.mean(1) - np.einsum("kij,kj->ki", headings, points.mean(1))
         lengths, deviations = likely()
         floor = np.zeros(())

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...body import yaw
+from ...body import carried, yaw
 from ..live import stances
 from ..pose_vector import SKELETON
 
@@ -53,8 +53,7 @@ class Stood:
         for points, orientations in zip(*STANCES, strict=True):
             goal = np.sum(weight[..., None] * points, -2) * flat
             b = np.where(worn, points - goal[..., None, :], 0.0)
-            along = np.sum(a[..., 0] * b[..., 0] + a[..., 2] * b[..., 2], -1)
-            across = np.sum(b[..., 0] * a[..., 2] - b[..., 2] * a[..., 0], -1)
+            along, across = carried(a, b)
             heading = np.arctan2(across, along)
             scale = (np.hypot(along, across) + np.sum(a[..., 1] * b[..., 1], -1)) / np.maximum(np.sum(a * a, (-2, -1)), 1e-12)
             turn = yaw(heading)

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...body import forward_kinematics, yaw
+from ...body import carried, forward_kinematics, yaw
 from ..control_points import ControlPoints
 from ..database import Database
 from ..pose_vector import SKELETON, YAW_RATE, advance, decode
@@ -72,9 +72,9 @@ class Starts:
         a, b = known - centre[:, None], goal - middle
         moves = None if velocities is None else np.where(np.isfinite(velocities), velocities, 0.0)[there] * PACE
         rates = self.velocities[:, there] * PACE
-        along, across = _turn(a, b)
+        along, across = carried(a, b)
         if moves is not None:
-            more = _turn(rates, moves)
+            more = carried(rates, moves)
             along, across = along + more[0], across + more[1]
         heading = np.arctan2(across, along)
         turn = yaw(heading)
@@ -86,12 +86,6 @@ class Starts:
         frames = self.database.frames[max(self.first[best], last - SPAN + 1):last + 1].astype(float)
         spot = middle - turn[best] @ centre[best]
         return frames, _tracks(frames, np.array([spot[0], spot[2], heading[best]]), 1 / self.database.fps)
-
-
-def _turn(a, b):
-    """Parts of the heading that carries vectors a (..., n, 3) onto b about the vertical."""
-    return (np.sum(a[..., 0] * b[..., 0] + a[..., 2] * b[..., 2], -1),
-            np.sum(b[..., 0] * a[..., 2] - b[..., 2] * a[..., 0], -1))
 
 
 def _points(frames, controls):

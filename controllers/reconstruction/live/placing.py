@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...body import STATURE, exp, forward_kinematics, yaw
+from ...body import STATURE, carried, exp, forward_kinematics, yaw
 from ..control_points import ControlPoints
 from ..pose_vector import SKELETON
 
@@ -120,8 +120,7 @@ def _align(seen, target, scale):
     """The least mean distance, and the placement that has it: Procrustes about the vertical, in closed form."""
     middle, goal = seen.mean(0), target.mean(0)
     a, b = seen - middle, target - goal
-    along = np.sum(a[:, 0] * b[:, 0] + a[:, 2] * b[:, 2])
-    across = np.sum(b[:, 0] * a[:, 2] - b[:, 2] * a[:, 0])
+    along, across = carried(a, b)
     heading = float(np.arctan2(across, along))
     if scale is None:
         scale = max(float((np.hypot(along, across) + np.sum(a[:, 1] * b[:, 1])) / max(np.sum(a * a), 1e-12)), 1e-3)
