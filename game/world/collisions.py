@@ -23,6 +23,7 @@ LEAST, DEEP = (0.7, 0.35), 0.1
 """Who closes in slower than the first [m/s] is brushed past, where trunks only touch; slower than the second, where they are so deep in each other [m]."""
 BACK = 0.1
 """Flesh gives back so much of the speed with which bodies meet."""
+_TOUCH = Strike((0.0, 0.0))
 HIGH = 0.35
 """A pelvis that is lower over its floor than this share of the body's height belongs to who is down; one that is farther above another's stands over him."""
 
@@ -32,7 +33,7 @@ def run_into(characters: Sequence[Any], intents: Sequence[Intent], number: int) 
     others. Those count who are there and answer strikes, whoever moves them; who follows points or a camera meets nobody."""
     found = list(intents)
     who = [i for i, one in enumerate(characters) if one.there(number) and one.follows is None and one.watches is None
-           and any(part.gain(Strike((0.0, 0.0))) is not None for part in one.controller.parts.values())]
+           and any(part.gain(_TOUCH) is not None for part in one.controller.parts.values())]
     if len(who) < 2:
         return found
     states, bodies = [characters[i].state for i in who], [physique_of(characters[i].controller) for i in who]

@@ -11,6 +11,7 @@ HELD = np.array([-1.45, 2.15, 0.3])
 DROPS = np.array([0.3, -0.2, 0.0])
 """How much less as the other leg gives, for it falls with the body and swings up with the push [rad]."""
 
+
 def hopping(keys: np.ndarray, off: int | None, onto: int | None) -> np.ndarray:
     """The same keys (ROWS, COLUMNS) of one who hops off a foot onto a foot, 0 left, 1 right, None both: the other leg is held up."""
     keys = keys.copy()
