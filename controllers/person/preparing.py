@@ -89,7 +89,8 @@ def rest(walker: Locomotion) -> None:
     settings, row, three = walker.settings, np.zeros(COLUMNS, np.float32), np.zeros(3)
     _compile(step._weigh, memory, settings, dt, walk, run, table, changes, row, np.zeros(4), three, three, three)
     _compile(step.shape_command, memory, three, dt, dt, settings, table, walk, run, legs.stance, three, three)
-    _compile(step.plan_footholds, memory, settings, walk, table, turning, body, legs, step.room_to_plan(memory["weights"].size, len(local)))
+    _compile(step.plan_footholds, memory, settings, walk, table, turning, body, legs, step.room_to_plan(memory["weights"].size, len(local)),
+             True, dt)
     _compile(step.blend_series, memory, settings, table, row, legs, dt)
     _compile(step.turned_row, memory, turning, dt, row)
     _compile(step.pose_kernel, body, row, local, places, turns, np.zeros(SCRATCH, np.float32))
