@@ -33,8 +33,6 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     from ..input import load as load_bindings
 
     pixels, hands, body = pixels_of(size), load_bindings(bindings), body_of(character)
-    if replay is not None:  # what can't be is told of before anything is compiled
-        known(replay)
     sending = None
     if send is not None:
         from ..app import Sending
@@ -42,6 +40,8 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         sending = Sending(send)
     if network is not None:
         _own(network, replay)
+    if replay is not None:  # what can't be is told of before anything is compiled
+        known(replay)
     with unswept():
         from gambol.controllers.locomotion import Locomotion
         from gambol.controllers.person import person, preparing
