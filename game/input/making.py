@@ -86,7 +86,7 @@ class Making:
         if self.path is not None:
             wish, progress = follow(self.path, state.ground, np.float64(progress), move.speed, brake=BRAKE)
         facing = move.facing
-        if self.path is not None and facing is None and self.path.length - progress < FEW and np.hypot(state.velocity[0], state.velocity[2]) < SLOW:
+        if self.path is not None and move.jump is None and facing is None and self.path.length - progress < FEW and np.hypot(state.velocity[0], state.velocity[2]) < SLOW:
             way = math.atan2(*wish)
             if abs(math.remainder(way - float(state.ground[2]), math.tau)) > TURNS:  # nobody turns in a stride or two
                 wish, facing = np.zeros(2), way

@@ -35,7 +35,7 @@ def test_a_plan_waits_for_who_is_kept_from_it(walker):
     state = walker.start()
     for _ in range(90):
         state, _ = walker.step(state, Intent(goal=GOAL), 1 / 60)
-    for _ in range(60):  # until he stands
+    for _ in range(90):  # until he stands
         state, _ = walker.step(state, Intent(goal=GOAL, aside=stopped(state)), 1 / 60)
     time, plans = state.going.time, state.going.plans
     for _ in range(60):
