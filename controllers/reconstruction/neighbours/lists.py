@@ -1,6 +1,6 @@
 """Nearest segments by Faiss: inverted lists whose centres lie in a neighbour graph, for millions of poses (Douze et al. 2024).
 
-It finds more than `Cells` in a thirtieth of the time where there are ten million; below three million nobody needs it. Faiss is
+It finds what `Cells` finds in a tenth of the time where there are ten million; below three million nobody needs it. Faiss is
 installed with `pip install -e ".[search]"`.
 """
 
