@@ -12,9 +12,9 @@ import numpy as np
 from gambol.controllers.body import forward_kinematics, human
 
 from ..camera import Follow, between
-from ..hosts import Event, KeyEvent
 from ..scene import Dot, Figure, Hint, Overlays, Scene
 from .app import Play
+from .waiting import Waiting
 
 GHOST, SEEN = (0.30, 0.52, 0.60), (0.95, 0.75, 0.25)
 """The colours of what is asked for and of trackers that are seen."""
@@ -37,32 +37,16 @@ class Left(Exception):
     """Whoever was asked has left."""
 
 
-class Asking:
+class Asking(Waiting):
     """The app that a window opens with while trackers are waited for. ask: does it, given whom to tell what is asked and what is known, in
     words; it runs beside the pictures. make: makes the game once that is over. What `ask` raises, `tick` does.
     """
 
-    full_screen = property(lambda self: self.game is not None and self.game.full_screen)
-    mouse_captured = property(lambda self: self.game is not None and self.game.mouse_captured)
-    wants_picture = property(lambda self: self.game is not None and self.game.wants_picture)
-
     def __init__(self, ask: Callable[[Callable[[Asked], None], Callable[[str], None]], None], make: Callable[[], Play]):
-        self.make, self.asked, self.said, self.left = make, Asked(), "", False
-        self.game: Play | None = None
+        super().__init__(make)
+        self.asked, self.said = Asked(), ""
         self.fault: BaseException | None = None
         self._ask, self._thread = ask, threading.Thread(target=self._run, name="asking", daemon=True)
-
-    @property
-    def done(self) -> bool:
-        """Whether it wants to end."""
-        return self.left or self.game is not None and self.game.done
-
-    def handle(self, event: Event) -> None:
-        """Take an event; before the game begins one can only leave."""
-        if self.game is not None:
-            self.game.handle(event)
-        elif event == KeyEvent("ESCAPE", True):
-            self.left = True
 
     def tick(self, seconds: float) -> None:
         """Let `seconds` pass; the game begins as soon as nothing is asked any more."""
@@ -87,11 +71,6 @@ class Asking:
         words = asked.words + ("" if asked.left is None else f"   {asked.left:.0f} s")
         return Scene(between(camera, camera, 1.0), (ghost,), overlays=Overlays(points=True), text=tuple(filter(None, (asked.known or self.said,))),
                      hint=Hint(((words, False),)) if words else None)
-
-    def take(self, pixels: np.ndarray) -> None:
-        """Keep the picture that the game asked for."""
-        if self.game is not None:
-            self.game.take(pixels)
 
     def close(self) -> None:
         """End the game, if there is one, or what is asked."""

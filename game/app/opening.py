@@ -12,11 +12,11 @@ from gambol.controllers.locomotion import Library
 from gambol.controllers.navigation import drift
 
 from ..camera import Follow, between
-from ..hosts import Event, KeyEvent
 from ..scene import Figure, Scene
 from ..world import COURSE, nearest, posed
 from .app import Play
 from .preparing import Preparing
+from .waiting import Waiting
 
 REST, LONGEST = 3.0, 0.4
 """Between pictures, so many times as long as one takes [s], and at most: the cores have other things to do."""
@@ -26,33 +26,16 @@ SETS_OFF = np.array([0.0, 0.0, -np.pi / 2])
 """From where the game begins [m], to the right [rad], so that all of the round lies in the picture."""
 
 
-class Opening:
+class Opening(Waiting):
     """The app that a window opens with: somebody who walks by themselves until one can steer them, and then the game.
 
     make: makes the game, once it can begin. time: that it was waited for [s]; slept: of that, since the last picture.
     """
 
-    full_screen = property(lambda self: self.game is not None and self.game.full_screen)
-    mouse_captured = property(lambda self: self.game is not None and self.game.mouse_captured)
-    wants_picture = property(lambda self: self.game is not None and self.game.wants_picture)
-
     def __init__(self, make: Callable[[], Play], preparing: Preparing):
-        self.make, self.preparing = make, preparing
-        self.game: Play | None = None
-        self.left, self.drawn = False, False
+        super().__init__(make)
+        self.preparing, self.drawn = preparing, False
         self.time = self.slept = 0.0
-
-    @property
-    def done(self) -> bool:
-        """Whether it wants to end."""
-        return self.left or self.game is not None and self.game.done
-
-    def handle(self, event: Event) -> None:
-        """Take an event; before the game begins one can only leave."""
-        if self.game is not None:
-            self.game.handle(event)
-        elif event == KeyEvent("ESCAPE", True):
-            self.left = True
 
     def tick(self, seconds: float) -> None:
         """Let `seconds` pass; the game begins as soon as it can."""
@@ -74,11 +57,6 @@ class Opening:
             people = (strolling(self.preparing.walker.library, self.time),)
         self.drawn = True
         return Scene(between(camera, camera, 1.0), people, props=COURSE, text=self.preparing.said)
-
-    def take(self, pixels: np.ndarray) -> None:
-        """Keep the picture that the game asked for."""
-        if self.game is not None:
-            self.game.take(pixels)
 
     def close(self) -> None:
         """End the game, if there is one, and whatever is still compiled for it."""
