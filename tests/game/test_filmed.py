@@ -11,7 +11,7 @@ from scenarios import tells, written
 from stand_in import Glide
 from steady import walker  # noqa: F401, a fixture
 from test_gambol_track import footage  # noqa: F401, a fixture
-from test_log import play
+from logged import play
 
 from gambol.controllers.contract import Intent
 from gambol.game.app import Play, Teacher
