@@ -236,7 +236,7 @@ def test_the_page_of_a_scenarios_fields_is_what_the_program_prints():
 
 
 def test_the_page_of_commands_is_what_they_tell():
-    """Made anew by `scripts/build/commands_page.py > docs/commands.md`."""
-    done = subprocess.run([sys.executable, ROOT / "scripts" / "build" / "commands_page.py"], capture_output=True, timeout=120)
+    """Made anew by `scripts/build/pages/commands_page.py > docs/commands.md`."""
+    done = subprocess.run([sys.executable, ROOT / "scripts" / "build" / "pages" / "commands_page.py"], capture_output=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert (ROOT / "docs" / "commands.md").read_text("utf-8") == done.stdout.decode("utf-8").replace("\r\n", "\n")

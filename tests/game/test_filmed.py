@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from logged import play
 from scenarios import tells, written
 from stand_in import Glide
 from steady import walker  # noqa: F401, a fixture
 from test_gambol_track import footage  # noqa: F401, a fixture
-from logged import play
 
 from gambol.controllers.contract import Intent
 from gambol.game.app import Play, Teacher

@@ -1,6 +1,6 @@
 """Every command with its options as a page, `docs/commands.md`, from what the commands themselves tell:
 
-    .venv/bin/python scripts/build/commands_page.py > docs/commands.md
+    .venv/bin/python scripts/build/pages/commands_page.py > docs/commands.md
 """
 
 from __future__ import annotations
