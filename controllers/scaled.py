@@ -62,7 +62,9 @@ class Scaled(Controller):
         return self.controller.readiness(state)
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
-        """Standing at x, z [m], heading, on a floor so high [m]."""
+        """Standing at x, z [m], heading, on a floor so high [m]. ValueError for more than one."""
+        if np.shape(ground) != (3,):
+            raise ValueError(f"characters come singly in another size: a ground is x, z, heading; got shape {np.shape(ground)}")
         x, z, heading = (float(v) for v in ground)
         return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
 

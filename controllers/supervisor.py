@@ -24,6 +24,9 @@ MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
 on other feet."""
 
 
+ALONE = "characters come singly; a crowd that only walks is stepped by the locomotion itself"
+
+
 TAKEN = "its next steps take in what pushed it"
 """Why who walks or runs goes on, pushed."""
 
@@ -97,14 +100,18 @@ class Supervisor(Controller):
         return self.parts[name].readiness(own)
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
-        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high."""
+        """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. ValueError for more than one."""
+        if np.ndim(ground) != 1:
+            raise ValueError(f"{ALONE}; got a ground of shape {np.shape(ground)}")
         state = self.parts[self.first].start(ground, floor)
         return replace(state, memory=Duty(self.first, state.memory, "it starts here"))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise) by whoever is best for it now."""
+        """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise) by whoever is best for it now. ValueError for a state of another controller."""
         dt = seconds(dt)
         duty = state.memory
+        if not isinstance(duty, Duty):
+            raise ValueError("this state is not of several controllers: enter it first")
         way = None
         if intent.goal is not None:
             way, intent = going(state, intent, self, duty.active == self.first, dt)

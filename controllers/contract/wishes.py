@@ -15,11 +15,19 @@ HIGHEST = 1e5
 """No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
 
 
+def _numbers(name: str, value: Any) -> np.ndarray:
+    try:
+        return np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: needs numbers, got {value!r}") from None
+
+
 @dataclass(frozen=True, eq=False)
 class Leap:
     """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land, or
     None for where it is now: straight up.
 
+    ValueError for what is none of these; a place or time that nobody can leap to is for the controller to refuse.
     airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
     on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or run on.
@@ -30,6 +38,19 @@ class Leap:
     slack: float = 0.0
     heading: float | None = None
     on: Literal["left", "right", "both"] | None = None
+
+    def __post_init__(self):
+        if self.place is not None:
+            object.__setattr__(self, "place", place := _numbers("a leap's place", self.place))
+            if place.shape != (3,):
+                raise ValueError(f"a leap's place is x, y, z [m], or None; got {self.place!r}")
+        for name in ("airtime", "slack", "heading"):
+            if getattr(self, name) is not None and _numbers(f"a leap's {name}", getattr(self, name)).shape:
+                raise ValueError(f"a leap's {name} is one number, got {getattr(self, name)!r}")
+        if not 0.0 <= self.slack < math.inf:
+            raise ValueError(f"a leap's slack must be 0 m or more, got {self.slack!r}")
+        if self.on not in (None, "left", "right", "both"):
+            raise ValueError(f'a leap is on "left", "right" or "both", or None; got {self.on!r}')
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
@@ -116,6 +137,7 @@ class Intent:
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
     aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again.
     strike: what hits the body as this step begins, whatever is wanted; None for nothing. One in the air is struck once it stands again.
+    ValueError for a field of another kind.
     """
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -133,6 +155,18 @@ class Intent:
     towards: np.ndarray | None = None
     strike: Strike | None = None
 
+    def __post_init__(self):
+        if np.shape(self.velocity)[-1:] != (3,):
+            raise ValueError(f"a velocity is (..., 3) forward [m/s], turning [rad/s], left [m/s]; got {self.velocity!r}")
+        for name, kind in _KINDS:
+            if not isinstance(value := getattr(self, name), kind | None):
+                raise ValueError(f"an intent's {name} is a {kind.__name__}, or None; got {value!r}")
+        if not hasattr(self.around, "__getitem__"):
+            raise ValueError(f"around is a sequence of what stands about, empty for nothing; got {self.around!r}")
+        for one in self.around[:1]:  # as the first, so the others
+            if not (hasattr(one, "centre") or hasattr(one, "foot")):
+                raise ValueError(f"what stands about has a box's centre, size and heading, or a pillar's foot, radius and height; got {one!r}")
+
     @staticmethod
     def tangential(v_t, omega, v_l) -> Intent:
         """The intent in Truong's terms: tangential (total) speed v_t, ω and v_l, each (...).
@@ -145,3 +179,6 @@ class Intent:
             raise ValueError("the lateral speed can't exceed the tangential (total) speed")
         v_f = np.copysign(np.sqrt(np.maximum(v_t**2 - v_l**2, 0.0)), v_t)
         return Intent(np.stack([v_f, omega, v_l], -1))
+
+
+_KINDS = (("leap", Leap), ("goal", Goal), ("sighting", Sighting), ("aim", Leap), ("strike", Strike))

@@ -97,8 +97,8 @@ class Locomotion(Controller):
         ValueError unless finite."""
         level(floor)
         ground = np.asarray(ground, float)
-        if ground.shape[-1:] != (3,) or not np.isfinite(ground).all():
-            raise ValueError(f"ground must be finite (..., 3) x, z, heading; got {ground!r}")
+        if ground.shape[-1:] != (3,) or not (np.abs(ground) <= HIGHEST).all():
+            raise ValueError(f"ground must be (..., 3) x, z, heading within ±{HIGHEST:g}; got {ground!r}")
         memory = np.zeros(ground.shape[:-1], self._dtype)
         memory["ground"] = ground
         memory["weights"][..., self.library.rest] = 1.0
@@ -152,7 +152,7 @@ class Locomotion(Controller):
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
         here = _spread(state.floor, shape).reshape(-1)
-        parts = ceil(dt / FINEST - 1e-6)
+        parts = max(1, ceil(dt / FINEST - 1e-6))  # what is left of a frame may be as short as rounding
         for _ in range(parts):
             floor = here.copy()
             step_kernel(memory, wish, dt / parts, self.settings, *self.tables, ground, here, root, local)

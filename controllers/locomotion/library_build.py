@@ -23,6 +23,8 @@ from .first_stride_build import starts
 from .turning_step_build import turns
 from .velocity_correction import settle
 
+SHORTEST = 0.6
+"""What is shorter [s] holds no cycle."""
 LONE, STRAIGHT = 4, 0.15
 """Fewer cycles than the first that go straight ahead (turning [rad/s] and going aside [m/s] less than the second) are averaged
 with their mirror images: one stride's limp is nobody's gait."""
@@ -95,7 +97,7 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
     total, done, problems, tracks = sum(map(len, found.values())), 0, [], []
     if not total:
         raise LibraryError(f"{folder}: no .bvh or .amc files in it" + (
-            "" if folder.is_dir() else " (no such folder)"))
+            "" if folder.is_dir() else " (it is a file; a folder of them is needed)" if folder.exists() else " (no such folder)"))
     for (number, parent), paths in found.items():
         groups: dict[tuple, list[Clip]] = {}
         for path in paths:
@@ -104,15 +106,17 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
                 progress("reading", done, total)
             try:
                 clip = load(path)
-                if len(clip) * clip.frame_time > 0.6:
+                if len(clip) * clip.frame_time > SHORTEST:
                     groups.setdefault(_same_skeleton(clip), []).append(clip)
+                else:
+                    problems.append(f"{path}: {len(clip) * clip.frame_time:.2f} s are too short for a cycle; more than {SHORTEST:g} are needed")
             except MotionFileError as error:
                 problems.append(str(error))
         for clips in groups.values():
             try:
                 calibration = calibrate(clips)
             except ValueError as error:
-                problems.append(f"{parent}: {error}")
+                problems.append(f"{parent}: {', '.join(clip.name for clip in clips[:3])}{', …' * (len(clips) > 3)}: {error}")
                 continue
             for clip in clips:
                 tracks.append((track(retarget(clip, calibration=calibration)), sources[number], parent))

@@ -11,7 +11,7 @@ import numpy as np
 from .parsing import decode, fail, number, numbers, whole
 
 CHANNELS = {f"{axis}{kind}": (kind, i) for kind in ("rotation", "position") for i, axis in enumerate("xyz")}
-LONGEST = 60.0
+LONGEST = 2.0
 """The longest time between two frames [s]: what is farther apart is no motion, and would be filled with millions of frames."""
 _LAST_LINE = re.compile(rb"^[ \t]*frame[ \t]+time\b[^\n]*\n?", re.IGNORECASE | re.MULTILINE)
 _COLON = re.compile(r"^(\s*(?:frames|frame\s+time)\s*:)", re.IGNORECASE | re.MULTILINE)
@@ -75,7 +75,8 @@ def read_header(data: bytes, path) -> tuple[list[Joint], int, float, int]:
     words.expect("Time:" if words.peek().endswith(":") else "Time")
     frame_time = number(words.take().lstrip(":"), path, words.line)
     if not 0.0 < frame_time <= LONGEST:
-        words.fail(f"the Frame Time must be above zero and at most {LONGEST:g} seconds, not {frame_time:g}")
+        rate = f"; {frame_time:g} frames a second would be {1 / frame_time:.6g}" if 0.0 < frame_time < 1000.0 else ""
+        words.fail(f"the Frame Time must be above zero and at most {LONGEST:g} seconds, not {frame_time:g}{rate}")
     if words.peek():
         words.fail(f"{_quote(words.take())} after the Frame Time: the frames begin on the next line")
     return joints, frames, frame_time, body

@@ -44,6 +44,14 @@ class Roles:
     neck: tuple[int, ...]
 
 
+class NoHuman(ValueError):
+    """A skeleton that is no whole human; `missing` are its parts that were not found."""
+
+    def __init__(self, message: str, missing: list[str]):
+        super().__init__(message)
+        self.missing = missing
+
+
 def plain(name: str) -> str:
     """A joint's name without namespace, punctuation, case and a tool's prefix."""
     short = re.sub(r"[^a-z0-9]", "", name.split(":")[-1].lower())
@@ -53,7 +61,7 @@ def plain(name: str) -> str:
 def roles(skeleton: Skeleton) -> Roles:
     """Find the parts of a human in any skeleton.
 
-    ValueError, naming the missing parts and the names there are, if it has no legs, arms or head.
+    NoHuman, naming the missing parts and the names there are, if it has no legs, arms or head.
     """
     known = {}
     for number, name in enumerate(skeleton.names):
@@ -72,7 +80,8 @@ def roles(skeleton: Skeleton) -> Roles:
     found.setdefault("Hips", 0)
     missing = [part for part in (*_NEEDED, "Head") if part not in found]
     if missing:
-        raise ValueError(f"not a human we know: no {', '.join(missing)} among {', '.join(skeleton.names)}")
+        names = ", ".join(skeleton.names[:60]) + ", …" * (len(skeleton) > 60)
+        raise NoHuman(f"not a human we know: no {', '.join(missing)} among {names}", missing)
     above = _path(skeleton, found["LeftArm"])
     others = _path(skeleton, found["RightArm"])
     chest = max(i for i in above if i in others)

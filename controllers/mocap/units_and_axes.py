@@ -81,7 +81,7 @@ def detect(clip: Clip, *, up: str | None = None, scale: float | None = None, tpo
     """
     leg = leg_length(clip.skeleton)
     if scale is None:
-        scale = _unit(leg)
+        scale = _unit(leg, clip.skeleton)
     tpose = _calibration_frames(clip) if tpose is None else int(tpose)
     moving = clip.slice(min(tpose, len(clip) - 1), len(clip))
     positions, _ = moving.kinematics()
@@ -129,12 +129,14 @@ def _joints(skeleton: Skeleton, pattern: str) -> list[int]:
     return [j for j, fit in enumerate(fits) if fit and (j == 0 or not fits[skeleton.parents[j]])]
 
 
-def _unit(leg: float) -> float:
+def _unit(leg: float, skeleton: Skeleton) -> float:
     if not leg > 0:
-        raise MotionFileError("no foot or ankle to judge the unit by: give scale= (metres in one unit)")
+        names = ", ".join(skeleton.names[:6]) + ", …" * (len(skeleton) > 6)
+        raise MotionFileError(f"no foot or ankle by which to judge the unit among its joints ({names}); wanted are names such as "
+                              "LeftFoot, L_Ankle or mixamorig:LeftFoot")
     best = min(UNITS, key=lambda unit: abs(np.log(unit * leg / LEG)))
     if not 0.4 < best * leg < 1.4:
-        raise MotionFileError(f"a leg of {leg:.4g} units fits no unit we know: give scale= (metres in one unit)")
+        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches")
     return best
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gambol.controllers.body import Skeleton
-from gambol.controllers.mocap import Roles, plain, roles
+from gambol.controllers.mocap import NoHuman, Roles, plain, roles
 
 from ..render import skin
 from .gltf import CharacterError, Document, Nodes
@@ -64,9 +64,9 @@ def _by_name(document: Document, tree: Nodes, joints: set[int]) -> dict[str, int
     skeleton = Skeleton(tuple(names), parents, np.zeros((len(names), 3)), np.zeros(0, int), np.zeros((0, 3)))
     try:
         known = roles(skeleton)
-    except ValueError:
+    except NoHuman as error:
         some = ", ".join(names[1:9]) + (", …" if len(names) > 9 else "")
-        raise CharacterError(f"{document.path}: no human that can be told by its joints' names ({some}); wanted are names "
+        raise CharacterError(f"{document.path}: no human that can be told by its joints' names ({some}): no {', '.join(error.missing)}; wanted are names "
                              "as Mixamo, VRM, Unreal or Blender's rigs give: Hips, LeftUpLeg, LeftArm, Head, …") from None
     number = dict(known.limbs)
     if plain(skeleton.names[number["Hips"]]) not in ("hips", "hip", "pelvis"):

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say
+from .base import Library, Mistake, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say
 
 
 @app.command()
@@ -64,11 +64,14 @@ def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb fi
     from ..files import output_file
 
     output_file(out, ".glb")
-    bones = None
-    if skeleton is not None:
-        from gambol.controllers.mocap import load
+    bones, build = None, Build(height, weight, child, shoulders, hips)
+    from gambol.controllers.mocap import NoHuman, load
 
+    if skeleton is not None:
         bones = load(skeleton).skeleton
-    body = tailored(Build(height, weight, child, shoulders, hips), bones, out.stem)
+    try:
+        body = tailored(build, bones, out.stem)
+    except NoHuman as error:
+        raise Mistake(f"--skeleton {skeleton}: {error}") from None
     write(out, [Actor(out.stem, body, joints_of(body))])
     say(f"{out}: {height:g} m, {len(body.levels[0].triangles)} triangles; `gambol play --character {out}` wears it")

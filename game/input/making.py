@@ -10,7 +10,7 @@ import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, Status, but
 from gambol.controllers.jump import Jumping
-from gambol.controllers.navigation import Path, follow, steer
+from gambol.controllers.navigation import Path, floor_at, follow, steer
 
 from .moves import Jump, Move
 from .pilot import STEERING
@@ -27,6 +27,10 @@ ASKEW = 0.15
 """A standing body faces where it jumps to within this [rad]."""
 PATIENCE = 1.0
 """So long [s] a jump that can't be made from a stand is asked for."""
+HOPS_UP = 0.4
+"""What is higher over the ground than this [m] is hopped against, not onto."""
+LAST, BENDS = 0.3, 1.25
+"""So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
 AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
 
@@ -91,7 +95,7 @@ class Making:
             if abs(math.remainder(way - float(state.ground[2]), math.tau)) > TURNS:  # nobody turns in a stride or two
                 wish, facing = np.zeros(2), way
         intent = steer(state.ground, wish, facing, state.velocity[1], STEERING)
-        if self.path is not None and move.jump is None:
+        if self.path is not None and move.jump is None and self.path.length - progress < LAST + BENDS * math.dist(self.path.points[-1], state.ground[:2]):
             intent = but(intent, halt=np.array([*self.path.points[-1], math.nan if move.facing is None else move.facing]))
         return replace(self, progress=float(progress)), intent
 
@@ -103,7 +107,8 @@ class Making:
         place, onward = np.array([state.ground[0], float(state.floor), state.ground[1]] if jump.place is None else jump.place), jump.place
         if jump.hop is not None:
             before = self.hopped or (state.ground[0], state.ground[1], float(state.ground[2]))
-            place = onward = np.array([before[0] + jump.hop * math.sin(before[2]), float(state.floor), before[1] + jump.hop * math.cos(before[2])])
+            x, z = float(before[0] + jump.hop * math.sin(before[2])), float(before[1] + jump.hop * math.cos(before[2]))
+            place = onward = np.array([x, floor_at(x, z, jump.around, float(state.floor) + HOPS_UP), z])
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         if move.runs:

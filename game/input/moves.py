@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from gambol.controllers.contract import Goal
 
@@ -14,7 +14,8 @@ class Jump:
 
     within: a runner jumps no farther from it than this [m]; None: as its speed suggests. slow: how much longer flights
     take than on Earth, √(9.81 / g). aims: so long [s] a standing body crouches first, aiming. heading: [rad] in which it lands; None: as it went off.
-    hop: instead of a place, so far ahead [m] of where its feet stand. on: the feet on which it lands to hop on, see `Leap`.
+    hop: instead of a place, so far ahead [m] of where its feet stand, on what is highest there of `around`, as far up as somebody hops. on: the feet
+    on which it lands to hop on, see `Leap`.
     """
 
     place: tuple[float, float, float] | None = None
@@ -24,6 +25,7 @@ class Jump:
     aims: float = 0.0
     heading: float | None = None
     hop: float | None = None
+    around: tuple[Any, ...] = ()
     on: Literal["left", "right", "both"] | None = None
 
 

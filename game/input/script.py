@@ -67,4 +67,12 @@ class Script:
         way = way_of(move, state)
         if move.goal is not None and way is not None and way.reason:
             refused = (*refused, "no way to ({:g}, {:g}): {}".format(*move.goal.floor, way.reason))
-        return replace(self, index=self.index + 1, refused=refused, now=Making(hopped=self.now.hops if self.now.jumped else None))
+        index = self.index + 1
+        if _hops(move) and not self.now.jumped:  # nor are those made that go off from its landing
+            while index < len(self.moves) and _hops(self.moves[index]):
+                index += 1
+        return replace(self, index=index, refused=refused, now=Making(hopped=self.now.hops if self.now.jumped else None))
+
+
+def _hops(move: Move) -> bool:
+    return move.jump is not None and move.jump.hop is not None

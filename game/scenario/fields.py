@@ -38,7 +38,7 @@ def _file_name(name: str) -> str:
 Metres = Annotated[float, _signed(1e5)]
 Length = Annotated[float, _positive(1e5)]  # m
 Speed = Annotated[float, _signed(20)]  # m/s
-Pace = Annotated[float, _positive(20)]  # m/s
+Pace = Annotated[float, Field(ge=0.1, le=20, allow_inf_nan=False)]  # m/s; slower is no walk
 Turning = Annotated[float, _signed(20)]  # rad/s
 Degrees = Annotated[float, _signed(3600)]
 Seconds = Annotated[float, _positive(3600)]

@@ -31,17 +31,17 @@ STEP = 0.12
 class MoveTable(Table):
     """One move: exactly one of velocity, walk_to, go_to, path, stop, jump_to, jump and hops. Angles in degrees. for: how long [s].
 
-    velocity: the whole speed [m/s], less than 0 backward, turning [rad/s], and how much of that speed is to the left [m/s]: [0.5, 0, 0.5] is
+    velocity: the whole speed [m/s], less than 0 backward, turning [rad/s] as fast as somebody can at that speed, and how much of that speed is to the left [m/s]: [0.5, 0, 0.5] is
     straight aside; until: what it has changed to at the end. walk_to: x, z [m], straight there; path: through several; speed: along them [m/s];
     facing: a heading to keep meanwhile. go_to: x, z [m] as people go there, round what stands about, to stand there with a `heading`, by
     default as it comes; arrive: no later than this after the move began [s]. A jump may have a `heading` to land in, too: then nobody turns to
     the place first, and turns in the air.
 
     jump_to: x, z [m], onto whatever is highest there, or x, y, z. jump: how high [m], straight up. A
-    velocity, walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
+    velocity (with its `for`), walk_to or path beside jump_to is its run-up; within: no farther from the landing than this
     [m] it jumps. airtime: [s]; by default of the least effort. aim: so long [s] one crouches before a jump without a run-up.
 
-    hops: how many hops, each off the landing of the one before, and each so far `ahead` [m] (0: on the spot); airtime: of each. on: both feet, the
+    hops: how many hops, each off the landing of the one before, up and down what is no higher than 0.4 m, and each so far `ahead` [m] (0: on the spot); airtime: of each. on: both feet, the
     left or the right one, one after the other, the left first, or, to skip, steps and hops in turn, on the left foot, then on the right; the last
     lands on both.
     """
@@ -129,7 +129,7 @@ class MoveTable(Table):
             leap = Jump((x, y, z), self.airtime, self.within, math.sqrt(9.81 / -jumper.gravity[1]), self.aim or 0.0, heading)
             points = (*points, (x, z)) if points else ()
         elif self.hops is not None:
-            leap = Jump(airtime=self.airtime, aims=self.aim or 0.0, hop=self.ahead or 0.0)
+            leap = Jump(airtime=self.airtime, aims=self.aim or 0.0, hop=self.ahead or 0.0, around=tuple(props))
         return Move(seconds=math.inf if self.seconds is None else self.seconds,
                     velocity=_forward(self.velocity or (0.0, 0.0, 0.0)),
                     until=None if self.until is None else _forward(self.until),

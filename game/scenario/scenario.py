@@ -64,6 +64,7 @@ class Scenario(Table):
         if self.poster is not None and self.poster >= self.duration:
             raise ValueError(f"poster is a moment of the film, before its end at {self.duration:g} s; got {self.poster:g}")
         _check_followers(self.actors)
+        _check_strikes(self.actors, self.duration)
         names += dict.fromkeys(table.performer for _, table in self.followers if table.clip is not None)
         solid = self.stage()
         for i, shot in enumerate(self.shots):
@@ -108,6 +109,15 @@ class Scenario(Table):
     def at_size(self, size: tuple[int, int]) -> Scenario:
         """The same run filmed in pictures of `size` pixels."""
         return self.model_copy(update={"size": size})
+
+
+def _check_strikes(actors: tuple[ActorTable, ...], duration: float) -> None:
+    """What strikes comes while somebody is there."""
+    for i, actor in enumerate(actors):
+        left = min(duration, actor.gone) - actor.enters
+        for j, strike in enumerate(actor.strikes):
+            if strike.at >= left:
+                raise ValueError(f"actors[{i}].strikes[{j}].at: comes {strike.at:g} s after he enters; he is there for {left:g} s")
 
 
 def _check_followers(actors: tuple[ActorTable, ...]) -> None:
@@ -221,6 +231,11 @@ def _fault(file: File, fault: Mapping[str, Any]) -> str:
         text = "is missing, and needed"
     elif kind == "union_tag_invalid":
         text = f"kind should be one of {', '.join(PROPS)}, got {short(fault['ctx']['tag'])}"
+    elif kind in ("too_long", "too_short"):
+        low, high = fault["ctx"].get("min_length"), fault["ctx"].get("max_length")
+        text = f"needs {f'at least {low}' if high is None else f'{high} at most'}, has {fault['ctx']['actual_length']}: {short(fault['input'])}"
+    elif kind == "tuple_type" and isinstance(fault["input"], dict):
+        text = f"is a list of tables: each begins with [[{where}]], or stands in braces in a list"
     elif kind not in ("value_error",):
         text = f"{text[0].lower()}{text[1:]}, got {short(fault['input'])}".replace("tuple", "list", 1)
     return f"{file}: {where + ': ' if where else ''}{text}"

@@ -42,6 +42,8 @@ STRICT = np.array([0.01, 0.0004])
 """... and where a plan is mended by so much, unless he turns aside ..."""
 MARGIN = 0.01
 """... which therefore keeps so much more distance than was asked [m]."""
+FARTHEST = 1000.0
+"""Nobody is sent farther than this at once [m]: over more, the intervals of one plan get too long to set off by."""
 FREE = np.empty((0, 4))
 """No limits to velocities."""
 FASTEST = 20.0
@@ -124,6 +126,9 @@ def _numbers(name: str, value: Any) -> np.ndarray:
 
 def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> str:
     """Why nobody can walk from start to goal, whatever the way; "" where a way may be."""
+    far_off = float(np.hypot(*(goal - start)[:2]))
+    if far_off > FARTHEST:
+        return f"the goal is {far_off:.0f} m away; {FARTHEST:g} m can be planned at once: give a goal on the way there first"
     out = np.empty(3)
     for shape in shapes:
         there = distance(goal[0], goal[1], shape, out)

@@ -105,7 +105,8 @@ def _on_our_skeleton(clips, known, folder, problems) -> Iterator[tuple[Path, Cli
         try:
             calibration = calibrate([clip for (_, clip), start in zip(order, before) if start < _CALIBRATING])
         except ValueError as error:
-            problems.append(f"{group[0][0].parent}: {len(group)} files left out: {error}")
+            some = ", ".join(path.name for path, _ in group[:3]) + ", …" * (len(group) > 3)
+            problems.append(f"{group[0][0].parent}: {some} left out: {error}")
             continue
         ours = [retarget(clip, calibration=calibration) for _, clip in group]
         rolls = elbows(ours)
