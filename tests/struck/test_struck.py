@@ -6,8 +6,9 @@ import pytest
 from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Strike
 from gambol.controllers.jump import Physique
+from gambol.controllers.jump.motion import places
 from gambol.controllers.person import person
-from gambol.controllers.struck import FALLS, STEPS, SWAYS, Struck, places
+from gambol.controllers.struck import FALLS, STEPS, SWAYS, Struck
 
 DT = 1 / 60
 BODY = Physique()
