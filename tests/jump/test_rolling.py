@@ -75,4 +75,4 @@ def test_who_rolls_does_so_to_its_end_and_walks_on(person):
         if state.active == "jump":
             plan, ended = state.memory.memory.plan, state.memory.memory.time
     assert plan is not None and plan.rolls > 0.0 and ended >= plan.rolls - 2.0 * DT
-    assert state.active == "locomotion" and state.velocity[2] > 1.0
+    assert state.active == "locomotion" and state.velocity[0] > 1.0
