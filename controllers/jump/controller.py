@@ -71,7 +71,7 @@ class Jump(Reach, Controller):
             return HOLDS if intent.leap is not None or intent.aim is not None or not (walks or state.memory.stands) else OVER
         if isinstance(state.memory, Jumping):
             walks = bool(np.abs(intent.velocity).max() > 0.05) or intent.leap is not None
-            landed = state.memory.time > state.memory.plan.touch_down + RISEN
+            landed = state.memory.time > max(state.memory.plan.touch_down + RISEN, state.memory.plan.rolls)
             return OVER if walks and landed else HOLDS
         if intent.around and self._lost_floor(state, intent):
             return HOLDS

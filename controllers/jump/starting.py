@@ -49,7 +49,7 @@ class Jumping:
     def rebounds(self) -> bool:
         """Whether its legs give to a landing on both feet, or on one to hop on, so that another leap could go off from there."""
         made = self.plan
-        return not self.fault and (made.path.lands is None or made.path.hops) and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
+        return not self.fault and not made.rolls and (made.path.lands is None or made.path.hops) and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
 
     @property
     def landed(self) -> bool:
@@ -98,7 +98,7 @@ def rebounding(start: Start, made: Plan, time: float) -> Start:
 
 def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterState:
     """The state of one who plays a plan that lands on both feet as it will stand there, at rest."""
-    middle = soles(made.feet, physique.tables).mean(0)
+    middle = made.centres[-1] if made.rolls else soles(made.feet, physique.tables).mean(0)
     pose = made.at(made.duration if np.isinf(made.through) else made.lowest)
     return replace(state, ground=np.array([middle[0], middle[2], made.path.heading + made.path.turn]), velocity=np.zeros(3), pose=pose, contacts=np.ones(4, bool),
                    memory=None, floor=float(made.feet[0, 1] - physique.tables.sole), previous=None, elapsed=0.0)

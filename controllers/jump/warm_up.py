@@ -8,6 +8,7 @@ from ..body import Pose
 from ..contract import CharacterState, Intent, Leap
 from .body import measures
 from .controller import Jump
+from .motion import rolled
 
 
 def rehearse(jump: Jump) -> None:
@@ -16,6 +17,8 @@ def rehearse(jump: Jump) -> None:
     pose = Pose(skeleton.offsets[0].copy(), np.tile(np.eye(3), (len(skeleton), 1, 1)))
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
     intent = Intent(leap=Leap(np.array([0.0, 0.0, 0.5])))
-    jump.step(jump.enter(state, intent), intent, 1.0 / 60.0)
+    begun = jump.enter(state, intent)
+    jump.step(begun, intent, 1.0 / 60.0)
+    rolled(jump.physique, begun.memory.plan)
     measures(jump.physique)  # found once a body
 

@@ -14,9 +14,9 @@ import numpy as np
 from ..contract import CharacterState
 from .memory import RUN
 
-WALKING, RUNNING = (0.5, 0.3, 0.3), (1.2, 0.6, 0.8)
-"""So much faster ahead, back and aside [m/s] a push may make a walker and a runner, in the size that the library is of. Chosen: a walker's from a quarter of a step, a runner's
-from what people catch who stand; no pushed runner was recorded."""
+WALKING, RUNNING = (0.5, 0.3, 0.3), (1.6, 1.4, 0.8)
+"""So much faster ahead, back and aside [m/s] a push may make a walker and a runner, in the size that the library is of. Chosen: a walker's from a quarter of a step; a runner's ahead
+and back, that soles slide by less than 0.3 m/s and joints turn by less than 36 rad/s (unpushed 23), aside from what people catch who stand; no pushed runner was recorded."""
 SLOWEST, LEAST = 0.5, 0.25
 """Slower than the first [m/s] nobody walks on through a push, nor who would go slower ahead than the second after it."""
 

@@ -3,8 +3,8 @@
 from .capture import DROPS, FALLS, STEPS, SWAYS
 from .controller import Recovering, Struck, rehearse
 from .held_falls import flesh
-from .recorded_falls import SPACED, places
+from .recorded_falls import SPACED
 from .recorded_pushes import TAKES, fit
 from .recovery import Recovery
 
-__all__ = ["DROPS", "FALLS", "SPACED", "STEPS", "SWAYS", "TAKES", "Recovering", "Recovery", "Struck", "fit", "flesh", "places", "rehearse"]
+__all__ = ["DROPS", "FALLS", "SPACED", "STEPS", "SWAYS", "TAKES", "Recovering", "Recovery", "Struck", "fit", "flesh", "rehearse"]

@@ -14,7 +14,8 @@ import numpy as np
 from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..compiled import kernel
 from ..jump.body import Physique
-from .recorded_falls import BONES, RATE, Fall, grounded, sole_places
+from ..jump.motion import BONES, grounded_poses, sole_places
+from .recorded_falls import RATE, Fall
 from .surroundings import STEP, abyss_kernel, aside_kernel, tread_kernel
 
 ASIDE = np.radians([0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0, 65.0, -65.0, 90.0, -90.0, 125.0, -125.0, 180.0])
@@ -67,7 +68,7 @@ def _sampled(physique: Physique, fall: Fall) -> tuple[np.ndarray, np.ndarray, np
     """A fall's flesh (N, P, 3) over a floor at 0, as it begins over the middle, facing ahead; how thick (P,) that is; and where (M, 3) its mass centre is from when it strikes the floor on."""
     times = np.arange(fall.begins, fall.lasts, LOOKED / RATE)
     local = fall.turns(times)
-    roots, _ = grounded(physique, local, np.zeros(3), 0.0)
+    roots, _ = grounded_poses(physique, local, np.zeros(3), 0.0)
     placed = forward_kinematics(physique.skeleton, roots, local)
     centre = centre_of_mass(physique.anatomy, *placed)
     return *flesh(physique, *placed), centre[times >= fall.strikes]

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..body import centre_of_mass, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
-from ..jump.motion import faded
+from ..jump.motion import FEET, TOUCHES, faded, grounded_poses, places
 from .capture import FALLS
 from .held_falls import chosen, flesh, held, under
-from .recorded_falls import FEET, RATE, TOUCHES, Fall, falls, grounded, places
+from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
 from .surroundings import NOTHING, STEP
 
@@ -40,7 +40,7 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     local[:, 0] = yaw(facing) @ local[:, 0]
     left = faded(vectors(start.rotations @ np.swapaxes(local[0], -1, -2)), start.rates, FADE, times)
     local = turns(left) @ local
-    roots, over = grounded(physique, local, np.asarray(start.root, float), floor)
+    roots, over = grounded_poses(physique, local, np.asarray(start.root, float), floor)
     centres = centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, roots, local))
     lacks = start.velocity - (centres[1] - centres[0]) * RATE
     slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]

@@ -2,6 +2,8 @@
 
 Two trunks are upright cylinders. As they touch and still close in, an impulse along the line between them leaves both as fast along it as if they had stuck together, but for a little
 that flesh gives back. Who is down on the floor, or in the air over another, is met by nobody.
+
+Who walks is held before who stands or lies as before a wall, and slides past shoulder to shoulder; nobody presses on into another.
 """
 
 from __future__ import annotations
@@ -11,11 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import HARDEST, Intent, Strike, but
 from gambol.controllers.navigation import in_world
 from gambol.controllers.supervisor import both
 
+from ..scene import Box
 from .centre_of_mass import physique_of
+from .solid import STOPS
 
 TRUNK = 0.19
 """The radius of a body [m], at standard height, that others run into: shoulders turn, and arms give way, before it."""
@@ -24,6 +29,14 @@ LEAST, DEEP = (0.7, 0.35), 0.1
 BACK = 0.1
 """Flesh gives back so much of the speed with which bodies meet."""
 _TOUCH = Strike((0.0, 0.0))
+WALKS, STANDS, PRESSES = 1.8, 0.3, 0.12
+"""Who wishes to go no faster than the first [m/s] is held before who is slower than the second [m/s]; before others, and who runs, only as he is within the third of them [m]."""
+LATE = 0.3
+"""A gait takes up a wish so late [s]: until then a body goes on as it does."""
+LIES, THICK = ("Hips", "Spine2", "Head", "LeftLeg", "RightLeg", "LeftFoot", "RightFoot"), 0.12
+"""Joints of who is down that others walk past, and how thick he is about them [m], at standard height."""
+TALL = 0.5
+"""As high [m] others take who is down for, lest they step on him."""
 HIGH = 0.35
 """A pelvis that is lower over its floor than this share of the body's height belongs to who is down; one that is farther above another's stands over him."""
 
@@ -55,3 +68,67 @@ def run_into(characters: Sequence[Any], intents: Sequence[Intent], number: int) 
                 i = who[one]
                 found[i] = but(found[i], strike=both(found[i].strike, Strike((float(impulse[0]), float(impulse[1])))))
     return found
+
+
+def kept_apart(characters: Sequence[Any], intents: Sequence[Intent], number: int) -> list[Intent]:
+    """The intents of characters (`gambol.game.world.Character`), one for each, with which those who walk as they are told are held before others, whoever moves these; the very same of
+    all who go to a goal, leap, aim or are in the air."""
+    found = list(intents)
+    there = [i for i, one in enumerate(characters) if one.there(number)]
+    if len(there) < 2:
+        return found
+    discs, owner, slow = [], [], []
+    for i in there:
+        state, body = characters[i].state, physique_of(characters[i].controller)
+        if is_down(characters[i]):
+            joints = forward_kinematics(body.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))[0]
+            rows = [(*joints[body.skeleton.index(name), [0, 2]], THICK * body.size) for name in LIES]
+        else:
+            rows = [(*state.ground[:2], TRUNK * body.size)]
+        discs += [(*row, float(state.floor)) for row in rows]
+        owner += [i] * len(rows)
+        slow += [bool(np.hypot(state.velocity[0], state.velocity[2]) < STANDS)] * len(rows)
+    places, owners, still = np.array(discs), np.array(owner), np.array(slow)
+    for i in there:
+        one, intent = characters[i], intents[i]
+        pace = float(np.hypot(intent.velocity[0], intent.velocity[2]))
+        if pace < 1e-6 or one.follows is not None or one.watches is not None or intent.goal is not None or intent.leap is not None or intent.aim is not None or one.state.active == "jump":
+            continue
+        state, body = one.state, physique_of(one.controller)
+        apart = state.ground[:2] - places[:, :2]
+        far = np.linalg.norm(apart, axis=1)
+        room, speed = far - places[:, 2] - TRUNK * body.size, float(np.hypot(state.velocity[0], state.velocity[2]))
+        near = (room < np.where(still & (pace <= WALKS), STOPS * pace, PRESSES) + LATE * speed) & (owners != i) & (np.abs(places[:, 3] - float(state.floor)) < HIGH * body.height) & (far > 1e-9)
+        velocity, flow, slower = in_world(state.ground, intent.velocity), in_world(state.ground, state.velocity), False
+        for k in np.flatnonzero(near):
+            out = apart[k] / far[k]
+            into = -float(velocity @ out) - max(float(room[k]) - LATE * max(-float(flow @ out), 0.0), 0.0) / STOPS
+            if into > 0.0:
+                velocity, slower = velocity + into * out, True
+        if slower:
+            c, s = np.cos(state.ground[2]), np.sin(state.ground[2])
+            found[i] = but(intent, velocity=np.array([s * velocity[0] + c * velocity[1], intent.velocity[1], c * velocity[0] - s * velocity[1]]))
+    return found
+
+
+def lying(characters: Sequence[Any], number: int) -> tuple[Box, ...]:
+    """What people who are down take of the floor, as boxes that others walk round."""
+    found = []
+    for one in characters:
+        if one.there(number) and is_down(one):
+            skeleton, size = one.controller.skeleton, physique_of(one.controller).size
+            joints = forward_kinematics(skeleton, np.asarray(one.state.pose.root, float), np.asarray(one.state.pose.rotations, float))[0]
+            places = joints[[skeleton.index(name) for name in LIES]][:, [0, 2]]
+            along = places[LIES.index("Head")] - places[LIES.index("Hips")]
+            heading = float(np.arctan2(along[0], along[1]))
+            turned = places @ np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
+            low, high = turned.min(0), turned.max(0)
+            x, z = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]) @ (0.5 * (low + high))
+            wide, deep = high - low + 2.0 * THICK * size
+            found.append(Box((float(x), float(one.state.floor) + TALL / 2.0, float(z)), (float(wide), TALL, float(deep)), heading))
+    return tuple(found)
+
+
+def is_down(one: Any) -> bool:
+    """Whether a character is down on the floor: nobody's trunk to run into, but in the way."""
+    return bool(one.state.pose.root[1] - float(one.state.floor) < HIGH * physique_of(one.controller).height)

@@ -15,6 +15,7 @@ from gambol.controllers.navigation.levels import levels_of
 
 from ..input import STEERING, jumping
 from ..scene import Prop
+from .collisions import lying
 from .world import DT, Character, World
 
 RADIUS = 0.22
@@ -60,10 +61,10 @@ def avoiding(world: World, intents: Sequence[Intent], ways: Sequence[np.ndarray 
         world = but(world, turns=taking_turns(ground[:, :2], wishes, aims, doors, moving, world.turns, DT))
         wishes = queued(ground[:, :2], wishes, aims, doors, moving, world.turns)
     regions = _regions(world, ground[:, :2], np.array([float(world.characters[i].state.floor) for i in who]))
-    chosen = np.empty_like(wishes)
+    chosen, down = np.empty_like(wishes), lying([world.characters[i] for i in who], world.number)
     for region in np.unique(regions):  # what is a wall to one is a floor to another
         some = regions == region
-        chosen[some] = avoid(ground[:, :2], moving, wishes, RADIUS, _walls(world.props, int(region)), ground[:, 2], MANNERS)[some]
+        chosen[some] = avoid(ground[:, :2], moving, wishes, RADIUS, (*_walls(world.props, int(region)), *down), ground[:, 2], MANNERS)[some]
     led = stepping(ground, velocity, chosen, STEERING, MANNERS)
     share = np.minimum(np.linalg.norm(chosen - alone, axis=1, keepdims=True) / GIVEN_WAY, 1.0)
     for k, (i, own, change, part) in enumerate(zip(who, asked, share * (led - asked), share[:, 0])):

@@ -22,7 +22,7 @@ from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
-from .collisions import run_into
+from .collisions import kept_apart, run_into
 from .followers import KEPT, Follows, carried, errors, joint_errors
 from .watched import Watches
 
@@ -143,12 +143,12 @@ class World:
     def step(self, intents: Sequence[Intent]) -> World:
         """The world one sixtieth of a second later; one intent for each character, in order.
 
-        Who runs into another is struck, as the other is. Who is tracked comes after whom cameras see, and followers last: they see where their performer is now.
+        Who runs into another is struck, as the other is; who walks is held before who stands or lies. Who is tracked comes after whom cameras see, and followers last: they see where their performer is now.
         """
         if len(intents) != len(self.characters):
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
-        intents = [but(intent, around=self.props) for intent in run_into(self.characters, intents, self.number)]
+        intents = [but(intent, around=self.props) for intent in kept_apart(self.characters, run_into(self.characters, intents, self.number), self.number)]
         made = [one if not one.there(self.number) else None if one.follows or one.watches else one.step(intent, number)
                 for one, intent in zip(self.characters, intents)]
         performers = {one.name: one for one in made if one is not None}

@@ -15,8 +15,9 @@ from _struck_rooms import report
 from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Strike
 from gambol.controllers.jump import Physique
+from gambol.controllers.jump.motion import places
 from gambol.controllers.person import person
-from gambol.controllers.struck import FALLS, STEPS, places
+from gambol.controllers.struck import FALLS, STEPS
 
 WAYS = {"from behind": (0.0, 1.0), "from before": (0.0, -1.0), "from the right": (1.0, 0.0), "from the left": (-1.0, 0.0)}
 HARD = np.arange(4.0, 200.0, 4.0)

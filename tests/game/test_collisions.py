@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent, Strike
 from gambol.controllers.person import person
 from gambol.game.input import Script
 from gambol.game.world import Character, World
-from gambol.game.world.collisions import run_into
+from gambol.game.world.collisions import TRUNK, is_down, run_into
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +49,45 @@ def test_nobody_meets_who_is_on_another_level_or_alone(somebody):
     for cast in ((high, low), (low,)):
         intents = [Intent() for _ in cast]
         assert run_into(cast, intents, 0) == intents
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.2])
+def test_who_walks_into_one_who_stands_is_held_and_slides_past(somebody, aside):
+    world = World((Character("walks", somebody, somebody.start((aside, -1.5, 0.0))), Character("stands", somebody, somebody.start((0.0, 0.0, np.pi)))))
+    wish, nearest = Intent(np.array([1.2, 0.0, 0.0])), np.inf
+    for _ in range(240):
+        assert all(one.strike is None for one in run_into(world.characters, [wish, Intent()], world.number))
+        world = world.step([wish, Intent()])
+        one, other = (who.state.ground[:2] for who in world.characters)
+        nearest = min(nearest, float(np.hypot(*(one - other))))
+    assert nearest > 2.0 * TRUNK - 0.06
+    assert (one[1] > 0.5) if aside else (one[1] < -0.3)  # past him, or before him
+
+
+def test_two_who_insist_do_not_walk_through_each_other(somebody):
+    """However slowly."""
+    world = World((Character("one", somebody, somebody.start((0.0, -0.6, 0.0))), Character("other", somebody, somebody.start((0.03, 0.6, np.pi)))))
+    wish = Intent(np.array([0.3, 0.0, 0.0]))
+    for _ in range(360):
+        world = world.step([wish, wish])
+    one, other = (who.state.ground[:2] for who in world.characters)
+    assert np.hypot(*(one - other)) > 2.0 * TRUNK - 0.06
+
+
+def test_who_lies_is_in_the_way(somebody):
+    """A walker ends before him; once he stands again, he is one who stands."""
+    mass = somebody.parts["struck"].physique.mass
+    world = World((Character("walks", somebody, somebody.start((0.0, -3.0, 0.0))), Character("falls", somebody, somebody.start((0.0, 0.0, 0.5 * np.pi)))))
+    went = False
+    for n in range(260):
+        fallen = world.characters[1]
+        intents = [Intent(np.array([1.0, 0.0, 0.0])) if n > 60 else Intent(), Intent(strike=Strike((2.5 * mass, 0.0)) if n == 0 else None)]
+        world = world.step(intents)
+        if is_down(fallen):
+            went = True
+            joints = forward_kinematics(somebody.skeleton, fallen.state.pose.root, fallen.state.pose.rotations)[0][:, [0, 2]]
+            assert np.linalg.norm(joints - world.characters[0].state.ground[:2], axis=1).min() > 0.15
+    assert went
 
 
 def test_two_strikes_in_one_step_of_a_script_are_one(somebody):

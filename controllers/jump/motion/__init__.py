@@ -8,11 +8,15 @@ from .fall import fall, over_nothing, struck
 from .footing import RUNNERS_HEEL, faded, heels_rise, settling
 from .flight import flight_kernel
 from .grounded import grounded
+from .lying import BONES, FEET, TOUCHES, grounded_poses, places, sole_places
 from .path_estimate import SPINS, Course, Path, path
 from .plan import Plan, between_kernel
+from .rolling import SPACED as ROLL_SPACED
+from .rolling import rolled, rolls, room, tumbled
 from .thrust import Push, push
 
 __all__ = [
-    "FADE", "FREE", "GROUND_RATE", "HEEL", "PLANT", "RUNNERS_HEEL", "SAME", "SPINS", "Airborne", "Course", "Path", "Plan", "Push", "between_kernel", "faded", "fall",
-    "flight_kernel", "ground_kernel", "grounded", "heels_rise", "over_nothing", "path", "push", "settling", "sinking", "struck",
+    "BONES", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "PLANT", "ROLL_SPACED", "RUNNERS_HEEL", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
+    "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "settling", "sinking", "sole_places", "struck", "tumbled",
 ]

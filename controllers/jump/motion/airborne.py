@@ -16,6 +16,7 @@ from .footing import faded
 from .landing import TIME, absorb
 from .looking import Look
 from .path_estimate import Path
+from .rolling import rolls
 
 GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
@@ -68,7 +69,7 @@ class Airborne:
         self.down = leave + way.airtime
         self.support = soles(landing if way.lands is None else landing[way.lands:way.lands + 1], self.body)
         goal = self.support.mean(0) + [0.0, measures(physique).stand, 0.0]
-        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None and not way.hops, way.hops)
+        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None and not way.hops, way.hops, rolls(physique, way))
         self.after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
         self.sunk = self.absorbs.motion(self.after)
         landed = self._landing_times(goal[1])

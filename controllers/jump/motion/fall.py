@@ -21,6 +21,7 @@ from .airborne import SAME, Airborne
 from .flight import flight_kernel
 from .path_estimate import Path, softened
 from .plan import Plan
+from .rolling import rolled, rolls, room
 
 BOUNCE, FRICTION = 0.05, 0.4
 """How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
@@ -102,7 +103,7 @@ def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: S
 
 
 def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray) -> Plan:
-    """The motion from the moment of a hit, or of losing the floor, to standing. start: the body at that moment."""
+    """The motion from the moment of a hit, or of losing the floor, to standing, with a roll where it comes down hard, going ahead. start: the body at that moment."""
     velocity = start.velocity if hit is None else hit.after(start.velocity)
     time, land, place = _down(physique, start.centre, velocity, around, gravity)
     prior, falls = Prior.load(), max(-float(velocity[1] + gravity[1] * time), 0.0)
@@ -120,6 +121,10 @@ def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any
         deep = _deep(physique, made, around)
         if deep.max() < least.max():
             best, least = made, deep
+    if rolls(physique, way):
+        rolling = rolled(physique, best)
+        if room(physique, rolling, around):
+            return rolling
     return best
 
 

@@ -38,6 +38,8 @@ SLOWEST, LIGHT = 8.0, 6.5
 times how deep it is over gravity: the floor can't pull."""
 ADULT = 0.975
 """How high the centre of mass of a standard body stands [m]."""
+LOWER = 1.25
+"""Who rolls on from there sinks deeper by this: hands take the rest."""
 DEEPEST = 0.45
 """How far a body sinks at most, as a share of its standing height."""
 LEAST = 0.02
@@ -147,13 +149,13 @@ def sprung(t, r, offset, velocity, gains):
 
 
 def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float, striding: bool = False,
-           hops: bool = False) -> Landing:
+           hops: bool = False, rolls: bool = False) -> Landing:
     """The landing of a body at `land` (3,) with `velocity` (3,) over feet whose middle is under `goal` (3,).
 
     support: (C, 3) corners of the soles. It comes to rest if its capture point, x + v √(h/g), lies over
     them; else it passes over them and must step on (Ha 2012 rolls on; feet do it here). It sinks the
     deeper the faster it fell; the springs have three equal rates, so that the ground's force begins with none. striding: on one foot, to run on. hops: on one foot
-    or both, to hop on: as deep as a spring gives.
+    or both, to hop on: as deep as a spring gives. rolls: on both, to roll on.
     """
     fall = max(-velocity[1], 0.0)
     flat = velocity * [1.0, 0.0, 1.0]
@@ -169,7 +171,7 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
     if hops:
         deep = Springy.depth(fall, gravity, size / ADULT, len(support) // 4)
     else:
-        deep = min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else 1.0) * size / ADULT
+        deep = min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else LOWER if rolls else 1.0) * size / ADULT
         deep -= FOLDED[1] * max(-start - FOLDED[0] * size, 0.0)
-    deep = max(min(deep, start + DEEPEST * size), max(start, 0.0) + LEAST * size)
+    deep = max(min(deep, start + DEEPEST * (LOWER if rolls else 1.0) * size), max(start, 0.0) + LEAST * size)
     return (Springy if hops else Landing)(rate, land - goal, velocity, gravity, goal, deep, passes)

@@ -19,7 +19,7 @@ class Plan:
     centre of mass. forces: (N, 3) [N] of the ground. contacts: (N, 4) bool. push_off, take_off,
     touch_down, lowest: times [s] of the events; through: when a body that can't stop
     over its feet walks on, infinite for one that stops. feet: (2, 5) where they land. momentum: (3,)
-    [kg m²/s] in flight. path: what was estimated first.
+    [kg m²/s] in flight. path: what was estimated first. rolls: until when it rolls [s], 0 if it stays on its feet.
     """
 
     times: np.ndarray
@@ -37,6 +37,7 @@ class Plan:
     feet: np.ndarray
     momentum: np.ndarray
     path: Path
+    rolls: float = 0.0
 
     @property
     def duration(self) -> float:

@@ -11,7 +11,7 @@ from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ...contract import Unable
 from ...navigation import gap
 from ..body import FLAT, TURNED, Physique, along, measures, carriage, turns
-from ..motion import SPINS, Path, Plan
+from ..motion import SPINS, Path, Plan, rolls
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
 
@@ -24,6 +24,10 @@ ASIDE = 0.03
 STOPS = 6.0, 0.5
 """What legs give as they stop a fall, in an adult's weights on Earth at strength 1, and over which way [m], at
 standard height."""
+ROLLED = 1.2
+"""Who rolls comes down so many times as fast as legs alone stop: the shoulder and the back take the rest."""
+STEEP = "too deep for legs alone"
+"""Why nobody comes down so hard who does not roll."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
 RUNS_TURNED = 0.8
@@ -67,12 +71,14 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
         return f"too {'far' if gains else 'near'} for this {'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
-    size, down = physique.size, -float(way.falling[1])
+    return stopped(physique, way, ROLLED if rolls(physique, way) else 1.0) or blocked(physique, way, around)
+
+
+def stopped(physique: Physique, way: Path, share: float = 1.0) -> str:
+    """Why legs can't stop a fall that is a share as fast, or nothing."""
     spare = STOPS[0] * 9.81 * physique.strength + float(way.gravity[1])
-    stops = np.sqrt(2.0 * STOPS[1] * size * max(spare, 0.0))
-    if down > stops:
-        return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s"
-    return blocked(physique, way, around)
+    down, stops = -float(way.falling[1]), share * np.sqrt(2.0 * STOPS[1] * physique.size * max(spare, 0.0))
+    return f"too deep: it would land at {down:.1f} m/s, and its legs stop {stops:.1f} m/s" if down > stops else ""
 
 
 def wrong(physique: Physique, made: Plan) -> str:

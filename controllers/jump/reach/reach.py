@@ -9,10 +9,10 @@ import numpy as np
 
 from ...navigation import floor_at, gap
 from ..body import FLAT, Physique, Start, landing_feet, soles
-from ..motion import Path, Plan, grounded, path
+from ..motion import Path, Plan, grounded, path, rolled, rolls, room
 from ..planner import plan
 from ..prior import Prior
-from .feasibility import fault, wrong
+from .feasibility import STEEP, fault, stopped, wrong
 from .sweep import Touch, touch, touches
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
@@ -64,13 +64,24 @@ class Reach:
         for way, why in self.arcs(start, place, floor, airtime, around):
             if not why:
                 made, count = plan(self.physique, start, way, place, floor), count + 1
-                why = wrong(self.physique, made) or touches(self.physique, made, around)
+                made, why = self._down(made, around)
+                why = why or wrong(self.physique, made) or touches(self.physique, made, around)
                 if not why:
                     return made, ""
             told = told or why
             if count == tries:
                 break
         return None, told
+
+    def _down(self, made: Plan, around: Sequence[Any]) -> tuple[Plan, str]:
+        """A plan as it comes down: with a roll where that is so hard that people roll, if there is room; why it can't come down, if so."""
+        if rolls(self.physique, made.path):
+            rolling = rolled(self.physique, made)
+            if room(self.physique, rolling, around):
+                return rolling, ""
+            if stopped(self.physique, made.path):
+                return made, STEEP + "; there is no room to roll"
+        return made, ""
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                around: Sequence[Any] = ()) -> tuple[Path, str]:

@@ -15,8 +15,9 @@ from gambol import assets
 from gambol.controllers.body import Clip, exp, forward_kinematics, heading_of, log, yaw
 from gambol.controllers.files import whole
 from gambol.controllers.jump import Physique
+from gambol.controllers.jump.motion import places
 from gambol.controllers.mocap import calibrate, load, retarget
-from gambol.controllers.struck import SPACED, places
+from gambol.controllers.struck import SPACED
 
 TAKE = "woody2/wd2_falling_down.bvh"
 SPANS = (3.1, 7.5), (8.5, 12.9), (13.3, 17.2), (18.1, 21.9)
