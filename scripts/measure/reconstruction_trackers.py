@@ -143,6 +143,16 @@ def performances(number: int, large: Database, folder: Path, takes: tuple[Take, 
     return found
 
 
+def opened(options: argparse.Namespace) -> tuple[Network, Database, trials.Split]:
+    """The network, the large database, and what of the small one is learnt from, tested and chosen on; says what can't be used, and exits."""
+    try:
+        network, large = Network.load(options.network), Database.open(options.large)
+        small = small_of(large, options.small)
+    except (DatabaseError, ValueError) as error:
+        sys.exit(str(error))
+    return network, large, trials.split(small.only([take for take in small.takes if not take.interpolated]))
+
+
 def main() -> None:
     """Print the tables, and write them down if asked."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -153,12 +163,7 @@ def main() -> None:
     parser.add_argument("--only", type=int, nargs="+", default=list(range(len(COURSES))), help="numbers of courses, from 0 on: " + "; ".join(COURSES))
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
-    try:
-        network, large = Network.load(options.network), Database.open(options.large)
-        small = small_of(large, options.small)
-    except (DatabaseError, ValueError) as error:
-        sys.exit(str(error))
-    core = trials.split(small.only([take for take in small.takes if not take.interpolated]))
+    network, large, core = opened(options)
     takes = core.validation if options.tuned else core.test
     followed(network, recorded(large, takes[0]), "6", True, False)  # what it compiles is no frame's time
     parts = [f"The network after {network.learnt:,} batches of 512; see scripts/measure/reconstruction_trackers.py."]
