@@ -65,7 +65,7 @@ def fitted(stood: Stood, places: np.ndarray, turns: np.ndarray, poses: Sequence[
 
     places: (K, S, 3) [m] above the room's floor, turns: (K, S, 3, 3), of trackers that are worn; others are never read. poses: numbers of `POSES`, of
     each one, the first of which is how they stood. One that is nothing like what was asked is left out. likely: what bones people have, by default as
-    shipped; those of a family count as far as they explain what is seen. It takes about a second. ValueError for no pose.
+    shipped; those of a family count as far as they explain what is seen. It takes a second and a half. ValueError for no pose.
     """
     if not len(poses):
         raise ValueError("no pose to tell from")
