@@ -137,7 +137,7 @@ PLAN = {
                                     "reconstruction.ours"),
         "reconstruction.calibration": ("compiled files body reconstruction.regression reconstruction.baselines reconstruction.trackers "
                                        "reconstruction.live"),
-        "reconstruction.evaluation": ("body reconstruction.database reconstruction.regression reconstruction.baselines "
+        "reconstruction.evaluation": ("body mocap reconstruction.database reconstruction.regression reconstruction.baselines "
                                       "reconstruction.ours"),
     },
     "game": {

@@ -4,6 +4,7 @@ from .acclaim import AcclaimSkeleton, read_asf
 from .acclaim_motion import read_amc
 from .bvh import read_bvh, write_bvh
 from .calibration import Calibration, calibrate, zero_positions
+from .captured import Captured, captured
 from .hinges import elbows, hinged
 from .joint_names import NoHuman, Roles, plain, roles
 from .parsing import MotionFileError
@@ -11,6 +12,7 @@ from .retarget import retarget
 from .units_and_axes import Detected, detect, load, read, standardise
 
 __all__ = [
-    "AcclaimSkeleton", "Calibration", "Detected", "MotionFileError", "NoHuman", "Roles", "calibrate", "detect", "elbows", "hinged", "load", "plain",
+    "AcclaimSkeleton", "Calibration", "Captured", "Detected", "MotionFileError", "NoHuman", "Roles", "calibrate", "captured", "detect", "elbows", "hinged",
+    "load", "plain",
     "read", "read_amc", "read_asf", "read_bvh", "retarget", "roles", "standardise", "write_bvh", "zero_positions",
 ]

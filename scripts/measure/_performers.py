@@ -16,13 +16,14 @@ from reconstruction_trackers import MOST, Performance
 _LEG = [SKELETON.index("Left" + name) for name in ("Leg", "Foot")]
 
 
-def people(folder: Path) -> list[Skeleton]:
-    """Our skeleton with the lengths of each subject's bones whose ASF file lies in a folder of CMU's."""
-    found = []
+def people(folder: Path) -> dict[str, Skeleton]:
+    """Our skeleton with the lengths of each subject's bones whose ASF file lies in a folder of CMU's, by subject."""
+    found = {}
     for own in sorted(path for path in folder.iterdir() if path.is_dir()):
         files = sorted(own.glob("*.amc"))
         try:
-            found += [proportions(load(files[0]).skeleton)] if files else []
+            if files:
+                found[own.name] = proportions(load(files[0]).skeleton)
         except (MotionFileError, ValueError, KeyError):
             continue
     return found

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from pathlib import Path
 
 for library in ("OPENBLAS", "OMP", "MKL"):
@@ -24,12 +23,11 @@ import numpy as np
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
-from gambol.controllers.reconstruction.database import Database, DatabaseError
-from gambol.controllers.reconstruction.evaluation import small_of, strangers, trials
+from gambol.controllers.reconstruction.evaluation import strangers
 from gambol.controllers.reconstruction.regression import SPAN
 from gambol.controllers.reconstruction.trackers import SHIPPED, Network, Trackers
 from reconstruction_figures import table
-from reconstruction_trackers import FPS, WORN, Performance, recorded
+from reconstruction_trackers import FPS, WORN, Performance, opened, recorded
 
 FROM, FRAMES, BEFORE, AFTER = 100, 230, 3, 45
 QUARTER, HALF, SECOND = 15, 30, 60
@@ -79,12 +77,7 @@ def main() -> None:
     parser.add_argument("--gaps", type=int, nargs="+", default=[10, 30, 50], help="for how many frames they are lost")
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
-    try:
-        network, large = Network.load(options.network), Database.open(options.large)
-        small = small_of(large, options.small)
-    except (DatabaseError, ValueError) as error:
-        sys.exit(str(error))
-    core = trials.split(small.only([take for take in small.takes if not take.interpolated]))
+    network, large, core = opened(options)
     takes = [take for take in strangers(large) + core.validation if take.stop - take.start >= SPAN + FRAMES]
     those = []
     for take in takes:

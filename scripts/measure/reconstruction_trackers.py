@@ -23,7 +23,7 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 import numpy as np
 
 from gambol.controllers.body import Skeleton, contact_height, contact_points, detect_contacts, forward_kinematics, point_speeds
-from gambol.controllers.mocap import MotionFileError, calibrate, hinged, load, retarget
+from gambol.controllers.mocap import MotionFileError, captured, load
 from gambol.controllers.reconstruction import SKELETON, encode, parse
 from gambol.controllers.reconstruction.database import Database, DatabaseError, Take
 from gambol.controllers.reconstruction.evaluation import foreign, metrics, small_of, strangers, trials
@@ -76,33 +76,12 @@ def raw(folder: Path, take: Take) -> Performance:
     path = next(path for path in (folder / f"{take.clip}{end}" for end in (".amc", ".bvh")) if path.is_file())
     paths = [path, *[other for other in sorted(path.parent.glob(f"*{path.suffix}")) if other != path][:_BESIDE]]
     clips = [clip.resample(FPS) if clip.frame_time < 0.99 / FPS else clip for clip in map(load, paths)]
-    known = calibrate(clips)
-    ours = hinged(retarget(clips[0], calibration=known))
-    theirs, _ = clips[0].kinematics()
-    rotations = ours.rotations
-    _, turned = ours.kinematics()
-    sources = dict(known.roles.limbs)
-    for share, name in ((1, "Spine"), (2, "Spine1"), (3, "Spine2")):
-        if known.roles.trunk:
-            sources[name] = known.roles.trunk[round(share / 3 * (len(known.roles.trunk) - 1))]
-    if known.roles.neck:
-        sources.setdefault("Neck", known.roles.neck[0])
-    offsets, there = SKELETON.offsets / known.scale, np.zeros(len(SKELETON), bool)
-    places = np.full((len(theirs), len(SKELETON), 3), np.nan)
-    for j, name in enumerate(SKELETON.names):
-        if name in sources and not name.endswith("Toe"):
-            places[:, j], there[j] = theirs[:, sources[name]], True
-    for j in range(1, len(SKELETON)):
-        p = SKELETON.parents[j]
-        if there[j] and there[p]:
-            offsets[j] = np.einsum("tji,tj->ti", turned[:, p], places[:, j] - places[:, p]).mean(0)
-    body = Skeleton(SKELETON.names, SKELETON.parents, offsets, SKELETON.end_parents, SKELETON.end_offsets / known.scale)
-    start = places[:, 0]
-    joints, _ = forward_kinematics(body, start, rotations)
+    own = captured(clips)
+    body, start, rotations = own.skeleton, own.positions[:, 0], own.motion.rotations
+    joints, turned = forward_kinematics(body, start, rotations)
     soles = contact_points(body, joints, turned)[..., 1]
     up = contact_height(body) - np.percentile(soles.min(-1), 20)
-    places[..., 1] += up
-    return Performance(body, start + [0.0, up, 0.0], rotations, places[:MOST + SPAN], turned[:MOST + SPAN], there)
+    return Performance(body, start + [0.0, up, 0.0], rotations, (own.positions + [0.0, up, 0.0])[:MOST + SPAN], turned[:MOST + SPAN], own.known)
 
 
 def followed(network: Network, on: Performance, points: str, turning: bool, given: bool) -> list[float]:
@@ -164,6 +143,16 @@ def performances(number: int, large: Database, folder: Path, takes: tuple[Take, 
     return found
 
 
+def opened(options: argparse.Namespace) -> tuple[Network, Database, trials.Split]:
+    """The network, the large database, and what of the small one is learnt from, tested and chosen on; says what can't be used, and exits."""
+    try:
+        network, large = Network.load(options.network), Database.open(options.large)
+        small = small_of(large, options.small)
+    except (DatabaseError, ValueError) as error:
+        sys.exit(str(error))
+    return network, large, trials.split(small.only([take for take in small.takes if not take.interpolated]))
+
+
 def main() -> None:
     """Print the tables, and write them down if asked."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -174,12 +163,7 @@ def main() -> None:
     parser.add_argument("--only", type=int, nargs="+", default=list(range(len(COURSES))), help="numbers of courses, from 0 on: " + "; ".join(COURSES))
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
-    try:
-        network, large = Network.load(options.network), Database.open(options.large)
-        small = small_of(large, options.small)
-    except (DatabaseError, ValueError) as error:
-        sys.exit(str(error))
-    core = trials.split(small.only([take for take in small.takes if not take.interpolated]))
+    network, large, core = opened(options)
     takes = core.validation if options.tuned else core.test
     followed(network, recorded(large, takes[0]), "6", True, False)  # what it compiles is no frame's time
     parts = [f"The network after {network.learnt:,} batches of 512; see scripts/measure/reconstruction_trackers.py."]

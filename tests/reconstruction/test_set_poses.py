@@ -48,8 +48,9 @@ def told(seed, off, network=None):
 
 
 def test_who_stands_exactly_as_asked_tells_it_nearly_all():
-    (_, after), known = told(1, 0.0)
-    assert after < 0.025 and known.heard == len(POSES) and abs(known.floor) < 0.02
+    found = [told(seed, 0.0) for seed in (1, 2, 3)]
+    assert np.mean([after for (_, after), _ in found]) < 0.025
+    assert all(known.heard == len(POSES) and abs(known.floor) < 0.02 for _, known in found)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -57,6 +58,14 @@ def test_who_stands_about_as_asked_tells_much_more_than_standing_alone(seed):
     (before, after), known = told(seed, 4.0)
     assert after < 0.045 and after < 0.7 * before
     assert 0.01 < np.mean(known.unsure[1]) < OFF
+
+
+def test_trackers_that_sit_near_their_joints_are_found_to():
+    """Nobody tells how near; who wears them 2 cm off is not taken for somebody who wears them anyhow."""
+    rng = np.random.default_rng(7)
+    places, turns = worn(np.random.default_rng(7), *stood_in(rng, 3.0), 0.02)
+    known = fitted(Stood.of(places[:1], turns[:1], ALL[None]), places, turns, range(len(POSES)))
+    assert np.linalg.norm(known.offsets, axis=-1).mean() < 0.04 and np.mean(known.unsure[1]) < 0.06
 
 
 def test_a_pose_that_was_not_as_asked_is_left_out():

@@ -2,6 +2,10 @@
 
 from .calibration_file import load, save
 from .calibration_network import SHIPPED, CalibrationNetwork, learnt
+from .likely_bones import SHIPPED as BONES
+from .likely_bones import LikelyBones
+from .likely_bones import load as load_bones
+from .likely_bones import save as save_bones
 from .moved import BEFORE
 from .set_poses import POSES, apart, fitted
 from .simulated import FRAMES, STRIDE
@@ -10,6 +14,6 @@ from .wearing_trackers import Wearer, calibratable, stance
 from .worn import Calibration, calibrated
 
 __all__ = [
-    "BEFORE", "FRAMES", "JOINTS", "POSES", "SHIPPED", "STRIDE", "WORN", "Calibration", "CalibrationNetwork", "Stood", "Wearer", "apart", "calibratable", "calibrated",
-    "fitted", "learnt", "load", "save", "stance",
+    "BEFORE", "BONES", "FRAMES", "JOINTS", "POSES", "SHIPPED", "STRIDE", "WORN", "Calibration", "CalibrationNetwork", "LikelyBones", "Stood", "Wearer", "apart", "calibratable", "calibrated",
+    "fitted", "learnt", "load", "load_bones", "save", "save_bones", "stance",
 ]

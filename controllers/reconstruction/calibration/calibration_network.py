@@ -57,7 +57,7 @@ class CalibrationNetwork:
     @staticmethod
     def load(path: str | Path = SHIPPED) -> CalibrationNetwork:
         """Read what `save` wrote. ArraysError, naming the file and what is wrong with it, for anything else."""
-        found = arrays(path, "network of a calibration", {"version": VERSION, "worn": [*WORN]}, "scripts/build/calibration.py")
+        found = arrays(path, "network of a calibration", {"version": VERSION, "worn": [*WORN]}, "scripts/build/calibration/network.py")
         wanted = {"ins": (2, INPUTS), "people": ()}
         for i, shape in enumerate(zip(WIDTHS, WIDTHS[1:], strict=False)):
             wanted |= {f"weights{i}": shape, f"biases{i}": shape[1:]}

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...body import contact_height, exp, log, yaw
 from ..pose_vector import REFERENCE, SKELETON, WIDTH
-from ..trackers import FIRST, LEGS, PARTS, Moments, bodies, legs, moments_kernel
+from ..trackers import FIRST, LEGS, Moments, bodies, legs, moments_kernel
 from .moved import BEFORE, MOVING, told as told_by_moving
 from .stood import JOINTS, STANDING_INPUTS, WORN, Stood
 
@@ -40,18 +40,19 @@ _LONGER = np.array([_PEOPLE.get(name.removeprefix("Left").removeprefix("Right"),
 _MIDDLE = [j for j, name in enumerate(SKELETON.names) if j and not name.startswith(("Left", "Right"))]
 _LEFT = [j for j, name in enumerate(SKELETON.names) if name.startswith("Left")]
 _RIGHT = [SKELETON.index(SKELETON.names[j].replace("Left", "Right")) for j in _LEFT]
-_BONES = 2 * len(_MIDDLE) + 3 * len(_LEFT)
-TARGETS = _BONES + 6 * len(WORN) + 1
+BONES = 2 * len(_MIDDLE) + 3 * len(_LEFT)
+"""Numbers of the bones of a body whose sides are alike."""
+TARGETS = BONES + 6 * len(WORN) + 1
 """Numbers of a calibration: bones, offsets, turns, the floor."""
 INPUTS = STANDING_INPUTS + MOVING + 1
 """… and of what is heard for it."""
-SCALES = np.concatenate([np.full(_BONES, 0.01), np.full(3 * len(WORN), 0.03), np.full(3 * len(WORN), 0.1), [0.01]])
+SCALES = np.concatenate([np.full(BONES, 0.01), np.full(3 * len(WORN), 0.03), np.full(3 * len(WORN), 0.1), [0.01]])
 """What each is told over [m, rad]."""
 
 
-def likely() -> tuple[np.ndarray, np.ndarray]:
-    """The offsets (J, 3) [m] of a likely body, and how far each number of them lies off in others, a standard deviation."""
-    return SKELETON.offsets * (1.0 + _LIKE * (_LONGER[:, None] - 1.0)), np.maximum(1.2 * PARTS[:, None] * np.abs(SKELETON.offsets), 0.012)
+def like_people() -> np.ndarray:
+    """The offsets (J, 3) [m] of a likely body, built as the standard one."""
+    return SKELETON.offsets * (1.0 + _LIKE * (_LONGER[:, None] - 1.0))
 
 
 def numbers(offsets: np.ndarray, away: np.ndarray, turns: np.ndarray, floor: np.ndarray) -> np.ndarray:
@@ -68,9 +69,9 @@ def told(found: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndar
     shape, count = found.shape[:-1], 2 * len(_MIDDLE)
     offsets = np.zeros((*shape, len(SKELETON), 3))
     offsets[..., _MIDDLE, 1:] = found[..., :count].reshape(*shape, -1, 2)
-    offsets[..., _LEFT, :] = found[..., count:_BONES].reshape(*shape, -1, 3)
+    offsets[..., _LEFT, :] = found[..., count:BONES].reshape(*shape, -1, 3)
     offsets[..., _RIGHT, :] = offsets[..., _LEFT, :] * [-1.0, 1.0, 1.0]
-    away, turns = (found[..., begin:begin + 3 * len(WORN)].reshape(*shape, -1, 3) for begin in (_BONES, _BONES + 3 * len(WORN)))
+    away, turns = (found[..., begin:begin + 3 * len(WORN)].reshape(*shape, -1, 3) for begin in (BONES, BONES + 3 * len(WORN)))
     return offsets, away, turns, found[..., -1]
 
 
@@ -113,7 +114,7 @@ def drawn(moments: Moments, count: int, seed: int, number: int) -> Performances:
     bones = scale * people - SKELETON.offsets
     bones[:, 0] = 0.0
     truth = numbers(bones, away, log(np.swapaxes(turned, -1, -2) @ orientations), scale[:, 0, 0] * floor)
-    tells = np.concatenate([np.ones((count, _BONES), bool), np.repeat(there, 3, 1), np.repeat(there, 3, 1), np.ones((count, 1), bool)], -1)
+    tells = np.concatenate([np.ones((count, BONES), bool), np.repeat(there, 3, 1), np.repeat(there, 3, 1), np.ones((count, 1), bool)], -1)
     return Performances(inputs, truth, tells)
 
 

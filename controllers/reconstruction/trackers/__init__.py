@@ -2,7 +2,7 @@
 contacts, and the most probable pose on the performer's own skeleton.
 """
 
-from .bodies import PARTS, bodies, legs
+from .bodies import bodies, legs
 from .learning import HIDDEN, SIZE, Learner
 from .network import SHIPPED, Network
 from .samples import FIRST, LEGS, Moments, moments_kernel, standing, tracks_of
@@ -11,6 +11,6 @@ from .tracker_poses import Trackers
 from .tuning import BATCHES, SHARE, Tuner
 
 __all__ = [
-    "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PARTS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
+    "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
     "legs", "moments_kernel", "standing", "tracks_of",
 ]

@@ -26,8 +26,6 @@ def _plain(name: str) -> str:
 
 _GROUPS: list[str] = list(_PARTS)
 _GROUP = np.array([_GROUPS.index(_plain(name)) if j else 0 for j, name in enumerate(SKELETON.names)])
-PARTS = np.array([0.0 if j == 0 else _PARTS[_plain(name)] for j, name in enumerate(SKELETON.names)])
-"""How far people's bones (J,) differ in length beside their size, a share."""
 _LYING = np.array([LIE if j and _plain(name) in _LOOSE else 0.0 for j, name in enumerate(SKELETON.names)])
 _TWIN = np.array([SKELETON.index(name.replace("Right", "Left")) for name in SKELETON.names])
 _SIDE = np.array([[-1.0 if name.startswith("Right") else 1.0, 1.0, 1.0] for name in SKELETON.names])

@@ -1,6 +1,6 @@
 """Learn the network that calibrates trackers from CMU's motion, and write assets/reconstruction/calibration.npz.
 
-    python scripts/build/calibration.py LARGE --small FOLDER [--people 100000]
+    python scripts/build/calibration/network.py LARGE --small FOLDER [--people 100000]
 
 LARGE, --small: as for scripts/build/trackers.py; learnt is from the same takes. Performers are simulated: bodies of all proportions, trackers worn
 anyhow, poses that are stood in not quite as asked, five seconds of a recorded take. It takes a quarter of an hour of one thread; progress is
