@@ -78,6 +78,10 @@ def test_own_controller_example():
     assert max(jerk[k - 2:k + 2].max() for k in switches) < 0.1, "handed over without a pop"
 
 
+def test_points_example():
+    assert max(example("points").main(seconds=2.0, missing=share) for share in (0.0, 0.2)) < 0.04
+
+
 def test_environment_example(drawing):
     checker = pytest.importorskip("gymnasium.utils.env_checker", reason="Gymnasium is not installed: pip install -e '.[test]'")
     environment = example("environment")

@@ -18,11 +18,13 @@ from ..contract import CharacterState, Controller, Intent, Status, Unable, level
 from ..driven import driven
 from .control_points import ControlPoints
 from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
-                        spread, unbroken)
+                        rotations, spread, unbroken)
 from .pose_vector import SKELETON, decode
 
 READY, HOLDS = 1.0, 1.2
 """How well it bids when a point is seen; how firmly it holds on while points are wanted. A jump in the air holds firmer."""
+ALONE = 0.05
+"""Points that are all missing are followed for no longer than this [s] as they went: a body goes on better by itself."""
 LOST = 1.0
 """Without a point for so long [s] it gives up."""
 ANEW = 0.25
@@ -54,7 +56,8 @@ class Reconstructor(Protocol):
 class Following:
     """What is remembered while points are followed; lengths as of a standard body on a floor at height 0.
 
-    memory: the method's. gate: what is known of the points, which were last at seen (n, 3). pose, before: the newest
+    memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
+    frame, (n, 3) and turns (n, 3, 3), NaN where nothing. pose, before: the newest
     frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
@@ -69,6 +72,7 @@ class Following:
     ahead: float
     offset: np.ndarray
     rate: np.ndarray
+    late: tuple[np.ndarray, np.ndarray]
     level: float = 0.0
     fade: float = FADE
     lost: float = 0.0
@@ -83,12 +87,14 @@ class Reconstruction(Controller):
     starts: poses to begin from where the body's own is not like the points; without them it begins from its own.
     Pre-condition: a point is seen, and those seen are within reach. Post-condition: the body is where the points were
     and moves as it last did. Expected performance: a point is seen every now and then.
-    Characters come singly.
+    Characters come singly. ValueError unless height is more than 0, and dt no more than 0.1.
     """
 
     def __init__(self, method: Reconstructor, controls: ControlPoints, height: float = STATURE, dt: float = 1 / 60,
                  starts: Beginning | None = None, skeleton: Skeleton | None = None):
-        self.method, self.controls, self.starts, self.dt = method, controls, starts, dt
+        if not 0.0 < height < math.inf:
+            raise ValueError(f"a height of {height!r}: it must be more than 0 m")
+        self.method, self.controls, self.starts, self.dt = method, controls, starts, seconds(dt)
         self.factor, self.skeleton = (height / STATURE, human(height)) if skeleton is None else (1.0, skeleton)
         self.body = SKELETON if skeleton is None else skeleton
 
@@ -151,7 +157,7 @@ class Reconstruction(Controller):
         before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
         motion, zero = (self._points(pose) - self._points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
         return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
-                         0.0, zero, zero)
+                         0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
@@ -168,10 +174,15 @@ class Reconstruction(Controller):
         try:
             seen, turns = self._seen(intent, following.level), self._turns(intent)
         except Unable as reason:  # the body coasts, and the next step is somebody else's
-            seen, turns, following = np.full((len(self.controls), 3), np.nan), None, replace(following, fault=str(reason))
+            seen, turns = self._seen(Intent(), 0.0), self._turns(Intent())
+            following = replace(following, fault=str(reason))
         due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
         ahead = following.ahead - dt + due * self.dt
-        start = following.seen
+        start, (late, turned) = following.seen, following.late
+        seen = np.where(np.isfinite(seen).all(-1)[:, None], seen, late)
+        turns = np.where(np.isfinite(turns).all((-1, -2))[:, None, None], turns, turned)
+        late = (seen, turns) if not due else (np.full_like(seen, np.nan), np.full_like(turns, np.nan))
+        following = replace(following, late=late)
         if due:
             gate, seen = following.gate.named(seen, due * self.dt)
             following = replace(following, gate=gate)
@@ -197,23 +208,26 @@ class Reconstruction(Controller):
             return Status("failed", following.fault)
         return Status("done", "the points are lost") if following.lost >= LOST else Status("running")
 
-    def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray | None = None) -> Following:
+    def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray) -> Following:
         """One frame of the method on."""
         now, earlier = joints_of(following.pose, self.body), joints_of(following.before, self.body)
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
-        gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt, following.lost)
-        back = following.lost > 0.0 and gate.trusted.any()
+        blind = 0.0 if following.gate.trusted.any() else following.lost
+        gate, goals = following.gate.admit(points, body + motion * self.dt, motion, self.dt, blind)
+        goals = goals if gate.gone.min() <= ALONE + 1e-6 else np.full_like(goals, np.nan)
+        gate, turned = gate.told(turns[gate.order], self.dt)
+        back = blind > 0.0 and gate.trusted.any()
         if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
             return self._anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
-        if turns is None or not getattr(self.method, "hears_turns", False):
+        if not getattr(self.method, "hears_turns", False):
             memory, pose = self.method.step(following.memory, goals)
         else:  # of points that are refused nothing is believed; inertial trackers know turns alone
-            believed = gate.trusted | ~np.isfinite(points).all(-1)
-            memory, pose = self.method.step(following.memory, goals, np.where(believed[:, None, None], turns[gate.order], np.nan))  # type: ignore[call-arg]
+            believed = gate.trusted | ~gate.seen
+            memory, pose = self.method.step(following.memory, goals, np.where(believed[:, None, None], turned, np.nan))  # type: ignore[call-arg]
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
-        lost = 0.0 if gate.trusted.any() else following.lost + self.dt
+        lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
         if leap <= LEAP:
@@ -229,7 +243,7 @@ class Reconstruction(Controller):
         away = float(np.linalg.norm(joints_of(shown, self.body)[0] - joints_of(following.pose, self.body)[0], axis=-1).max())
         return replace(following, offset=difference(shown, following.pose), fade=min(max(SHORTEST, _SWIFTEST * away / HURRY), LONGEST))
 
-    def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray | None) -> Following:
+    def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
@@ -248,13 +262,13 @@ class Reconstruction(Controller):
             raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
         return (points - [0.0, level, 0.0]) / self.factor
 
-    def _turns(self, intent: Intent) -> np.ndarray | None:
-        """How the points are turned (n, 3, 3). Unable for another number of turns."""
+    def _turns(self, intent: Intent) -> np.ndarray:
+        """How the points are turned (n, 3, 3), NaN where not known or no rotation. Unable for another number of turns."""
         count = len(self.controls)
-        turns = None if intent.turns is None else np.asarray(intent.turns, float)
-        if turns is not None and turns.shape != (count, 3, 3):
+        turns = np.full((count, 3, 3), np.nan) if intent.turns is None else np.asarray(intent.turns, float)
+        if turns.shape != (count, 3, 3):
             raise Unable(f"turns of shape {turns.shape}: {count} are followed, {', '.join(self.controls.names)}")
-        return turns
+        return rotations(turns)
 
     def _points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""

@@ -210,12 +210,12 @@ def test_what_a_method_leaps_fades_and_no_joint_is_hurried(away):
     frames = np.zeros((120, 2, 3))
     frames[:, 0, 2] = 0.02 * np.arange(120)
     following = Following(None, Gate.before(frames[0], frames[1] - frames[0]), frames[0], *[controller.method.step(None, f)[1] for f in frames[1::-1]],
-                          0.0, np.zeros((1 + len(SKELETON), 3)), np.zeros((1 + len(SKELETON), 3)))
+                          0.0, np.zeros((1 + len(SKELETON), 3)), np.zeros((1 + len(SKELETON), 3)), (np.full((2, 3), np.nan), np.full((2, 3, 3), np.nan)))
     shown, frames[40:, 0, 0] = [], away
     for seen in frames[2:]:
         pose = controller.method.step(None, seen)[1]
         controller.method.step = lambda memory, points, pose=pose: (None, pose)
-        following = controller._frame(following, seen)
+        following = controller._frame(following, seen, np.full((2, 3, 3), np.nan))
         del controller.method.step
         offset, rate = settle(following.offset, following.rate, following.fade, DT)
         following = replace(following, offset=offset, rate=rate)
@@ -270,6 +270,23 @@ def test_other_frame_rates_show_the_same_motion(follower, clip, points, rate):
     fastest = np.linalg.norm(np.diff(clip.kinematics()[0][:, 0], axis=0), axis=-1).max()
     assert position_error(positions, truth).mean() < 0.02 + fastest
     assert pulls(positions, dt).max() < 8 * pulls(clip.kinematics()[0]).max()
+
+
+@pytest.mark.parametrize("step, dt", [(2, DT), (3, DT), (2, DT / 2)])
+def test_points_of_a_slower_rate_than_the_loop_are_followed(follower, clip, points, step, dt):
+    """NaN between, or no points at all; in a loop that is faster than frames, whichever step they come in."""
+    for between in (np.full_like(points[0], np.nan), None):
+        every = [points[round(k * dt / DT)] if k % step == step - 1 else between for k in range(1, round(180 * DT / dt))]
+        states = played(follower, follower.begin(points[0]), every, dt)
+        shown = bodies(SKELETON, states)[round(DT / dt) - 1::round(DT / dt)]
+        assert follower.status(states[-1]).kind == "running"
+        assert position_error(shown, clip.kinematics()[0][1:1 + len(shown)])[30:].mean() < 0.06
+
+
+@pytest.mark.parametrize("height", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_height_of_nobody_is_refused(follower, height):
+    with pytest.raises(ValueError, match="height"):
+        Reconstruction(follower.method, follower.controls, height)
 
 
 @pytest.mark.parametrize("dt", [0.0, -0.1, 0.11, float("nan")])

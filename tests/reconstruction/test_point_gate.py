@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gambol.controllers.reconstruction.following.point_gate import NEAR, PATIENCE, REACH, Gate
+from gambol.controllers.body import exp
+from gambol.controllers.reconstruction.following.point_gate import BLINK, NEAR, PATIENCE, REACH, Gate, rotations
 
 DT = 1 / 60
 
@@ -64,7 +65,8 @@ def test_a_point_that_comes_back_elsewhere_comes_there_without_a_pop(lost, count
     seen[lost:lost + count] = np.nan
     seen[lost + count:, :, 1] = away
     goals, _ = passed(seen)
-    assert np.isnan(goals[lost:lost + count]).all()
+    goes_on = int(BLINK / DT + 1e-6)
+    assert np.allclose(goals[lost:lost + min(count, goes_on)], 0.0) and np.isnan(goals[lost + goes_on:lost + count]).all()
     back = int(np.nonzero(np.isfinite(goals[lost + count:]).all((1, 2)))[0][0]) + lost + count
     assert (back - lost - count) * DT <= (0.02 if away <= NEAR else PATIENCE + 0.05)
     path = np.concatenate([np.zeros((2, 3)), goals[back:, 0]])
@@ -101,6 +103,53 @@ def test_two_points_that_are_exchanged_for_a_moment_are_lost_for_that_moment():
     seen[30:36] = seen[30:36, ::-1]
     goals, _ = passed(seen, body)
     assert np.isnan(goals[30:36]).all() and np.allclose(goals[40:], body[40:], atol=1e-3)
+
+
+@given(st.floats(0.05, 0.5), st.integers(0, 99))
+@settings(max_examples=20)
+def test_points_that_blink_are_followed(share, seed):
+    """At random, on a wrist that swings by half a metre: always, and nearly where they are."""
+    seen = swinging()
+    torn = seen.copy()
+    torn[2:][np.random.default_rng(seed).random((238, 1)) < share] = np.nan
+    goals, _ = passed(torn, seen)
+    assert np.isfinite(goals).all(-1).mean() > 0.95
+    assert np.nanmean(np.linalg.norm(goals - seen, axis=-1)) < 0.08
+
+
+@pytest.mark.parametrize("step", [2, 3])
+def test_points_that_come_in_every_other_frame_are_followed(step):
+    seen = swinging()
+    torn = np.full_like(seen, np.nan)
+    torn[::step] = seen[::step]
+    goals, _ = passed(torn, seen)
+    assert np.isfinite(goals[step:]).all()
+    assert np.linalg.norm(goals - seen, axis=-1)[60:].max() < 0.05 * step
+
+
+@given(st.integers(0, 99))
+@settings(max_examples=10)
+def test_noise_of_three_centimetres_is_borne_and_a_jump_in_it_is_not(seed):
+    seen = swinging()
+    noisy = seen + np.random.default_rng(seed).normal(0, 0.03, seen.shape)
+    noisy[150:160] += [1.2, 0.0, 0.0]
+    goals, _ = passed(noisy, seen)
+    refused = np.isnan(goals).reshape(len(goals), -1).any(-1)
+    assert refused[150:160].all() and refused[30:150].mean() < 0.02
+
+
+def test_a_turn_that_blinks_goes_on_and_one_that_is_none_is_not_known():
+    turns = exp(np.arange(60)[:, None, None] * [0.0, 5.0 * DT, 0.0])
+    gate = Gate.before(np.zeros((1, 3)), np.zeros((1, 3)))
+    for k, turn in enumerate(turns):
+        told = turn if k < 50 else np.full((1, 3, 3), np.nan)
+        gate, found = gate.told(told, DT)
+        if k < 50 + int(BLINK / DT + 1e-6):
+            assert np.allclose(found, turn, atol=0.02)
+        else:
+            assert np.isnan(found).all()
+    odd = np.stack([-turns[7, 0], np.zeros((3, 3)), 3.0 * turns[7, 0], turns[7, 0]])
+    assert np.array_equal(np.isfinite(rotations(odd)).all((-1, -2)), [False, False, False, True])
 
 
 def test_a_point_out_of_reach_is_never_followed():

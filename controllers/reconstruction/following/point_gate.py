@@ -1,7 +1,7 @@
-"""Points as trackers give them, made fit to be followed: exchanged ones get their names back, lost ones stay away, wild
-ones are refused, returning ones eased in.
+"""Points as trackers give them, made fit to be followed: exchanged ones get their names back, those that blink go on as they
+went, lost ones stay away, wild ones are refused, returning ones eased in.
 
-Whatever comes back is first taken to be where the body has it already, with the body's velocity; the difference
+Whatever comes back after longer than a blink is first taken to be where the body has it already, with the body's velocity; the difference
 then settles (inertialisation), so that nothing pops.
 """
 
@@ -11,12 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...body import damp, settle
+from ...body import damp, exp, log, settle
 
 SUDDEN = 0.15
 """Farther than this [m] from where its motion leads no point gets within a frame: 540 m/s² is beyond any body."""
+ROUGHLY = 3.0
+"""Noise takes it farther, up to so many times as far as it lately did, but no farther than `NEAR`."""
 FASTEST = 15.0
 """And one of which no motion is known yet no farther than this [m/s] goes."""
+BLINK = 0.15
+"""A point or a turn that is missing for no longer than this [s] goes on as it went; then it is lost."""
+SWERVE = 3.0
+"""Meanwhile it gets so much farther [m/s] from where its motion led: of recorded points five in a thousand do."""
 NEAR = 0.4
 """A point that comes back within this of where the body has it [m] is believed at once."""
 PATIENCE = 0.3
@@ -29,33 +35,46 @@ EASE = 0.1
 """Half-life with which a point that is back comes to where it is seen [s]."""
 SLIP = 3.0
 """It is taken to move at most so much faster or slower than it is seen to [m/s]: else it would swing past."""
+SKEW = 0.1
+"""What no rotation's RᵀR is farther from 1 than."""
+_ROUGH = 0.2  # s, half-life of the roughness that is told from places
 _RATE = 0.03  # s, half-life of the velocity that is told from places
 
 
 @dataclass(frozen=True, eq=False)
 class Gate:
-    """What is remembered of n points. raw: (n, 3) [m] where they were last seen, NaN where they were not.
+    """What is remembered of n points.
 
-    rate, smooth: (n, 3) [m/s] how they move, and how they did in the last frames, which noise blurs less. steady: (n,) [s] for how long they have moved like a body. trusted: (n,) bool
-    which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has settled. order: (n,) under
-    which number each one comes now.
+    raw: (n, 3) [m] where they were last seen, or have gone since then, NaN where lost. rate, smooth: (n, 3) [m/s] how they
+    move, and how they did in the last frames, which noise blurs less. gone: (n,) [s] for how long they have not been seen.
+    steady: (n,) [s] for how long they have moved like a body. rough: (n,) [m] how far they lately were from where their
+    motion led. trusted: (n,) bool, which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has
+    settled. order: (n,) under which number each one comes now. turned, spin, untold: (n, 3, 3), (n, 3) [rad/s], (n,) [s] how
+    they were last told to be turned, or have turned since then, NaN where unknown; how fast they turn, and since when
+    that was not told.
     """
 
     raw: np.ndarray
     rate: np.ndarray
     smooth: np.ndarray
+    gone: np.ndarray
     steady: np.ndarray
+    rough: np.ndarray
     trusted: np.ndarray
     offset: np.ndarray
     slip: np.ndarray
     order: np.ndarray
+    turned: np.ndarray
+    spin: np.ndarray
+    untold: np.ndarray
 
     @staticmethod
     def before(seen: np.ndarray, motion: np.ndarray) -> Gate:
         """When points were seen for the first time, at (n, 3) [m], NaN where not; taken to move as the body does
         [m/s]. None is followed yet."""
-        zero = np.zeros_like(motion)
-        return Gate(seen, motion, motion, np.zeros(len(seen)), np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)))
+        zero, none = np.zeros_like(motion), np.zeros(len(seen))
+        return Gate(seen, motion, motion, none, none, none, np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)),
+                    np.full((len(seen), 3, 3), np.nan), zero, none)
 
     def named(self, seen: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """Points (n, 3) [m] as they come dt [s] after the last ones, under their own numbers, and the gate that knows them.
@@ -83,34 +102,67 @@ class Gate:
         there = np.all(np.isfinite(seen), axis=-1)
         seen = np.where(there[:, None], seen, np.nan)
         known = np.isfinite(self.raw).all(-1)
-        moved = seen - self.raw
-        away = np.minimum(_length(moved - self.rate * dt), _length(moved - self.smooth * dt))
-        limit = SUDDEN + np.where(self.steady > 0.0, 0.0, FASTEST * dt)
+        since = self.gone + dt
+        moved, ahead = seen - self.raw, self.raw + self.smooth * dt
+        away = np.minimum(_length(moved - self.rate * dt), _length(seen - ahead))
+        usual = np.clip(ROUGHLY * self.rough, SUDDEN, NEAR)
+        limit = usual + np.where(self.steady > 0.0, SWERVE * self.gone, FASTEST * since)
         goes_on = there & known & (away <= limit)
-        steady = np.where(goes_on, self.steady + dt, 0.0)
-        rate = np.where(goes_on[:, None], moved / dt, 0.0)
+        blinks = ~there & known & (since <= BLINK)
+        steady = np.where(blinks, self.steady, np.where(goes_on, self.steady + since, 0.0))
+        rate = np.where(blinks[:, None], self.smooth, 0.0)
+        rate = np.where(goes_on[:, None], (moved + self.rate * self.gone[:, None]) / since[:, None], rate)
+        rough = np.where(there & known, damp(self.rough, np.minimum(away, NEAR), _ROUGH, dt), self.rough)
         smooth = np.where((self.steady > 0.0)[:, None], damp(self.smooth, rate, _RATE, dt), rate)
-        gap = _length(seen - body)
-        believed = goes_on & (gap <= REACH) & (self.trusted | (gap <= NEAR + STRAY * lost) | (steady >= PATIENCE))
-        back = (believed & ~self.trusted)[:, None]
+        place = np.where(blinks[:, None], ahead, seen)
+        gap = _length(place - body)
+        believed = (gap <= REACH) & (blinks & self.trusted
+                                     | goes_on & (self.trusted | (gap <= NEAR + STRAY * lost) | (steady >= PATIENCE)))
+        back = (believed & there & ~(self.trusted & (away <= usual)))[:, None]
         offset, slip = settle(self.offset, self.slip, EASE, dt)
         back = back & (lost == 0.0)
         offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
         slip = np.where(believed[:, None], np.where(back, _at_most(motion - smooth, SLIP), slip), 0.0)
-        after = replace(self, raw=seen, rate=rate, smooth=smooth, steady=steady, trusted=believed, offset=offset, slip=slip)
-        return after, np.where(believed[:, None], seen + offset, np.nan)
+        after = replace(self, raw=place, rate=rate, smooth=smooth, gone=np.where(there, 0.0, since), steady=steady, rough=rough,
+                        trusted=believed, offset=offset, slip=slip)
+        return after, np.where(believed[:, None], place + offset, np.nan)
+
+    def told(self, turns: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
+        """How points are turned (n, 3, 3) dt [s] after the last ones, under their own numbers, NaN where that is not known, and
+        the gate that knows it. A turn that is not told goes on for `BLINK`."""
+        there, known = (np.isfinite(some).all((-1, -2)) for some in (turns, self.turned))
+        since = self.untold + dt
+        blinks, goes_on = known & ~there & (since <= BLINK), known & there
+        old, new = (np.where(which[:, None, None], some, np.eye(3)) for which, some in ((known, self.turned), (there, turns)))
+        found = (log(np.swapaxes(old, -1, -2) @ new) + self.spin * self.untold[:, None]) / since[:, None]
+        spin = np.where(goes_on[:, None], damp(self.spin, found, _RATE, dt), np.where(blinks[:, None], self.spin, 0.0))
+        turned = np.where(blinks[:, None, None], old @ exp(self.spin * dt), np.where(there[:, None, None], new, np.nan))
+        return replace(self, turned=turned, spin=spin, untold=np.where(there, 0.0, since)), turned
+
+    @property
+    def seen(self) -> np.ndarray:
+        """Which (n,) were seen in the last frame."""
+        return np.isfinite(self.raw).all(-1) & (self.gone == 0.0)
 
     def at_odds(self, dt: float) -> bool:
         """Whether all that is seen, two points or more, has moved like a body for two frames of dt [s], but not like this one:
         then the body is wrong, and not the points."""
-        there = np.isfinite(self.raw).all(-1)
+        there = self.seen
         return int(there.sum()) >= 2 and not self.trusted.any() and bool((self.steady[there] > 1.5 * dt).all())
 
     @property
     def doubtful(self) -> bool:
         """Whether no more than half of the points that go on from where they were, two or more, are believed."""
-        going = self.steady > 0.0
-        return int(going.sum()) >= 2 and 2 * int(self.trusted.sum()) <= int(going.sum())
+        going = self.seen & (self.steady > 0.0)
+        return int(going.sum()) >= 2 and 2 * int((self.trusted & going).sum()) <= int(going.sum())
+
+
+def rotations(turns: np.ndarray) -> np.ndarray:
+    """Turns (n, 3, 3) as they were told, NaN where they are no rotations: mirrored, or by more than `SKEW` not orthonormal."""
+    known = np.isfinite(turns).all((-1, -2), keepdims=True)
+    some = np.where(known, np.clip(turns, -9.0, 9.0), np.eye(3))
+    skew = np.abs(np.swapaxes(some, -1, -2) @ some - np.eye(3)).max((-1, -2), keepdims=True)
+    return np.where(known & (skew <= SKEW) & (np.linalg.det(some)[:, None, None] > 0.5), turns, np.nan)
 
 
 def _length(vectors):
