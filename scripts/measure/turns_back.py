@@ -60,21 +60,21 @@ def recorded(folder: Path, library: Library) -> None:
         flat, velocity = motion.com[:, 0][:, [0, 2]], motion.com_velocity[:, 0][:, [0, 2]]
         feet = motion.standing[:, 0].reshape(-1, 2, 2).any(-1).astype(int)
         strikes = np.flatnonzero((np.diff(feet, axis=0) > 0).any(-1))
-        half, last = np.floor(2.0 * heading / np.pi + 0.5) % 2, -rate
-        for middle in np.flatnonzero((half[1:] == 1) & (half[:-1] == 0)):
-            a, b = middle - round(0.9 * rate), middle + round(1.4 * rate)
-            if a < round(0.5 * rate) or b + rate // 2 >= len(heading) or middle - last < rate:
+        way_of, last = np.floor((heading - heading[0]) / np.pi + 0.5), -rate
+        for middle in np.flatnonzero(np.diff(way_of)):
+            a, b, half = middle - round(1.33 * rate), middle + round(0.95 * rate), rate // 2
+            if a < half or b + rate >= len(heading) or middle - last < rate:
                 continue
-            before, after = heading[a - rate // 3:a].mean(), heading[b:b + rate // 3].mean()
+            before, after = heading[a:a + half].mean(), heading[b:b + half].mean()
             if abs(abs(after - before) - np.pi) > 0.5:
                 continue
             last, old, new = middle, np.array([np.sin(before), np.cos(before)]), np.array([np.sin(after), np.cos(after)])
-            speed, later = (velocity[a - rate // 2:a] @ old).mean(), (velocity[b - rate // 2:b + rate // 2] @ new).mean()
+            speed, later = (velocity[a - rate // 3:a + half] @ old).mean(), (velocity[b:b + 2 * rate // 3] @ new).mean()
             goes = (np.abs(heading[a:middle] - before) < BEGINS) & (velocity[a:middle] @ old > (1.0 - BEGINS) * speed)
             begin = a + int(np.flatnonzero(goes)[-1]) if goes.any() else a
             faces = middle + int((np.abs(heading[middle:] - after) < NEAR).argmax())
             quick = middle + int((velocity[middle:] @ new > 0.9 * later).argmax())
-            way = flat[begin:b] - flat[begin]
+            way = flat[begin:b + half] - flat[begin]
             rows.append(((faces - begin) / rate, (quick - begin) / rate, ((strikes > begin) & (strikes <= faces)).sum(), (way @ old).max(),
                          np.abs(way[:faces - begin] @ np.array([old[1], -old[0]])).max()))
             speeds.append(speed)
