@@ -171,11 +171,12 @@ def _above(library: Library) -> np.ndarray:
 def _led(beyond: np.ndarray) -> np.ndarray:
     """A difference (G, D) from nothing to nothing: how this person stood is no part of a start, nor how they walk."""
     u = grid()[:, None]
-    stood = 1.0 - _smooth((u + BEFORE) / (BEFORE + 0.4))
-    return (beyond - stood * beyond[:1]) * (1.0 - _smooth((u - LATE) / (END - LATE)))
+    stood = 1.0 - smooth((u + BEFORE) / (BEFORE + 0.4))
+    return (beyond - stood * beyond[:1]) * (1.0 - smooth((u - LATE) / (END - LATE)))
 
 
-def _smooth(share: np.ndarray) -> np.ndarray:
+def smooth(share: np.ndarray) -> np.ndarray:
+    """From 0 to 1, and level at both ends, as shares (...) do; what is beyond them stays there."""
     share = np.clip(share, 0.0, 1.0)
     return share * share * (3.0 - 2.0 * share)
 

@@ -23,6 +23,7 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
                      query_kernel, series_kernel)
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, cadence_kernel, follow_command, tempo_kernel, to_world_kernel
+from .turning_back import turn_back
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
 
@@ -61,6 +62,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings, table, dt)
         begin_turn(m, turns, wish[n], fresh)
+        turn_back(m, turns, wish[n], settings, fresh)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)
             _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)

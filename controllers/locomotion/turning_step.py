@@ -7,6 +7,7 @@ It has the gait's phase and ends in it, walking or with both feet together; who 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +50,8 @@ THERE, STAYS = 0.02, 0.05
 """Who turns on the spot does so until he is this near [rad] to the way that he is to face; who stands this near stays."""
 ENTRY, LEAVING = 0.1, 0.16
 """The half-lives [s] of what is left of the pose before a turn, and of a turn after it."""
+GLIDES = 0.12
+"""What somebody who walked until a turn is faster than it goes with this half-life [s]."""
 SMALLEST = 0.0, 1.3
 """Smaller turns than this [rad] are such ones, whose way is turned less: no smaller ones were recorded."""
 FOLLOWS = 0.04
@@ -106,42 +109,55 @@ def begin_turn(m, turns, wish, row):
     turn = short_way(m.towards[0] - m.ground[2])
     if abs(turn) < FROM[m.spot] or not m.spot and m.towards[1] < GOES:
         return
-    m.turns_to = m.towards[0]
     if abs(turn) > FARTHEST[m.spot]:
         turn *= 0.5
+    enter_turn(m, turns, turn, -BEFORE, row)
+
+
+@kernel
+def enter_turn(m, turns, turn, since, row):
+    """Begin to turn that far [rad], so long after the first toe-off in phase, which is negative. row: (COLUMNS,) scratch."""
+    m.turns_to = m.towards[0]
     m.turn_ends = m.ground[2] + turn
-    m.turn, m.turned, m.first = turn, -BEFORE, 0 if turn > 0.0 else 1
+    m.turn, m.turned, m.first = turn, since, 0 if turn > 0.0 else 1
     m.turn_gain = 1.0
-    m.stray[0] = m.stray[1] = 0.0
-    whole = turn_kernel(m, turns, WAY_AT + 1, STRIKE if m.spot else END) - turn_kernel(m, turns, WAY_AT + 1, -BEFORE)
+    m.stray[0] = m.stray[1] = m.glide[0] = m.glide[1] = 0.0
+    whole = turn_kernel(m, turns, WAY_AT + 1, STRIKE if m.spot else END) - turn_kernel(m, turns, WAY_AT + 1, since)
     m.turn_gain = (1.0 - FOLLOWS * m.spot) * turn / whole
     if m.spot:
         ends = np.empty(3)
         turn_ahead(m, turns, 1.0, BEFORE + STRIKE, ends)
         m.stray[0], m.stray[1] = m.ground[0] - ends[0], m.ground[1] - ends[1]
-    m.phase = 1.0 - BEFORE if m.first == 0 else 0.5 - BEFORE
+    m.phase = (1.0 if m.first == 0 else 0.5) + since
+    walked = not (m.settled or m.waits or m.onset > 0.0)
     m.settled, m.waits, m.onset = 0, 0, 0.0
     m.stop = BEFORE + STRIKE if m.spot else 0.0
-    _begin_smoothly(m, turns, row)
+    _begin_smoothly(m, turns, since, walked, row)
     m.row[DURATION_AT] = row[DURATION_AT]
     m.fade = ENTRY
 
 
 @kernel
-def _begin_smoothly(m, turns, row):
-    """Write a turn's first row (COLUMNS,) and remember how the pose is off it, and moves against it and its ground frame, which sets off at once."""
-    later = MOMENT * turn_time(m, turns, -BEFORE)
-    turned_row(m, turns, MOMENT - BEFORE, row)
+def _begin_smoothly(m, turns, since, walked, row):
+    """Write a turn's first row (COLUMNS,) and remember how the pose is off it, and moves against it and its ground frame, which sets off at once:
+    of somebody who walked that glides on."""
+    later = MOMENT * turn_time(m, turns, since)
+    turned_row(m, turns, MOMENT + since, row)
     for d in range(LABELS_AT):
         m.blend_rate[d] = m.row_rate[d] - row[d] / later
-    turned_row(m, turns, -BEFORE, row)
+    turned_row(m, turns, since, row)
     for d in range(LABELS_AT):
         m.blend[d] = m.row[d] - row[d]
         m.blend_rate[d] += row[d] / later
-    pace = _tempo(m, -BEFORE)
-    m.blend_rate[HIPS_AT] += m.velocity[2] - pace * turn_kernel(m, turns, WAY_AT + 2, -BEFORE)
-    m.blend_rate[HIPS_AT + 2] += m.velocity[0] - pace * turn_kernel(m, turns, WAY_AT, -BEFORE)
-    turned = turn_kernel(m, turns, WAY_AT + 1, MOMENT - BEFORE) - turn_kernel(m, turns, WAY_AT + 1, -BEFORE)
+    pace = _tempo(m, since)
+    aside, ahead = m.velocity[2] - pace * turn_kernel(m, turns, WAY_AT + 2, since), m.velocity[0] - pace * turn_kernel(m, turns, WAY_AT, since)
+    if walked:
+        c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+        m.glide[0], m.glide[1] = c * aside + s * ahead, c * ahead - s * aside
+    else:
+        m.blend_rate[HIPS_AT] += aside
+        m.blend_rate[HIPS_AT + 2] += ahead
+    turned = turn_kernel(m, turns, WAY_AT + 1, MOMENT + since) - turn_kernel(m, turns, WAY_AT + 1, since)
     m.blend_rate[LANES] += m.velocity[1] - turned / later
 
 
@@ -162,8 +178,14 @@ def end_turn(m):
 
 @kernel
 def after_turn(m, table, row, dt):
-    """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, which goes on by itself, fades."""
-    m.left_turn = 0
+    """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, which goes on by itself, fades. How fast the
+    gait goes, its weights with it, is foretold in the first step, and seen in the second."""
+    if m.left_turn == 2:
+        m.left_turn = 0
+        for d in range(LABELS_AT):
+            m.blend_rate[d] = m.row_rate[d] - (row[d] - (m.row[d] - m.blend[d])) / dt
+        return
+    m.left_turn = 2
     m.fade = LEAVING
     later = np.empty(row.shape[0], np.float32)
     ahead = 0.0 if m.waits else dt / max(row[DURATION_AT], SHORTEST)
@@ -205,11 +227,15 @@ def lead_turn(m, turns, agility, dt):
     half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
     step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
     turned = turn_kernel(m, turns, WAY_AT + 1, m.turned + step) - turn_kernel(m, turns, WAY_AT + 1, m.turned)
-    pace = agility * _tempo(m, m.turned + 0.5 * step)
+    pace, fades = agility * _tempo(m, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
+    m.glide[0], m.glide[1] = fades * m.glide[0], fades * m.glide[1]
+    c, s = math.cos(m.ground[2] + 0.5 * turned), math.sin(m.ground[2] + 0.5 * turned)
+    glides = s * m.glide[0] + c * m.glide[1], 0.0, c * m.glide[0] - s * m.glide[1]
     for i in range(3):
         before = m.command[i]
-        m.command[i] = turned / dt if i == 1 else pace * turn_kernel(m, turns, WAY_AT + i, m.turned + 0.5 * step)
+        m.command[i] = turned / dt if i == 1 else pace * turn_kernel(m, turns, WAY_AT + i, m.turned + 0.5 * step) + glides[i]
         m.velocity[i], m.rate[i], m.asked[i] = m.command[i], (m.command[i] - before) / dt, m.command[i]
+    m.glide[0], m.glide[1] = fades * m.glide[0], fades * m.glide[1]
     _back(m, m.ground, m.turned, m.turned + step)
     m.turned += step
     return step
@@ -237,6 +263,8 @@ def turn_ahead(m, turns, agility, later, ground):
         advance(ground, pace * turn_kernel(m, turns, WAY_AT, since + 0.5 * step), omega, pace * turn_kernel(m, turns, WAY_AT + 2, since + 0.5 * step), time)
         _back(m, ground, since, since + step)
         whole += time
+    far = (1.0 - 2.0 ** (-whole / GLIDES)) * GLIDES / math.log(2.0)
+    ground[0], ground[1] = ground[0] + far * m.glide[0], ground[1] + far * m.glide[1]
     return whole
 
 

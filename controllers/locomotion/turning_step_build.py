@@ -14,7 +14,7 @@ import numpy as np
 
 from ..body import compose, contact_points, forward_kinematics, mirror_index, relative, rotations as rot, screw
 from .cycles import RATE, Track, labels_of
-from .first_stride_build import steps, strides
+from .first_stride_build import smooth, steps, strides
 from .idle import onto
 from .library import HIPS, Library, Turn
 from .turning_step import BEFORE, END, PER_CYCLE, SHIFTS, SPOT, WAITING, WALKS, features
@@ -121,7 +121,7 @@ def _told(track: Track, feet: np.ndarray, library: Library, at: np.ndarray, firs
     stood = _frame_of(track, library, at[0])
     off = relative(frame[0], stood)
     off[2] = (off[2] + np.pi) % (2.0 * np.pi) - np.pi
-    fades = 1.0 - _smooth(np.linspace(0.0, 1.0, len(at)))
+    fades = 1.0 - smooth(np.linspace(0.0, 1.0, len(at)))
     frame = compose(frame, fades[:, None] * off)
     if kind == SPOT:  # it ends as it begins, over its feet
         ends = relative(frame[-1], _frame_of(track, library, at[-1]))
@@ -175,7 +175,3 @@ def _frame_of(track: Track, library: Library, frame: int) -> np.ndarray:
     stance = contact_points(library.skeleton, *forward_kinematics(library.skeleton, row[HIPS:HIPS + 3], local))[:, [0, 2]]
     turn, shift = onto(stance, track.points[frame][:, [0, 2]])
     return np.array([*shift, turn])
-
-
-def _smooth(share: np.ndarray) -> np.ndarray:
-    return share * share * (3.0 - 2.0 * share)

@@ -1,4 +1,4 @@
-"""Turns from rest are made in as few steps as people take: two into a walk, two or four on the spot, which end where they began."""
+"""Turns are made in as few steps as people take: from rest two into a walk, two or four on the spot, which end where they began; back in a walk three."""
 
 import numpy as np
 import pytest
@@ -43,6 +43,27 @@ def test_who_goes_another_way_turns_there_in_two_steps(locomotion):
     assert all(strikes(states[:facing[n]])[:, n].sum() <= 2 for n in range(len(degrees)))
     assert (off(states, degrees)[-1] < 0.05).all()
     assert np.allclose([np.hypot(*state.velocity[:, [0, 2]].T) for state in states[-6:]], 1.3, atol=0.05)
+
+
+def test_who_walks_and_is_to_go_back_steps_turns_over_it_and_goes(locomotion):
+    """At any phase of a walk, as soon as recorded people, in as few steps, and along the line that they came on."""
+    state = locomotion.start(np.zeros((8, 3)))
+    for k in range(5 * FPS):  # eighths of a cycle apart
+        state, _ = locomotion.step(state, Intent(np.stack([np.where(k < 8 * np.arange(8), 0.0, 1.2), np.zeros(8), np.zeros(8)], -1)), 1 / FPS)
+    phases = np.sort(state.memory["phase"] % 0.5)
+    assert np.ptp(phases) > 0.3, phases
+    states, begins = [], state.ground
+    for _ in range(3 * FPS):
+        state, _ = locomotion.step(state, steer(state.ground, np.array([0.0, -1.2]), None, state.velocity[:, 1]), 1 / FPS)
+        states.append(state)
+    away = off(states, np.full(8, 180.0))
+    facing = len(away) - (away > 0.1)[::-1].argmax(0)
+    assert facing.mean() < 1.75 * FPS and facing.max() < 2.2 * FPS, facing
+    assert np.mean([strikes(states[:facing[n]])[:, n].sum() for n in range(8)]) < 3.0
+    way = np.array([s.ground for s in states]) - begins
+    assert np.abs(way[..., 0]).max() < 0.3 and way[..., 1].max() < 0.5
+    assert np.allclose(states[-1].velocity[:, 0], 1.2, atol=0.05) and away[-1].max() < 0.05
+    assert feet_apart(locomotion.skeleton, *motion_of(locomotion, states)).min() > 0.06
 
 
 def test_turns_on_the_spot_take_two_steps_and_end_where_they_began(locomotion):

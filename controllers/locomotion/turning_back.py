@@ -1,0 +1,58 @@
+"""The way back: who is told in his walk to go where he came from brakes with a step, turns over it as from rest, and goes.
+
+So do recorded people: the foot ahead takes the speed, both feet stand for a moment, and the one behind is set down turned. Which
+way round they turn is up to the foot that is ahead when they are slow.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import kernel
+from .memory import WALK
+from .root_motion import cadence_kernel, short_way
+from .turning_step import BEFORE, GOES, enter_turn
+
+BACK = 2.75
+"""Who walks and is told to face another way by more than this [rad] turns back …"""
+LEAST, GONE = 0.5, 1.2
+"""… if he goes faster than the first [m/s], until he has less than the second [rad] to turn."""
+SLOW = 0.4
+"""He turns once he is no faster than this [m/s]."""
+MEANWHILE = 0.8
+"""So fast he turns while he brakes [rad/s]."""
+TAKES_UP, LAST = 0.1, 0.06
+"""Braking takes so much longer [s] than at legs' hardest push; a turn that begins nearer to its toe-off than this, in phase, is too late."""
+BEYOND = 0.6
+"""He goes on to that side as long as it is no more than so much [rad] farther round."""
+
+
+@kernel
+def turn_back(m, turns, wish, settings, row):
+    """Brake and begin a turn where somebody who walks is to go back. wish: (3,), which is changed meanwhile. row: (COLUMNS,) scratch."""
+    walks = m.family == WALK and not (m.settled or m.waits or m.turn != 0.0)
+    asked = m.heads and GOES < m.towards[1] < settings.run_above and turns.coefficients.shape[3] > 0
+    turn, speed = short_way(m.towards[0] - m.ground[2]), math.hypot(m.command[0], m.command[2])
+    if not (walks and asked) or m.backs == 0 and (abs(turn) < BACK or m.command[0] < LEAST):
+        m.backs = 0
+        return
+    if abs(turn) > BACK:
+        m.backs = _side(m, speed, settings)
+    if turn * m.backs < 0.0:
+        turn += 2.0 * math.pi * m.backs
+    if not GONE < abs(turn) < math.pi + BEYOND:
+        m.backs = 0
+        return
+    since = (m.phase + (0.0 if m.backs == 1 else 0.5)) % 1.0 - 1.0
+    if speed < SLOW and -BEFORE <= since < -LAST:
+        m.backs, m.spot = 0, 0
+        enter_turn(m, turns, turn, since, row)
+    else:
+        wish[0], wish[1], wish[2] = 0.0, MEANWHILE * m.backs, 0.0
+
+
+@kernel
+def _side(m, speed, settings):
+    """To which side, 1 left or -1 right, he turns over the foot that is ahead once he is slow: the other one leaves next."""
+    later = cadence_kernel(m) * (TAKES_UP + (speed - SLOW) / settings.acceleration) / settings.agility if speed > SLOW else 0.0
+    return 1 if 0.5 - LAST < (m.phase + later) % 1.0 <= 1.0 - LAST else -1
