@@ -13,6 +13,5 @@ from .units_and_axes import Detected, detect, load, read, standardise
 
 __all__ = [
     "AcclaimSkeleton", "Calibration", "Captured", "Detected", "MotionFileError", "NoHuman", "Roles", "calibrate", "captured", "detect", "elbows", "hinged",
-    "load", "plain",
-    "read", "read_amc", "read_asf", "read_bvh", "retarget", "roles", "standardise", "write_bvh", "zero_positions",
+    "load", "plain", "read", "read_amc", "read_asf", "read_bvh", "retarget", "roles", "standardise", "write_bvh", "zero_positions",
 ]
