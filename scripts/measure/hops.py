@@ -25,12 +25,15 @@ from gambol.controllers.body import Clip, centre_of_mass, contact_points, log
 from gambol.controllers.contract import CharacterState, Intent, Leap
 from gambol.controllers.jump import Jump, Jumping
 from gambol.controllers.jump.prior import flights
+from gambol.controllers.locomotion import DEFAULT_LIBRARY, Library, joint_acceleration
 from gambol.controllers.mocap import calibrate, load, retarget
 from gambol.controllers.person import person
 
 FPS = 60
 LASTS, TOGETHER = (0.08, 0.75), 0.62
 """How long flights of hops last [s]; hops follow each other within so long [s] on the ground."""
+STEPPED = 0.15
+"""The steps of skips fly no longer than this [s]."""
 TAKES = "cmu/49/49_02.amc", "cmu/49/49_03.amc", "woody2/wd2_fast_2foot_hop.bvh"
 Foot = Literal["left", "right", "both"] | None
 OURS: tuple[tuple[str, tuple[Foot, ...], float, tuple[float, ...]], ...] = (
@@ -76,6 +79,26 @@ def stances(jump: Jump, clip: Clip) -> dict[str, list[list[float]]]:
     return rows
 
 
+def laws(jump: Jump, clip: Clip, runs: np.ndarray) -> None:
+    """What can be told of skips without a recording: on which feet they come down, one after the other; how far left and right are apart, each over their mean; and
+    how hard joints are accelerated at most, over the 99th percentile (J,) of recorded runs [m/s²]."""
+    positions, turned = clip.kinematics()
+    found, step = list(flights(jump.skeleton, jump.physique.anatomy, clip, LASTS)), clip.frame_time
+    feet = contact_points(jump.skeleton, positions, turned)[..., 1].reshape(-1, 2, 2).min(-1)
+    down = [(int(feet[last:again].mean(0).argmin()), (last - first) * step, (again - last) * step) for (first, last), (again, _) in zip(found, found[1:])]
+    order = "".join("LR"[side] for side, *_ in down)
+    regular = sum(a != b for a, b in zip(order, order[2:]))
+    told = []
+    for name, column, parts in (("in the air", 1, (False, True)), ("on the ground", 2, (False, True))):
+        for hop in parts:  # a hop flies long before it comes down on the same foot, a step shortly
+            left, right = ([row[column] for row in down[1:] if row[0] == side and (row[1] > STEPPED) == hop] for side in (0, 1))
+            if left and right:
+                told.append(f"{name}, {'hops' if hop else 'steps'} {np.mean(left):.2f} and {np.mean(right):.2f} s")
+    over = joint_acceleration(positions[found[1][0]:found[-1][0]], step).max(0) / runs
+    print(f"  order {order}: two steps on it is the other foot in {regular} of {max(len(order) - 2, 0)}; left and right {'; '.join(told)}; joints' acceleration over "
+          f"recorded runs', at most {over.max():.1f}× ({jump.skeleton.names[int(over.argmax())]})")
+
+
 def tell(name: str, rows: Sequence[Sequence[float]]) -> None:
     """One line: the range of each."""
     least, most = np.min(rows, axis=0), np.max(rows, axis=0)
@@ -99,9 +122,11 @@ def main() -> None:
         for stood, rows in stances(jump, clip).items():
             if stood == "both feet" and "both" not in feet:
                 continue
-            parts = {"": rows} if len(airtimes) == 1 else {", hops": [r for r in rows if r[0] > 0.15], ", steps": [r for r in rows if r[0] <= 0.15]}
+            parts = {"": rows} if len(airtimes) == 1 else {", hops": [r for r in rows if r[0] > STEPPED], ", steps": [r for r in rows if r[0] <= STEPPED]}
             for part, some in parts.items():
                 tell(f"ours, {name}{part}", some)
+        if len(airtimes) > 1:
+            laws(jump, clip, Library.load(DEFAULT_LIBRARY).accelerations["run"])
 
 
 if __name__ == "__main__":
