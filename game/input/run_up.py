@@ -5,6 +5,7 @@ He plays ahead what he is about to do: controllers are pure functions.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -39,7 +40,7 @@ Asks = Callable[[CharacterState], Intent]
 
 @dataclass(frozen=True)
 class RunUp:
-    """What somebody knows of his run-up. free: for so many steps he goes on as he does; halt: x, z [m] where he is to come to rest, as he can't leap."""
+    """What somebody knows of his run-up. free: for so many steps he goes on as he does, −1 where his leap was found not to go off; halt: x, z [m] where he is to come to rest, as he can't leap."""
 
     free: int = 0
     halt: tuple[float, float] | None = None
@@ -63,7 +64,7 @@ class RunUp:
 def before(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
     """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
     where that is far away."""
-    speed, floor, here = float(np.hypot(*velocity)), float(state.floor), np.asarray(state.ground[:2], float)
+    speed, floor, here = math.hypot(*velocity), float(state.floor), np.asarray(state.ground[:2], float)
     if speed < 1e-6 or not len(around):
         return None
     pace = float(np.hypot(state.velocity[0], state.velocity[2]))

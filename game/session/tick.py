@@ -100,16 +100,20 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
     what he can't walk over. None of who does neither."""
     if not (aim.moving and (aim.aiming or aim.waiting > 0.0)):
         return None
-    state, controller = character.state, character.controller
-    if player.aim.aiming and not aim.aiming:
-        jump = jump_of(controller)
-
-        def asks(now: CharacterState) -> Intent:
-            return replace(command.intent(now, player.steering), leap=aim.asked(now, props, -float(jump.gravity[1]), jump.longest))
-        return RunUp(leaps(controller, state, asks, props, DT, round(aim.waiting / DT)))
     if player.run_up.free > 1:
         return RunUp(player.run_up.free - 1)
-    return RunUp(0, before(controller, state, command.velocity, props))
+    state, controller, jump = character.state, character.controller, jump_of(character.controller)
+    halt = before(controller, state, command.velocity, props)
+    if halt is None or jump is None or aim.aiming:
+        return RunUp(0, halt)
+    if player.run_up.free == 0:  # whether it goes off is found out once, and only where something is ahead
+        gravity, longest = -float(jump.gravity[1]), jump.longest
+
+        def asks(now: CharacterState) -> Intent:
+            return replace(command.intent(now, player.steering), leap=aim.asked(now, props, gravity, longest))
+        if number := leaps(controller, state, asks, props, DT, round(aim.waiting / DT)):
+            return RunUp(number)
+    return RunUp(-1, halt)
 
 
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
