@@ -95,9 +95,9 @@ def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], ar
         floor = float(now.floor)
         if blocked is None and room(way[-1], floor, around) <= 0.0:
             blocked = len(way) - 1, _edge(way[-1], floor, around)
-        if now.active != state.active or _touches(way[-1], floor, around):
+        if now.active == "jump" or _touches(way[-1], floor, around):
             number = leaps(controller, state, asks(), around, dt, len(way) - 1)
-            last, edge = blocked or (len(way) - 1, now.active != state.active)
+            last, edge = blocked or (len(way) - 1, now.active == "jump")
             return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge))
     return RunUp(max(round(EVERY / dt), 1))
 

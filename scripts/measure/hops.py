@@ -79,24 +79,21 @@ def stances(jump: Jump, clip: Clip) -> dict[str, list[list[float]]]:
     return rows
 
 
-def laws(jump: Jump, clip: Clip, runs: np.ndarray) -> None:
-    """What can be told of skips without a recording: on which feet they come down, one after the other; how far left and right are apart, each over their mean; and
+def laws(jump: Jump, clip: Clip, contacts: np.ndarray, runs: np.ndarray) -> None:
+    """What can be told of skips without a recording, from contacts (N, 4): on which feet they come down, one after the other; how left and right compare; and
     how hard joints are accelerated at most, over the 99th percentile (J,) of recorded runs [m/s²]."""
-    positions, turned = clip.kinematics()
-    found, step = list(flights(jump.skeleton, jump.physique.anatomy, clip, LASTS)), clip.frame_time
-    feet = contact_points(jump.skeleton, positions, turned)[..., 1].reshape(-1, 2, 2).min(-1)
-    down = [(int(feet[last:again].mean(0).argmin()), (last - first) * step, (again - last) * step) for (first, last), (again, _) in zip(found, found[1:])]
-    order = "".join("LR"[side] for side, *_ in down)
-    regular = sum(a != b for a, b in zip(order, order[2:]))
-    told = []
-    for name, column, parts in (("in the air", 1, (False, True)), ("on the ground", 2, (False, True))):
-        for hop in parts:  # a hop flies long before it comes down on the same foot, a step shortly
-            left, right = ([row[column] for row in down[1:] if row[0] == side and (row[1] > STEPPED) == hop] for side in (0, 1))
-            if left and right:
-                told.append(f"{name}, {'hops' if hop else 'steps'} {np.mean(left):.2f} and {np.mean(right):.2f} s")
-    over = joint_acceleration(positions[found[1][0]:found[-1][0]], step).max(0) / runs
-    print(f"  order {order}: two steps on it is the other foot in {regular} of {max(len(order) - 2, 0)}; left and right {'; '.join(told)}; joints' acceleration over "
-          f"recorded runs', at most {over.max():.1f}× ({jump.skeleton.names[int(over.argmax())]})")
+    turns = np.flatnonzero(np.diff(contacts.any(1).astype(int)))
+    offs, downs = (turns[contacts[turns].any(1) == on] for on in (True, False))
+    down = [(int(contacts[n + 1, 2:].any()), (n - offs[offs < n][-1]) / FPS, (offs[offs > n][0] - n) / FPS) for n in downs if (offs > n).any() and (offs < n).any()]
+    order, told = "".join("LR"[side] for side, *_ in down), []
+    for name, hop in (("hops", True), ("steps", False)):  # a hop flies long before it comes down on the same foot, a step shortly
+        for part, column in (("in the air", 1), ("on the ground", 2)):
+            both = [[row[column] for row in down if row[0] == side and (row[1] > STEPPED) == hop] for side in (0, 1)]
+            told += [f"{name} {part} {' and '.join(f'{np.mean(one):.2f}' for one in both if one)} s"]
+    over = joint_acceleration(clip.kinematics()[0][downs[0]:downs[-1]], clip.frame_time).max(0) / runs
+    worst = np.argsort(-over)[:4]
+    print(f"  order {order}, left and right: {'; '.join(told)}; joints' acceleration over recorded runs', at most "
+          + ", ".join(f"{over[n]:.1f}× ({jump.skeleton.names[n]})" for n in worst))
 
 
 def tell(name: str, rows: Sequence[Sequence[float]]) -> None:
@@ -126,7 +123,7 @@ def main() -> None:
             for part, some in parts.items():
                 tell(f"ours, {name}{part}", some)
         if len(airtimes) > 1:
-            laws(jump, clip, Library.load(DEFAULT_LIBRARY).accelerations["run"])
+            laws(jump, clip, np.stack([s.contacts for s in states]), Library.load(DEFAULT_LIBRARY).accelerations["run"])
 
 
 if __name__ == "__main__":
