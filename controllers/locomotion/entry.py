@@ -126,13 +126,14 @@ def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray, phase: f
 
 
 def _rate(locomotion: Any, memory: np.ndarray) -> np.ndarray:
-    """How fast the pose columns of a gait's row change by themselves [1/s], the hips' along the floor apart; not at all at rest."""
+    """How fast joints turn by themselves in a gait's row (LABELS_AT,) [1/s]; not at all at rest, nor hips, which go on from where they are at the lowest
+    point of a landing."""
     if memory["settled"]:
         return np.zeros(LABELS_AT)
     row = np.empty(COLUMNS, np.float32)
     series_kernel(locomotion.tables.series, memory["weights"], np.float32((memory["phase"] + AHEAD) % 1.0), row)
     rate = (row[:LABELS_AT].astype(float) - memory["row"][:LABELS_AT]) / (AHEAD * float(row[DURATION]))
-    rate[[HIPS_AT, HIPS_AT + 2]] = 0.0
+    rate[HIPS_AT:] = 0.0
     return rate
 
 
