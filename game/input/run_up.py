@@ -77,7 +77,8 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
                 low, high = (low, middle) if room(here + middle * ahead, floor, around) <= 0.0 else (middle, high)
             x, z = here + max(low - SHORT[_edge(here + high * ahead, floor, around)], 0.0) * ahead
             return float(x), float(z)
-        floor = floor_at(*(here + far * ahead), around, floor + STEP)
+        x, z = here + far * ahead
+        floor = floor_at(float(x), float(z), around, floor + STEP)
     return None
 
 
