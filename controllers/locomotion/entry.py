@@ -23,6 +23,8 @@ FADE = 0.22
 """Half-life with which the pose that was taken over gives way to the walker's own [s]."""
 ABOUT_TO_STEP = 0.95
 """The phase in which both feet stand and the left one is about to leave."""
+AHEAD = 0.01
+"""How a gait moves is told from its poses so far apart, in phase."""
 PHASES, LEAD = 64, 0.1
 """So many phases are compared; a difference of 1 m/s counts as one of so many metres."""
 
@@ -46,13 +48,15 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
             memory["ground"] = ground
     shown = _row(locomotion, state.pose, ground, state.floor)
     memory["blend"][:LABELS_AT] = shown - memory["row"][:LABELS_AT]
+    own = _rate(locomotion, memory)  # the gait moves by itself, and what is left of what was taken over by the rest
     memory["row"][:LABELS_AT] = shown
     memory["fade"] = FADE
     if state.previous is not None and state.elapsed > 0.0:
         before = _row(locomotion, state.previous, ground, state.floor)
         rate = (shown - before) / state.elapsed
         rate[[HIPS_AT, HIPS_AT + 2]] = 0.0  # the ground frame moves along the floor, not the hips in it
-        memory["blend_rate"][:LABELS_AT] = memory["row_rate"][:LABELS_AT] = np.clip(rate, -12.0, 12.0)
+        memory["row_rate"][:LABELS_AT] = np.clip(rate, -12.0, 12.0)
+        memory["blend_rate"][:LABELS_AT] = np.clip(rate - own, -12.0, 12.0)
     points = contact_points(locomotion.skeleton, *forward_kinematics(
         locomotion.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
     points[:, 1] -= state.floor
@@ -119,6 +123,18 @@ def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray, phase: f
     row = np.empty(COLUMNS, np.float32)
     series_kernel(locomotion.tables.series, memory["weights"], np.float32(phase), row)
     memory["row"], memory["stretch"] = row, 1.0
+
+
+def _rate(locomotion: Any, memory: np.ndarray) -> np.ndarray:
+    """How fast joints turn by themselves in a gait's row (LABELS_AT,) [1/s]; not at all at rest, nor hips, which go on from where they are at the lowest
+    point of a landing."""
+    if memory["settled"]:
+        return np.zeros(LABELS_AT)
+    row = np.empty(COLUMNS, np.float32)
+    series_kernel(locomotion.tables.series, memory["weights"], np.float32((memory["phase"] + AHEAD) % 1.0), row)
+    rate = (row[:LABELS_AT].astype(float) - memory["row"][:LABELS_AT]) / (AHEAD * float(row[DURATION]))
+    rate[HIPS_AT:] = 0.0
+    return rate
 
 
 def _under_the_feet(locomotion: Any, state: CharacterState) -> np.ndarray:

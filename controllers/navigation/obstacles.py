@@ -129,13 +129,13 @@ def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[
     speed = float(np.hypot(*velocity))
     if speed < 1e-6 or not len(around):
         return velocity
-    room = _room(place, floor, around)
+    left = room(place, floor, around)
     # as far as it takes to stop, looked at step by step, lest a thin wall be missed
     ahead = np.arange(1, 2 + int(max(LOOK * speed, 0.25) / PACE)) * PACE / speed
     for turn in DEVIATIONS:
         c, s = np.cos(turn), np.sin(turn)
         tried = c * np.array([c * velocity[0] + s * velocity[1], -s * velocity[0] + c * velocity[1]])
-        if _free(place, tried, ahead, floor, around) if room > 0.0 else _room(place + tried * ahead[0], floor, around) > room:
+        if _free(place, tried, ahead, floor, around) if left > 0.0 else room(place + tried * ahead[0], floor, around) > left:
             return tried
     return np.zeros(2)
 
@@ -144,14 +144,14 @@ def _free(place: np.ndarray, velocity: np.ndarray, ahead: np.ndarray, floor: flo
     """Whether there is room wherever one comes in the times ahead [s], going up and down steps and ramps as they come."""
     for later in ahead:
         there = place + velocity * later
-        if _room(there, floor, around) <= 0.0:
+        if room(there, floor, around) <= 0.0:
             return False
         floor = floor_at(there[0], there[1], around, floor + STEP)
     return True
 
 
-def _room(place: np.ndarray, floor: float, around: Sequence[Any]) -> float:
-    """How much room is left there [m]: negative where a wall is too near, or the floor does not go on."""
+def room(place: np.ndarray, floor: float, around: Sequence[Any]) -> float:
+    """How much room a walker has left at a place (2,) x, z [m] on a floor so high [m]: [m], negative where a wall is too near, or the floor does not go on."""
     here = floor_at(place[0], place[1], around, floor + STEP)
     if abs(here - floor) > STEP:
         return -SHOULDER

@@ -15,6 +15,7 @@ from gambol.controllers.jump import FRESH, RUNNING, Jump, Physique
 from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
 from gambol.controllers.jump.reach import Touch
+from gambol.controllers.navigation import gap
 
 from ..input import Aim, jumping, landing, leaving
 from ..scene import Goal, Prop
@@ -29,6 +30,8 @@ SINKS = 0.7
 ALIKE, TURNED = 0.03, 0.1
 """A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places, if it is to land turned by less than the second [rad]."""
 
+BESIDE = 1.2
+"""What is farther from a runner's arc [m] is nothing that he would touch."""
 HITS = "would hit"
 """What is said of jumps in which something is touched."""
 
@@ -100,11 +103,13 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
         return None
     solid, state = [prop for prop in props if not isinstance(prop, Goal)], jump.landing(character.controller.active(character.state)[1])
     seen = previewed(jump, state, leap, solid)
-    if aim.moving or leap.place is None:
+    if leap.place is None:
         return seen
     start, floor = _pushing(jump, jump.start_of(state, leap)), float(state.floor)
+    if aim.moving:
+        return _running(jump, start, leap, floor, solid, seen, before, crew) if sweeps else seen
     runs = bool(np.linalg.norm(start.velocity[[0, 2]]) >= RUNNING)
-    sweeps = sweeps and bool(solid) and not runs  # a runner's feet move on in every frame
+    sweeps = sweeps and bool(solid) and not runs  # who has let go is swept as he leaps
     if before is not None and before.sought and not _moved(before, seen):
         return replace(seen, fault=before.fault or seen.fault, nearest=before.nearest, sought=True, touch=before.touch)
     if not sweeps and not seen.fault:
@@ -119,6 +124,20 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
         else:
             return _with(seen, before.seeking)
     return _with(seen, (AT_ONCE if runs else crew).submit(_sought, jump, start, leap, floor, solid, seen, sweeps))
+
+
+def _running(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[Prop], seen: Preview, before: Preview | None, crew: Executor) -> Preview:
+    """The same preview of who runs, with what he would have touched as this was last found out, which begins anew as soon as it is: he is
+    elsewhere in every frame."""
+    if not any(gap(seen.arc, thing).min() < BESIDE for thing in solid):
+        return seen
+    seeking = None if before is None else before.seeking
+    if before is not None and seeking is not None:
+        found = seeking.result() if seeking.done() else before
+        seen = replace(seen, touch=found.touch, fault=seen.fault or found.fault if found.touch is not None else seen.fault)
+    if seeking is None or seeking.done():
+        seeking = crew.submit(_swept, jump, start, leap, floor, solid, replace(seen, touch=None, fault=""))
+    return replace(seen, seeking=seeking)
 
 
 def _with(seen: Preview, seeking: Future[Preview]) -> Preview:

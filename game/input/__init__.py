@@ -15,12 +15,13 @@ from .making import aloft, jumping, landing, leaving
 from .moves import Jump, Move
 from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, user_file
+from .run_up import RunUp, before, leaps
 from .script import Script
 from .wish import STEPS, Wish, push
 
 __all__ = [
     "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
-    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "Pace", "Pilot", "Script", "Sticks", "Wish", "aloft", "as_toml",
-    "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "leaving", "load", "mode_of", "mouse_wish",
+    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "aloft", "as_toml",
+    "before", "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "leaps", "leaving", "load", "mode_of", "mouse_wish",
     "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "user_file", "wheel_wish", "wishes",
 ]

@@ -14,6 +14,7 @@ from gambol.controllers.navigation import Path, floor_at, follow, steer
 
 from .moves import Jump, Move
 from .pilot import STEERING
+from .run_up import RunUp
 
 ARRIVED = 0.12
 """A path is walked when no more than this is left of it [m]."""
@@ -41,6 +42,7 @@ class Making:
 
     steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for; aimed: for how many it was aimed at; jumped:
     whether it began. hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
+    run_up: what it knows of its run-up.
     """
 
     steps: int = 0
@@ -51,6 +53,7 @@ class Making:
     jumped: bool = False
     hops: tuple[float, float, float] | None = None
     hopped: tuple[float, float, float] | None = None
+    run_up: RunUp = RunUp()
 
     def step(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
         """The same `dt` seconds later, and what is asked of a character in `state` meanwhile."""
@@ -113,7 +116,7 @@ class Making:
         far = float(np.hypot(*way))
         if move.runs:
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
-            ready = far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
+            ready = self.run_up.halt is not None or far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
         elif far > NEAR and jump.heading is None:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)

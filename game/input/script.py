@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from gambol.controllers.supervisor import both
 
 from .making import Making, way_of
 from .moves import Move
+from .run_up import Asks
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +53,26 @@ class Script:
             now, intent = script.now.step(script.moves[script.index], state, dt)
             script = replace(script, now=now)
         return script, but(intent, strike=reduce(both, hits)) if hits else intent
+
+    def held(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
+        """The same script, and what it asks of a character in `state` in this step, who on a run-up comes to rest before what he can't leap."""
+        if not self.leaps or self.now.jumped or state.active == "jump" or not self.moves[self.index].runs:
+            return self, intent
+        run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt)
+        return replace(self, now=replace(self.now, run_up=run_up)), run_up.heeded(state, intent)
+
+    def _onward(self, intent: Intent, dt: float) -> Asks:
+        """What it asks from here on, first an intent."""
+        script, first = self, True
+
+        def asks(state: CharacterState) -> Intent:
+            nonlocal script, first
+            if first:
+                first = False
+                return intent
+            script, onward = script.step(state, dt)
+            return onward
+        return asks
 
     def wished(self, state: CharacterState) -> np.ndarray | None:
         """The velocity (2,) [m/s] along x and z that its move along a path would have in the world, however its walker is turned; None of others."""

@@ -128,6 +128,7 @@ def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
         yield Act(world, scripts)
         moves = [script.step(character.state, DT) if character.there(world.number) else (script, Intent())
                  for script, character in zip(scripts, world.characters)]
+        moves = [script.held(character.controller, character.state, intent, props, DT) for (script, intent), character in zip(moves, world.characters)]
         scripts = tuple(script for script, _ in moves)
         intents = [intent if script.leaps else stopped(character.state, intent, props)
                    for (script, intent), character in zip(moves, world.characters)]

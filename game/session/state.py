@@ -12,7 +12,7 @@ from gambol.controllers.contract import Goal
 from gambol.controllers.navigation import Steering, floor_at, gap
 
 from ..camera import Follow, PlayerCamera, between
-from ..input import STEERING, Aim, Pilot, Script
+from ..input import STEERING, Aim, Pilot, RunUp, Script
 from ..scene import TINT, Camera, Figure, Prop
 from ..world import COURSE, Character, Methods, World, figures, methods
 from . import settings
@@ -31,7 +31,8 @@ TINTS = (TINT, (0.20, 0.46, 0.72))
 @dataclass(frozen=True, eq=False)
 class Player:
     """One pair of hands: its pilot, how it steers, where it aims, its camera now and (`last`) a tick ago. goal: where its character
-    is sent, until the hands ask for something else. pushed: its character is pushed in the next step."""
+    is sent, until the hands ask for something else. pushed: its character is pushed in the next step. run_up: what is known of a leap that is wanted
+    at a run."""
 
     pilot: Pilot
     camera: PlayerCamera
@@ -40,6 +41,7 @@ class Player:
     aim: Aim = Aim()
     goal: Goal | None = None
     pushed: bool = False
+    run_up: RunUp = RunUp()
 
     @staticmethod
     def behind(character: Character) -> Player:

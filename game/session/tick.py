@@ -14,12 +14,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import in_world, slide
 
 from ..explain import preview
-from ..input import Aim, Wish, aloft, landing, leaving, push
-from ..world import DT, RATE, ground_between, jump_of
+from ..input import Aim, Command, RunUp, Wish, aloft, before, landing, leaps, leaving, push
+from ..scene import Prop
+from ..world import DT, RATE, Character, ground_between, jump_of
 from . import settings
 from .actions import done
 from .passers import asked, polite
@@ -78,10 +79,13 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         goal = None if math.hypot(*wish.move) > 0.0 or wish.turn or aim.stands or wish.jump else player.goal  # hands take over at once
         players.append(replace(player, pilot=pilot, camera=camera, aim=aim, goal=goal, pushed=False))
         props = moment.after.props
-        command = replace(command, facing=command.facing if aim.facing is None else aim.facing, velocity=tuple(
-            slide(state.ground[:2], command.velocity, float(state.floor), props)))
+        command = replace(command, facing=command.facing if aim.facing is None else aim.facing)
+        run_up = _run_up(player, character, command, aim, props)
+        if run_up is None:
+            command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props)))
+        players[-1] = replace(players[-1], run_up=run_up or RunUp())
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
-        intents.append(replace(command.intent(state, player.steering), leap=leap, aim=ready, goal=goal,
+        intents.append(replace((run_up or RunUp()).heeded(state, command.intent(state, player.steering)), leap=leap, aim=ready, goal=goal,
                                strike=push(player.camera.yaw, wish) if player.pushed else None))
     passers, theirs = asked(moment)
     intents += theirs
@@ -89,6 +93,27 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
     intents += [Intent() if one.follows is None else Intent(points=held, turns=turns) for one in moment.after.characters[len(intents):]]
     world, intents = polite(moment, intents)
     return replace(moment, before=moment.after, after=world.step(intents), players=tuple(players), phase=0, passers=passers)
+
+
+def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:
+    """What is known of the run-up of somebody who aims at a run, or has let go: goes on as he does if his leap will go off, else comes to rest before
+    what he can't walk over. None of who does neither."""
+    if not (aim.moving and (aim.aiming or aim.waiting > 0.0)):
+        return None
+    if player.run_up.free > 1:
+        return RunUp(player.run_up.free - 1)
+    state, controller, jump = character.state, character.controller, jump_of(character.controller)
+    halt = before(controller, state, command.velocity, props)
+    if halt is None or jump is None or aim.aiming:
+        return RunUp(0, halt)
+    if player.run_up.free == 0:  # whether it goes off is found out once, and only where something is ahead
+        gravity, longest = -float(jump.gravity[1]), jump.longest
+
+        def asks(now: CharacterState) -> Intent:
+            return replace(command.intent(now, player.steering), leap=aim.asked(now, props, gravity, longest))
+        if number := leaps(controller, state, asks, props, DT, round(aim.waiting / DT)):
+            return RunUp(number)
+    return RunUp(-1, halt)
 
 
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:

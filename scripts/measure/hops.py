@@ -25,12 +25,15 @@ from gambol.controllers.body import Clip, centre_of_mass, contact_points, log
 from gambol.controllers.contract import CharacterState, Intent, Leap
 from gambol.controllers.jump import Jump, Jumping
 from gambol.controllers.jump.prior import flights
+from gambol.controllers.locomotion import DEFAULT_LIBRARY, Library, joint_acceleration
 from gambol.controllers.mocap import calibrate, load, retarget
 from gambol.controllers.person import person
 
 FPS = 60
 LASTS, TOGETHER = (0.08, 0.75), 0.62
 """How long flights of hops last [s]; hops follow each other within so long [s] on the ground."""
+STEPPED = 0.15
+"""The steps of skips fly no longer than this [s]."""
 TAKES = "cmu/49/49_02.amc", "cmu/49/49_03.amc", "woody2/wd2_fast_2foot_hop.bvh"
 Foot = Literal["left", "right", "both"] | None
 OURS: tuple[tuple[str, tuple[Foot, ...], float, tuple[float, ...]], ...] = (
@@ -76,6 +79,23 @@ def stances(jump: Jump, clip: Clip) -> dict[str, list[list[float]]]:
     return rows
 
 
+def laws(jump: Jump, clip: Clip, contacts: np.ndarray, runs: np.ndarray) -> None:
+    """What can be told of skips without a recording, from contacts (N, 4): on which feet they come down, one after the other; how left and right compare; and
+    how hard joints are accelerated at most, over the 99th percentile (J,) of recorded runs [m/s²]."""
+    turns = np.flatnonzero(np.diff(contacts.any(1).astype(int)))
+    offs, downs = (turns[contacts[turns].any(1) == on] for on in (True, False))
+    down = [(int(contacts[n + 1, 2:].any()), (n - offs[offs < n][-1]) / FPS, (offs[offs > n][0] - n) / FPS) for n in downs if (offs > n).any() and (offs < n).any()]
+    order, told = "".join("LR"[side] for side, *_ in down), []
+    for name, hop in (("hops", True), ("steps", False)):  # a hop flies long before it comes down on the same foot, a step shortly
+        for part, column in (("in the air", 1), ("on the ground", 2)):
+            both = [[row[column] for row in down if row[0] == side and (row[1] > STEPPED) == hop] for side in (0, 1)]
+            told += [f"{name} {part} {' and '.join(f'{np.mean(one):.2f}' for one in both if one)} s"]
+    over = joint_acceleration(clip.kinematics()[0][downs[0]:downs[-1]], clip.frame_time).max(0) / runs
+    worst = np.argsort(-over)[:4]
+    print(f"  order {order}, left and right: {'; '.join(told)}; joints' acceleration over recorded runs', at most "
+          + ", ".join(f"{over[n]:.1f}× ({jump.skeleton.names[n]})" for n in worst))
+
+
 def tell(name: str, rows: Sequence[Sequence[float]]) -> None:
     """One line: the range of each."""
     least, most = np.min(rows, axis=0), np.max(rows, axis=0)
@@ -99,9 +119,11 @@ def main() -> None:
         for stood, rows in stances(jump, clip).items():
             if stood == "both feet" and "both" not in feet:
                 continue
-            parts = {"": rows} if len(airtimes) == 1 else {", hops": [r for r in rows if r[0] > 0.15], ", steps": [r for r in rows if r[0] <= 0.15]}
+            parts = {"": rows} if len(airtimes) == 1 else {", hops": [r for r in rows if r[0] > STEPPED], ", steps": [r for r in rows if r[0] <= STEPPED]}
             for part, some in parts.items():
                 tell(f"ours, {name}{part}", some)
+        if len(airtimes) > 1:
+            laws(jump, clip, np.stack([s.contacts for s in states]), Library.load(DEFAULT_LIBRARY).accelerations["run"])
 
 
 if __name__ == "__main__":

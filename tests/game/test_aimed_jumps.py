@@ -106,6 +106,24 @@ def test_who_lets_go_is_told_why_not_without_coordinates(beyond):
     assert told == [f"no jump: {seen.why}"]
 
 
+def test_a_runner_sees_how_he_would_lie_in_what_his_leap_would_touch(somebody):
+    """A beam across the way, and none."""
+    run, seen = Wish(move=(0.0, 1.0), run=1.0), {}
+    for high in (1.3, 4.0):
+        things = (Box((0.0, high + 0.2, 6.6), (4.0, 0.4, 0.2)),)
+        timeline, touched, last = Timeline(begin(World((Character("A", somebody, somebody.start()),), things), 1)), [], None
+        for k in range(150):
+            state = timeline.now.after.characters[0].state
+            timeline.advance((replace(run, jump=state.ground[1] > 3.2).rounded(),))
+            if state.ground[1] > 3.3 and k % 4 == 0 and state.ground[1] < 5.0:
+                last, = previews(timeline.now, (last,))
+                touched.append(None if last is None else last.touch)
+        seen[high] = [one for one in touched if one is not None]
+    assert seen[1.3] and not seen[4.0]
+    touch = seen[1.3][-1]
+    assert "would hit" in touch.reason and abs(touch.place[2] - 6.6) < 0.3 and 1.0 < touch.place[1] < 1.9
+
+
 def test_a_runner_sees_one_arc_through_all_of_a_stride(somebody):
     timeline, lengths = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1)), []
     run = Wish(move=(0.0, 1.0), run=1.0)

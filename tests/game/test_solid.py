@@ -18,7 +18,7 @@ RUN = """
 title = "Solid"
 under = "a platform"
 duration = 7
-props = [{ centre = [0, 0.3, 2.5], size = [1.6, 0.6, 1.6] }]
+props = [{ centre = [0, %g, 2.5], size = [1.6, %g, 1.6] }]
 [[shots]]
 kind = "follow"
 [[actors]]
@@ -70,14 +70,14 @@ def test_who_leaps_is_left_alone():
     assert stopped(standing(1.4), leap, (WALL,)) is leap
 
 
-@pytest.mark.parametrize("moves, gets", [
-    ("{ walk_to = [0.2, 6], for = 6 }", (0.0, 1.7)),
-    ("{ walk_to = [0, 2.5], jump_to = [0, 2.3], speed = 1.4, for = 5 }, { for = 1, stop = true }", (2.0, 2.9)),
+@pytest.mark.parametrize("moves, gets, high, floor", [
+    ("{ walk_to = [0.2, 6], for = 6 }", (0.0, 1.7), 0.6, 0.0),
+    ("{ walk_to = [0, 2.5], jump_to = [0, 2.0], speed = 1.4, for = 5 }, { for = 1, stop = true }", (1.7, 2.9), 0.4, 0.4),
 ])
-def test_nobody_walks_through_a_platform_and_a_run_up_still_leads_onto_it(tmp_path, moves, gets):
-    scenario = load(written(tmp_path, RUN % moves))
+def test_nobody_walks_through_a_platform_and_a_run_up_still_leads_onto_it(tmp_path, moves, gets, high, floor):
+    scenario = load(written(tmp_path, RUN % (0.5 * high, high, moves)))
     who, props, deepest = person(), scenario.stage(), np.inf
     for _, act in zip(range(60 * 6), film.acts(scenario, who)):
         state = act.world.characters[0].state
         deepest = min(deepest, float(gap(np.asarray(state.pose.root, float)[None], props[0]).min()))
-    assert deepest > 0.05 and gets[0] < state.ground[1] < gets[1], (deepest, state.ground)
+    assert deepest > 0.05 and gets[0] < state.ground[1] < gets[1] and state.floor == pytest.approx(floor), (deepest, state.ground, state.floor)

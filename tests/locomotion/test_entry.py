@@ -77,3 +77,17 @@ def test_taking_over_changes_nothing_of_what_is_taken_over(locomotion):
     before = state.pose.root.tobytes() + state.pose.rotations.tobytes() + state.ground.tobytes()
     locomotion.step(locomotion.enter(state, Intent()), Intent(), 1 / FPS)
     assert state.pose.root.tobytes() + state.pose.rotations.tobytes() + state.ground.tobytes() == before
+
+
+def test_arms_of_who_walks_on_go_on_as_fast_as_they_went(locomotion):
+    """Whoever is taken over in mid-stride moves as the gait does already: the gait's own movement is not added to that."""
+    wish, hands, worst = Intent(np.array([1.3, 0.0, 0.0])), [locomotion.skeleton.index(side + "Hand") for side in ("Left", "Right")], 0.0
+    state = locomotion.start()
+    for k in range(160):
+        before, (state, _) = state, locomotion.step(state, wish, 1 / FPS)
+        if k > 100 and k % 6 == 0 and state.contacts.reshape(2, 2).any(1).sum() == 1:
+            taken = locomotion.enter(replace(state, memory=None, previous=before.pose, elapsed=1 / FPS), wish)
+            _, pose = locomotion.step(taken, wish, 1 / FPS)
+            places = [joints(locomotion, one)[hands] - np.asarray(one.root, float) for one in (before.pose, state.pose, pose)]
+            worst = max(worst, float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max()) * FPS)
+    assert 0.0 < worst < 0.35, "m/s, of arms that swing at 1.3"

@@ -152,7 +152,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.runs)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
-        angles = [_low(prior.row(number * BETWEEN, some, runner), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
+        swings = prior.swings(flight * np.sqrt(g / 9.81), pace, size, start.runs)
+        angles = [_low(prior.row(number * BETWEEN, some, runner, swings), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
         if not start.runs:
             # who waits needs no more than the muscles do, and pushes from as deep as it is
@@ -172,7 +173,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         guess = guess + relaxed * lacks
     low, leave, passing, wind_up, dip, strong, pressed = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
-    keys = _tuck(_low(prior.keys(features[0], features[1], runner), low_arms), flight, tucked)
+    keys = _tuck(_low(prior.keys(features[0], features[1], runner, swings), low_arms), flight, tucked)
     if start.onto is None and not start.springs:
         lands = _stride(start, velocity, flight, gravity, size)
         keys = _folded(keys, lands)

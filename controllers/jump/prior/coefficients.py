@@ -26,6 +26,8 @@ EACH = 3
 LEGS = len(carriage.ANGLES)
 """The first column of the legs, after those of `carriage`: left, then right."""
 COLUMNS = LEGS + 2 * EACH
+ARMS, AIR = slice(3, LEGS), slice(2 * BETWEEN, 4 * BETWEEN + 1)
+"""The columns of the arms; the rows from take-off to the lowest point of the landing."""
 FEATURES = 4
 """One, airtime [s], distance [m] and pace [m/s] of a standard adult on Earth."""
 DEFAULT = assets.path("library", "jumps.npz")
@@ -55,17 +57,32 @@ class Prior:
         found = np.array([1.0, 2.0 * speed / (9.81 * size**0.5), far / size, pace / size**0.5])
         return np.clip(found, self.least[int(single)], self.most[int(single)])
 
-    def keys(self, leaving: np.ndarray, landing: np.ndarray, single: int | None = None) -> np.ndarray:
+    def swings(self, airtime: float, pace: float, size: float, single: bool) -> float:
+        """How far arms swing in a jump of an airtime [s] and a pace [m/s], beside recorded ones: less in shorter and slower leaps off one foot than anybody was
+        recorded in, or they would have to be faster."""
+        if not single:
+            return 1.0
+        least = self.least[1]
+        return float(min(airtime / size**0.5 / least[1], 1.0) * np.clip(pace / size**0.5 / least[3], 0.0, 1.0))
+
+    def keys(self, leaving: np.ndarray, landing: np.ndarray, single: int | None = None, swings: float = 1.0) -> np.ndarray:
         """The rows (ROWS, COLUMNS) [rad] of a jump with these features as it leaves and as it lands. single: the foot that it
-        leaves, 0 left, 1 right."""
+        leaves, 0 left, 1 right; swings: how far arms swing, beside recorded ones."""
         fitted = self.two if single is None else self.one
         share = np.clip(np.linspace(0.0, 5.0, ROWS) - 2.0, 0.0, 1.0)[:, None]
         keys = (1.0 - share) * np.tensordot(leaving, fitted, 1) + share * np.tensordot(landing, fitted, 1)
+        if swings < 1.0:
+            part = np.linspace(0.0, 1.0, 2 * BETWEEN + 1)[:, None]
+            keys[AIR, ARMS] += (1.0 - swings) * ((1.0 - part) * keys[AIR.start, ARMS] + part * keys[AIR.stop - 1, ARMS] - keys[AIR, ARMS])
         return mirrored(keys) if single == 0 else keys
 
-    def row(self, number: int, features: np.ndarray, single: int | None = None) -> np.ndarray:
+    def row(self, number: int, features: np.ndarray, single: int | None = None, swings: float = 1.0) -> np.ndarray:
         """One row (COLUMNS,) [rad] for features that hold there."""
-        found = features @ (self.two if single is None else self.one)[:, number]
+        fitted = self.two if single is None else self.one
+        found = features @ fitted[:, number]
+        if swings < 1.0 and AIR.start < number < AIR.stop:
+            part = (number - AIR.start) / (2 * BETWEEN)
+            found[ARMS] += (1.0 - swings) * (features @ ((1.0 - part) * fitted[:, AIR.start, ARMS] + part * fitted[:, AIR.stop - 1, ARMS]) - found[ARMS])
         return mirrored(found) if single == 0 else found
 
     def crouch(self, leaving: np.ndarray) -> float:

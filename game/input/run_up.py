@@ -1,0 +1,134 @@
+"""Run-ups: who wants to leap goes on at what he can't walk over as long as he could still stop before it, and farther only if his leap goes off.
+
+He plays ahead what he is about to do: controllers are pure functions.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gambol.controllers.contract import CharacterState, Intent, but
+from gambol.controllers.navigation import STEP, floor_at, gap, room
+from gambol.controllers.supervisor import Asked
+
+LOOK, EVERY = 2.0, 0.15
+"""He looks so far ahead [s], longer if his legs are slower than people's, and so often [s]: a run is stopped in 1.4 s at most."""
+TOUCHES = 0.15
+"""Nearer to its middle nothing solid may come to a body that has not leapt yet [m]."""
+BODY = 0.4, 1.0, 1.6
+"""At these heights of it [m]."""
+SHORT = 0.12, 0.3
+"""He comes to rest so far before he would be too near to something solid, and before an edge [m]."""
+READY = 1.0
+"""What a jump bids that could go off at once."""
+THERE, RESTS = 0.3, 0.1
+"""So near to that place [m], slower than this [m/s], he stays."""
+
+PACE, FINE = 0.1, 0.01
+"""Places straight ahead are looked at so far apart [m], and the last that is free is found to so much [m]."""
+STOPS = 0.6, 0.45
+"""Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
+
+Asks = Callable[[CharacterState], Intent]
+"""What is asked of somebody from state to state, step after step."""
+
+
+@dataclass(frozen=True)
+class RunUp:
+    """What somebody knows of his run-up. free: for so many steps he goes on as he does, −1 where his leap was found not to go off; halt: x, z [m] where he is to come to rest, as he can't leap."""
+
+    free: int = 0
+    halt: tuple[float, float] | None = None
+
+    def step(self, controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float) -> RunUp:
+        """The same `dt` seconds later. asks: what is asked of him from here on."""
+        if self.halt is not None or self.free > 0 or not len(around):
+            return replace(self, free=self.free - 1)
+        return _played(controller, state, asks, around, dt, LOOK / _agility(controller))
+
+    def heeded(self, state: CharacterState, intent: Intent) -> Intent:
+        """An intent of somebody who comes to rest before what he can't leap; as it is where he goes on."""
+        if self.halt is None:
+            return intent
+        far = float(np.hypot(self.halt[0] - state.ground[0], self.halt[1] - state.ground[1]))
+        if far < THERE and np.hypot(state.velocity[0], state.velocity[2]) < RESTS:
+            return but(intent, velocity=np.zeros(3), towards=None)
+        return but(intent, halt=np.array([*self.halt, np.nan]), towards=None)
+
+
+def before(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
+    """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
+    where that is far away."""
+    speed, floor, here = math.hypot(*velocity), float(state.floor), np.asarray(state.ground[:2], float)
+    if speed < 1e-6 or not len(around):
+        return None
+    pace = float(np.hypot(state.velocity[0], state.velocity[2]))
+    ahead = np.asarray(velocity, float) / speed
+    for far in np.arange(1, 2 + int((STOPS[0] + STOPS[1] * max(pace, speed)**2 / _agility(controller)) / PACE)) * PACE:
+        if room(here + far * ahead, floor, around) <= 0.0:
+            low, high = far - PACE, far
+            while high - low > FINE:
+                middle = 0.5 * (low + high)
+                low, high = (low, middle) if room(here + middle * ahead, floor, around) <= 0.0 else (middle, high)
+            x, z = here + max(low - SHORT[_edge(here + high * ahead, floor, around)], 0.0) * ahead
+            return float(x), float(z)
+        x, z = here + far * ahead
+        floor = floor_at(float(x), float(z), around, floor + STEP)
+    return None
+
+
+def _agility(controller: Any) -> float:
+    """How agile somebody is, beside a person, whose number is 1, and no more than that."""
+    return min(getattr(controller.settings, "agility", 1.0), 1.0)
+
+
+def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float, seconds: float) -> RunUp:
+    """What comes of going on for so long: whether he leaps is asked only if he would else come to where he can't walk."""
+    walks, way, blocked, now = asks(), [state.ground[:2]], None, state
+    for _ in range(round(seconds / dt)):
+        now, _ = controller.step(now, but(walks(now), leap=None, aim=None, around=around), dt)
+        way.append(now.ground[:2])
+        floor = float(now.floor)
+        if blocked is None and room(way[-1], floor, around) <= 0.0:
+            blocked = len(way) - 1, _edge(way[-1], floor, around)
+        if now.active == "jump" or _touches(way[-1], floor, around):
+            number = leaps(controller, state, asks(), around, dt, len(way) - 1)
+            last, edge = blocked or (len(way) - 1, now.active == "jump")
+            return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge))
+    return RunUp(max(round(EVERY / dt), 1))
+
+
+def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float, most: int) -> int:
+    """After how many steps, at most so many, he can leap who goes on; 0 where he never can. Asked as often as a supervisor does."""
+    refused = None
+    for number in range(most):
+        intent = but(asks(state), around=around)
+        if intent.leap is not None and not (refused is not None and refused.still(state, intent)) and controller.precondition(state, intent) >= READY:
+            if controller.refusal(state, intent) == "":
+                return number + 1
+            refused = Asked("", intent, state)
+        state, _ = controller.step(state, but(intent, leap=None, aim=None), dt)
+    return 0
+
+
+def _edge(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
+    """Whether there is no room at a place (2,) because the floor ends there, and not because something stands there."""
+    return not _touches(place, floor, around, 0.3)
+
+
+def _touches(place: np.ndarray, floor: float, around: Sequence[Any], near: float = TOUCHES) -> bool:
+    """Whether something solid is as near to a body at a place (2,)."""
+    body = np.array([[place[0], floor + height, place[1]] for height in BODY])
+    return any(gap(body, thing).min() < near for thing in around)
+
+
+def _before(way: np.ndarray, last: int, edge: bool) -> tuple[float, float]:
+    """Where (x, z) [m] on a way (N, 2) to come to rest before its place `last`."""
+    gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way[:last + 1], axis=0).T))])
+    at = max(gone[-1] - SHORT[edge], 0.0)
+    return float(np.interp(at, gone, way[:last + 1, 0])), float(np.interp(at, gone, way[:last + 1, 1]))

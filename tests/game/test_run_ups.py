@@ -1,0 +1,106 @@
+"""Run-ups with a leap that can't be made: he comes to rest before what he can't leap, and is told why; one that can be made goes off as ever."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.jump import Jumping
+from gambol.controllers.locomotion import Locomotion, Settings
+from gambol.controllers.navigation import gap
+from gambol.controllers.person import person
+from gambol.game.input import Jump, Move, RunUp, Script, Wish
+from gambol.game.input.run_up import before
+from gambol.game.scene.scene import Box
+from gambol.game.session.state import begin
+from gambol.game.session.tick import Timeline, refused
+from gambol.game.world.world import DT, Character, World
+from stand_in import Glide
+
+LEGS = [side + part for side in ("Left", "Right") for part in ("Leg", "Foot", "Toe")]
+
+
+@pytest.fixture(scope="module")
+def library():
+    return Locomotion.load()
+
+
+def box(far, high, deep=4.0):
+    return Box((0.0, 0.5 * high, far + 0.5 * deep), (4.0, high, deep))
+
+
+def run_up(who, things, pace, place, floor=0.0, seconds=4.0):
+    """All states of somebody whose script runs up to a leap, and its script after them."""
+    script = Script((Move(seconds, (pace, 0.0, 0.0), jump=Jump(place)), Move(0.2)))
+    world, states = World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), []
+    for _ in range(round(seconds / DT) + 2):
+        states.append(world.characters[0].state)
+        script, intent = script.step(states[-1], DT)
+        script, intent = script.held(who, states[-1], intent, things, DT)
+        world = world.step([intent])
+    return states, script
+
+
+def deepest(who, states, things):
+    """How deep [m] knees, ankles and toes are in anything."""
+    at = [who.skeleton.index(name) for name in LEGS]
+    positions, _ = forward_kinematics(who.skeleton, np.stack([s.pose.root for s in states]).astype(float),
+                                      np.stack([s.pose.rotations for s in states]).astype(float))
+    return max(float(-gap(positions[:, at].reshape(-1, 3), thing).min()) for thing in things)
+
+
+@pytest.mark.parametrize("agility, pace, far", [(0.5, 1.3, 2.2), (1.0, 3.2, 3.6), (2.0, 3.0, 1.9)])
+def test_nobody_runs_into_what_is_too_high_to_leap(library, agility, pace, far):
+    who, things = person(library.tuned(Settings(idle=0.0, agility=agility))), (box(far, 1.5),)
+    states, script = run_up(who, things, pace, (0.0, 1.5, far + 0.5))
+    assert deepest(who, states, things) < 0.02
+    assert np.hypot(*states[-1].velocity[[0, 2]]) < 0.15 and far - 1.0 < states[-1].ground[1] < far
+    assert len(script.refused) == 1 and "too" in script.refused[0]
+
+
+def test_nobody_runs_over_the_edge_of_a_gap_that_is_too_wide(library):
+    who, things = person(library.tuned(Settings(idle=0.0))), (box(-3.0, 1.0, 6.0), box(7.0, 1.0))
+    states, script = run_up(who, things, 2.8, (0.0, 1.0, 7.4), floor=1.0)
+    assert all(s.active == "locomotion" for s in states) and states[-1].floor == 1.0 and 2.0 < states[-1].ground[1] < 3.0
+    assert script.refused
+
+
+def test_a_leap_that_goes_off_is_not_braked_for(library):
+    who, things = person(library.tuned(Settings(idle=0.0))), (box(3.9, 0.4),)
+    states, script = run_up(who, things, 1.4, (0.0, 0.4, 4.2))
+    first = next(n for n, s in enumerate(states) if s.active == "jump")
+    assert states[first - 1].velocity[0] > 1.2, "he goes as he went"
+    assert isinstance(states[first].memory.memory, Jumping) and not script.refused
+
+
+def test_straight_ahead_he_is_to_stop_before_a_wall_and_short_of_an_edge():
+    who = Glide()
+    assert before(who, who.start((0.0, 0.0, 0.0)), (0.0, 0.0), (box(2.0, 1.0),)) is None
+    assert before(who, who.start((0.0, 0.0, 0.0)), (0.0, -3.0), (box(2.0, 1.0),)) is None
+    assert before(who, who.start((0.0, -9.0, 0.0)), (0.0, 3.0), (box(2.0, 1.0),)) is None, "far away"
+    x, z = before(who, who.start((0.0, 0.0, 0.0)), (0.0, 3.0), (box(2.0, 1.0),))
+    assert x == 0.0 and 1.4 < z < 1.7
+    assert 1.6 < before(who, who.start((0.0, 0.0, 0.0), 1.0), (0.0, 3.0), (box(-2.0, 1.0),))[1] < 1.8
+
+
+def test_who_has_come_to_rest_there_stays():
+    who = Glide()
+    intent = RunUp(0, (0.0, 0.1)).heeded(who.start((0.0, 0.0, 0.0)), Intent(np.array([3.0, 0.0, 0.0])))
+    assert not intent.velocity.any() and intent.halt is None
+
+
+def test_hands_that_walk_at_a_platform_leap_onto_it_and_at_a_wall_stop(library):
+    who, ends, told = person(library.tuned(Settings(idle=0.0))), [], []
+    for high in (0.35, 1.5):
+        line = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0))),), (box(3.0, high),)), 1))
+        held, states = True, []
+        for _ in range(300):
+            state, aim = line.now.after.characters[0].state, line.now.players[0].aim
+            states.append(state)
+            held = held and not (state.ground[1] + aim.offset[1] > 3.2)
+            was = line.now
+            line.advance((Wish(move=(0.0, 1.0) if state.floor == 0.0 else (0.0, 0.0), jump=held and state.ground[1] > 0.8).rounded(),))
+            told += refused(was, line.now)
+        assert deepest(who, states, line.now.after.props) < 0.02
+        ends.append(states[-1])
+    assert ends[0].floor == pytest.approx(0.35) and ends[1].floor == 0.0
