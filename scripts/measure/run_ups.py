@@ -87,7 +87,7 @@ def report(locomotion: Locomotion, seed: int, count: int, only: str = "", verbos
             fates, depths = Counter(), []
             for number in range(count):
                 rng = np.random.default_rng([seed, KINDS.index(kind), number])
-                who = person(locomotion.tuned(Settings(idle=0.0, agility=AGILE[number % len(AGILE)])))
+                who: Any = person(locomotion.tuned(Settings(idle=0.0, agility=AGILE[number % len(AGILE)])))
                 things, floor, far, beyond = stage(kind, rng)
                 pace = (0.7, 1.3, rng.uniform(2.0, 3.4))[int(rng.integers(3))]
                 states, why = play(who, things, floor, far, beyond, pace)
