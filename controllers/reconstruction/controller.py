@@ -179,8 +179,8 @@ class Reconstruction(Controller):
         due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
         ahead = following.ahead - dt + due * self.dt
         start, (late, turned) = following.seen, following.late
-        seen = np.where(np.isfinite(seen).all(-1)[:, None], seen, late)
-        turns = np.where(np.isfinite(turns).all((-1, -2))[:, None, None], turns, turned)
+        seen = np.where(np.asarray(np.isfinite(seen).all(-1))[:, None], seen, late)
+        turns = np.where(np.asarray(np.isfinite(turns).all((-1, -2)))[:, None, None], turns, turned)
         late = (seen, turns) if not due else (np.full_like(seen, np.nan), np.full_like(turns, np.nan))
         following = replace(following, late=late)
         if due:

@@ -15,7 +15,7 @@ import numpy as np
 from ...body import exp, forward_kinematics
 from ..pose_vector import SKELETON
 from .likely_bones import LikelyBones, load
-from .pose_fit import BESIDE, PoseFit
+from .pose_fit import PoseFit
 from .simulated import TARGETS, told
 from .stood import Stood
 from .worn import Calibration
@@ -98,11 +98,11 @@ class _Told:
     off: np.ndarray
 
 
-def _told(mean, spread, *seen):
+def _told(mean, spread, stood, places, turns, asked, kneeling):
     """… whose bones are of this mean and covariance."""
-    beside, x = BESIDE, None
-    for _ in range(_ROUNDS):
-        fit = PoseFit.of(*seen, (mean, spread), beside)
-        x, curved, cost = fit.solved(np.concatenate([mean, np.zeros(fit.size - len(mean))]) if x is None else x)
-        surprise, beside = fit.surprise(curved, cost), fit.found_beside(x, curved)
-    return _Told(surprise, x[:TARGETS], np.diagonal(np.linalg.inv(curved))[:TARGETS], fit.off(x))
+    fit = PoseFit.of(stood, places, turns, asked, kneeling, (mean, spread))
+    x, curved, cost = fit.solved(np.concatenate([mean, np.zeros(fit.size - len(mean))]))
+    for _ in range(_ROUNDS - 1):
+        fit = PoseFit.of(stood, places, turns, asked, kneeling, (mean, spread), fit.found_beside(x, curved))
+        x, curved, cost = fit.solved(x)
+    return _Told(fit.surprise(curved, cost), x[:TARGETS], np.diagonal(np.linalg.inv(curved))[:TARGETS], fit.off(x))

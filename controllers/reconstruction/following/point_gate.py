@@ -130,7 +130,7 @@ class Gate:
     def told(self, turns: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """How points are turned (n, 3, 3) dt [s] after the last ones, under their own numbers, NaN where that is not known, and
         the gate that knows it. A turn that is not told goes on for `BLINK`."""
-        there, known = (np.isfinite(some).all((-1, -2)) for some in (turns, self.turned))
+        there, known = (np.asarray(np.isfinite(some).all((-1, -2))) for some in (turns, self.turned))
         since = self.untold + dt
         blinks, goes_on = known & ~there & (since <= BLINK), known & there
         old, new = (np.where(which[:, None, None], some, np.eye(3)) for which, some in ((known, self.turned), (there, turns)))
