@@ -135,7 +135,7 @@ def most_speed(m, tops, floor):
     if speed < 1e-3:
         return 0.0
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    along_x, along_z = (c * m.wished[1] + s * m.wished[0]) / speed, (-s * m.wished[1] + c * m.wished[0]) / speed
+    along_x, along_z = (c * m.wished[0] + s * m.wished[1]) / speed, (-s * m.wished[0] + c * m.wished[1]) / speed
     goes = max(speed, math.hypot(m.velocity[0], m.velocity[2]))
     sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
     ground = np.empty(3)
