@@ -19,11 +19,13 @@ FOOT, TOE = 0.175, 0.095
 SHIFTS = np.concatenate([[0.0], np.outer(np.arange(0.0125, 0.16, 0.0125), [-1.0, 1.0]).ravel(), -np.arange(0.1625, 0.51, 0.0125)])
 """How much farther or nearer a foot comes down where it would not stand well, the nearest first [m]."""
 NONE, BALL, HALF, WHOLE = 0, 1, 2, 3
-"""How much of a foot stands: nothing that one could stand on; the ball; half of what is behind it, too; all."""
+"""How much of a foot stands: nothing that one could stand on; the ball, or else the heel; half of what is behind the ball, too; all."""
 WORTH = np.array([9.0, 0.22, 0.12, 0.0])
 """So much farther away a foot is set for more of it to stand [m]."""
 WITHIN = 0.02
 """A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
+BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
+"""So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
 CERTAIN = 0.35
 """After this share of its swing a foot keeps to the place where it will come down …"""
 FARTHEST = 0.6
@@ -38,8 +40,8 @@ LOOKS = 0.05
 """… which goes by such strides [m]."""
 FLIGHT = 0.8
 """Edges no farther apart than this are stairs; others are kerbs [m]."""
-STEPS, STAIRS = 2.6, (0.5, 1.0)
-"""Nobody goes up or down stairs faster than so many treads a second, within these [m/s] …"""
+STEPS, RISES, STAIRS = 2.6, 0.42, (0.5, 1.0)
+"""Nobody goes up or down stairs faster than so many treads a second, and so much up or down [m/s], within these [m/s] …"""
 KERB = 1.4
 """… nor over a kerb than this [m/s]."""
 BRAKES, BEFORE, LATE = 1.5, 0.45, 0.35
@@ -108,24 +110,24 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
 def under_kernel(m, tops, floor, x, z, c, s, out):
     """The ground (3,) under a foot whose ball is at x, z in the world, pointing to where cosine c and sine s say: the highest under heel
     and ball; and how much of it stands there."""
-    part = np.empty(3)
-    found = ground_kernel(tops, x, z, floor, m.level, out)
-    ball, rises = out[0], s * out[1] + c * out[2]
-    clear = True
-    if ground_kernel(tops, x + (TOE + WITHIN) * s, z + (TOE + WITHIN) * c, floor, m.level, part):  # they may hang over an edge
-        clear = part[0] < ball + (TOE + WITHIN) * rises + SAME
-    stands = BALL
-    for k in range(3):  # just behind the ball, halfway to the heel, at the heel
-        back = (WITHIN, 0.5 * FOOT, FOOT)[k]
+    part, there = np.empty(3), np.empty(len(BEHIND_BALL))
+    found, top = True, -9.0
+    for k in range(len(BEHIND_BALL)):
+        back = BEHIND_BALL[k]
         found = ground_kernel(tops, x - back * s, z - back * c, floor, m.level, part) and found
-        there = part[0] + back * (s * part[1] + c * part[2])
-        if abs(there - ball) < SAME:
-            stands = max(stands, min(stands + 1, k + 1)) if k > 0 else BALL
-        elif there > ball or k == 0:
-            clear = False
-        if there > out[0]:
-            out[0], out[1], out[2] = there, part[1], part[2]
-    return stands if found and clear else NONE
+        there[k] = part[0] + back * (s * part[1] + c * part[2])
+        if there[k] > top:
+            top = there[k]
+            out[0], out[1], out[2] = top, part[1], part[2]
+    if ground_kernel(tops, x + (TOE + WITHIN) * s, z + (TOE + WITHIN) * c, floor, m.level, part):  # toes may hang over an edge
+        found = found and part[0] - (TOE + WITHIN) * (s * part[1] + c * part[2]) < top + SAME
+    ground_kernel(tops, x - (FOOT + WITHIN) * s, z - (FOOT + WITHIN) * c, floor, m.level, part)
+    if not found or part[0] + (FOOT + WITHIN) * (s * part[1] + c * part[2]) > top + SAME:
+        return NONE
+    half, heel = there[2] > top - SAME, there[3] > top - SAME
+    if min(there[0], there[1]) > top - SAME:
+        return WHOLE if half and heel else HALF if half else BALL
+    return BALL if half and heel else NONE  # over an edge ahead
 
 
 @kernel
@@ -156,7 +158,7 @@ def most_speed(m, tops, floor):
             break
         tread, at = far - first, far
         if tread < FLIGHT:
-            most, at = min(max(STEPS * tread, STAIRS[0]), STAIRS[1]), first
+            most, at = min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1]), first
         else:
             most = KERB
         first = far

@@ -31,10 +31,12 @@ LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
+RISER = 0.06
+"""What lies so much higher before or behind a foot is no slope [m]."""
 REACHES = 0.04
 """A foot that goes up is up so far before a riser [m]."""
-TOUCHES = 0.035
-"""A point higher than this over the ground does not touch it [m]."""
+TOUCHES, VOID = 0.035, 0.25
+"""A point higher than the first over the ground does not touch it, and a foot higher than the second stands on nothing [m]."""
 
 
 @kernel
@@ -68,7 +70,7 @@ def follow_ground(m, tops, floor, swing, dt):
                 m.high[foot] = m.base[foot] - under[0]
                 _left_at(m, foot, place)
             else:
-                m.base[foot] = _along(m, foot, place)
+                m.base[foot] = _loose(m, tops, floor, foot, place, dt)
             bears[foot] = m.left[foot]
             if firm and abs(m.high[foot]) < 1e-6:
                 m.held[foot], m.aimed[foot] = 1, 0
@@ -98,6 +100,16 @@ def follow_ground(m, tops, floor, swing, dt):
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
     m.most = most_speed(m, tops, floor)
+
+
+@kernel
+def _loose(m, tops, floor, foot, place, dt):
+    """How high the ground lies under a foot that has stood and has let go, before it swings: over a riser that it comes to."""
+    high = _along(m, foot, place)
+    if m.grip[2 * foot] + m.grip[2 * foot + 1] > 0.0:
+        return high
+    riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
+    return min(max(high, riser if riser > high + RISER else high, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
 
 
 @kernel
@@ -186,14 +198,16 @@ def stand_on(m):
 
 @kernel
 def touch(m, body, hip, foot, height, tops, floor, positions, orientations):
-    """Note which points of a foot, held or not, are off the ground where they are shown: over an edge, or on their way. hip: the joint
-    that its leg hangs on."""
-    ground, c, s = np.empty(3), math.cos(m.ground[2]), math.sin(m.ground[2])
+    """Note which points of a foot, held or not, are off the ground where they are shown: over an edge, or on their way; none of a foot
+    that stands on nothing, and is about to fall. hip: the joint that its leg hangs on."""
+    ground, point, over, c, s = np.empty(3), np.empty(3), np.empty(2), math.cos(m.ground[2]), math.sin(m.ground[2])
     for k in range(2):
-        x, y, z = positions[hip + 2 + k, 0], positions[hip + 2 + k, 1], positions[hip + 2 + k, 2]
-        if k == 0:
-            x += orientations[hip + 2, 0, 0] * body.heel[0] + orientations[hip + 2, 0, 1] * body.heel[1] + orientations[hip + 2, 0, 2] * body.heel[2]
-            y += orientations[hip + 2, 1, 0] * body.heel[0] + orientations[hip + 2, 1, 1] * body.heel[1] + orientations[hip + 2, 1, 2] * body.heel[2]
-            z += orientations[hip + 2, 2, 0] * body.heel[0] + orientations[hip + 2, 2, 1] * body.heel[1] + orientations[hip + 2, 2, 2] * body.heel[2]
+        for i in range(3):
+            point[i] = positions[hip + 2 + k, i]
+            for j in range(3):
+                point[i] += (1 - k) * orientations[hip + 2, i, j] * body.heel[j]
+        x, y, z = point[0], point[1], point[2]
         ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground)
-        m.off[2 * foot + k] = 1 if y + m.level - height > ground[0] + TOUCHES else 0
+        over[k] = y + m.level - height - ground[0]
+    for k in range(2):
+        m.off[2 * foot + k] = 1 if over[k] > TOUCHES and min(over[0], over[1]) < VOID else 0
