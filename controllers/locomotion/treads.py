@@ -36,8 +36,8 @@ SLOW = 0.1
 """Who goes slower than this [m/s] sets a foot nearer or farther along itself, others along their way."""
 EDGE = 0.04
 """What is higher or lower than this one stride of the look ahead on is an edge [m], …"""
-LOOKS = 0.05
-"""… which goes by such strides [m]."""
+LOOKS, FINER = 0.05, 4
+"""… which goes by such strides [m]; where the edge is, is found by halving one so often."""
 FLIGHT = 0.8
 """Edges no farther apart than this are stairs; others are kerbs [m]."""
 STEPS, RISES, STAIRS = 2.6, 0.42, (0.5, 1.0)
@@ -147,8 +147,8 @@ def most_speed(m, tops, floor):
         far = k * LOOKS - BEHIND
         ground_kernel(tops, m.ground[0] + far * along_x, m.ground[1] + far * along_z, floor, before, ground)
         rise = ground[0] - before
-        before = ground[0]
         if abs(rise) < EDGE:
+            before = ground[0]
             continue
         if rise < -STEP:  # nobody walks on from here
             break
@@ -156,12 +156,20 @@ def most_speed(m, tops, floor):
             if far > 0.0:
                 limit = min(limit, math.sqrt(2.0 * BRAKES * max(far - WALL - LATE * goes, 0.0)))
             break
+        near = far - LOOKS
+        for _ in range(FINER):
+            middle = 0.5 * (near + far)
+            ground_kernel(tops, m.ground[0] + middle * along_x, m.ground[1] + middle * along_z, floor, before, ground)
+            if abs(ground[0] - before) > 0.5 * abs(rise):
+                far = middle
+            else:
+                near = middle
         tread, at = far - first, far
         if tread < FLIGHT:
             most, at = min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1]), first
         else:
             most = KERB
-        first = far
+        first, before = far, before + rise
         limit = min(limit, math.sqrt(most * most + 2.0 * BRAKES * max(at - BEFORE - LATE * goes, 0.0)))
         if far > sees:
             break

@@ -33,7 +33,7 @@ LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
 RISER = 0.06
 """What lies so much higher before or behind a foot is no slope [m]."""
-REACHES = 0.04
+REACHES = 0.06
 """A foot that goes up is up so far before a riser [m]."""
 TOUCHES, VOID = 0.035, 0.25
 """A point higher than the first over the ground does not touch it, and a foot higher than the second stands on nothing [m]."""
@@ -105,11 +105,14 @@ def follow_ground(m, tops, floor, swing, dt):
 @kernel
 def _loose(m, tops, floor, foot, place, dt):
     """How high the ground lies under a foot that has stood and has let go, before it swings: over a riser that it comes to."""
-    high = _along(m, foot, place)
-    if m.grip[2 * foot] + m.grip[2 * foot + 1] > 0.0:
-        return high
-    riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
-    return min(max(high, riser if riser > high + RISER else high, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
+    high = goal = _along(m, foot, place)
+    if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0:
+        riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
+        goal = riser if riser > high + RISER else high
+    lifted = m.base[foot] > high + SAME or goal > high
+    now = min(max(goal, m.base[foot] - DROPS * dt), m.base[foot] + DROPS * dt) if lifted else high
+    m.high[foot] = now - high  # it takes no hold up there
+    return now
 
 
 @kernel

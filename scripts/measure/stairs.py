@@ -26,8 +26,8 @@ from gambol.controllers.locomotion import DEFAULT_LIBRARY, Locomotion
 FPS = 60
 SOLE = 0.02
 """How high heels, balls and toes' ends are in flat stance [m]."""
-TREADS, RISES = (0.22, 0.25, 0.27, 0.29, 0.32, 0.35), (0.12, 0.15, 0.17, 0.20)
-HEIGHTS, SPEEDS = (1.2, 1.5, 1.74, 1.9, 2.1), (0.5, 0.8, 1.1, 1.5, 2.2, 3.0)
+TREADS, RISES = (0.22, 0.25, 0.27, 0.29, 0.35), (0.12, 0.15, 0.17, 0.20)
+HEIGHTS, SPEEDS = (1.2, 1.5, 1.74, 1.9, 2.1), (0.5, 0.8, 1.2, 2.0, 3.0)
 STANDARD = 1.74
 """How tall the standard body is [m]: another walks as it does, in its own size (`controllers/scaled.py`)."""
 PEOPLE, COUNT, LANDING = 4, 6, 2.5
