@@ -19,11 +19,12 @@ from stairs import walked  # noqa: E402
 @example(0.17, 0.29, 2.1, 0.9)
 @example(0.17, 0.29, 1.74, 3.0)
 def test_feet_find_the_treads_of_any_stairs(locomotion, rise, tread, height, speed):
-    """Up and down again: no standing foot is in a step, none swings through one but for its skin, and nobody falls."""
+    """Up and down again: no standing foot is in a step, next to none grazes one as it swings, and nobody falls."""
     found = walked(locomotion, rise, tread, height, speed)
     assert found.falls == 0
-    assert found.standing < 0.01 and found.deep.max() < 0.03
-    assert np.mean(found.deep > 0.01) < 0.02
+    assert found.standing < 0.015 and found.deep.max() < 0.06
+    assert np.mean(found.deep > 0.01) < 0.005 and found.labels < 0.003
+    assert found.jerk < 80e3, "no foot pops out of a step"
 
 
 @pytest.mark.parametrize("height, rise", ((1.2, 0.25), (1.74, 0.33)))
