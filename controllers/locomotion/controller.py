@@ -26,7 +26,7 @@ from .memory import Settings, memory_dtype, plain, put
 from .pushed import pushed
 from .step import step_kernel
 from .tables import Tables, tables_of
-from .uneven_ground import FLAT, tops
+from .tops import FLAT, tops
 from .velocity_correction import space_of
 
 DEFAULT_LIBRARY = assets.path("library", "default.npz")
@@ -159,7 +159,7 @@ class Locomotion(Controller):
         root[:, 1] += floor
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)
-        return CharacterState(memory["ground"], memory["velocity"], pose, memory["standing"] == 1, memory,
+        return CharacterState(memory["ground"], memory["velocity"], pose, (memory["standing"] == 1) & (memory["off"] == 0), memory,
                               here.reshape(shape) if len(ground) else state.floor), pose
 
     @staticmethod

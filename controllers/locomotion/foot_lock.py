@@ -24,7 +24,8 @@ from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .short_leg import give_way
 from .swing import SWING, swing_kernel, swing_progress
-from .uneven_ground import RECOVERS, STEP, follow_ground, lie_kernel, rise_ahead
+from .tops import STEP
+from .uneven_ground import RECOVERS, follow_ground, lie_kernel, rise_ahead, touch
 
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
 """A point is free while its blended label is below the first, and held while it is above the second: early as it
@@ -65,6 +66,8 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     """
     ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
     on_floor(m, now)
+    m.most = m.high[0] = m.high[1] = 0.0
+    m.off[:] = 0
     if tops.shape[0] > 0:
         follow_ground(m, tops, floor, SWING[m.family], dt)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
@@ -102,6 +105,8 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         relative_kernel(orientations[0], orientations[hip], local[hip])
         relative_kernel(orientations[hip], orientations[hip + 1], local[hip + 1])
         relative_kernel(orientations[hip + 1], orientations[hip + 2], local[hip + 2])
+        if tops.shape[0] > 0:
+            touch(m, body, hip, foot, legs.height, tops, floor, positions, orientations)
 
 
 @kernel
@@ -117,7 +122,8 @@ def _take_hold(m, k, height, dt):
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
-    if wanted > m.grip[k] and not m.settled and m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE:
+    if wanted > m.grip[k] and not m.settled and (
+            m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE or m.high[k // 2] > GATE):
         wanted = m.grip[k]
     step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap
-from gambol.controllers.locomotion.uneven_ground import SEEN, ground_kernel, tops
+from gambol.controllers.locomotion.tops import SEEN, ground_kernel, tops
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.scaled import Scaled
 

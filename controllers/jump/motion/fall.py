@@ -25,7 +25,7 @@ from .rolling import rolled, rolls, room
 
 BOUNCE, FRICTION = 0.05, 0.4
 """How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
-VOID = 0.27
+VOID = 0.33
 """A foot that is so high over what lies under it [m] stands on nothing: farther than feet step down."""
 CLOSING = 0.4
 """Slower than this [m/s] a body does not strike what it touches."""

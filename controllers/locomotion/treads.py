@@ -1,0 +1,176 @@
+"""Where on uneven ground a foot comes down, and how fast one may come to it.
+
+A foot stands whole on a tread where it can. On one too short for that the ball stands well within it, the toes before the next riser
+and the heel over the edge, as people stand on such stairs.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel
+from .root_motion import cadence_kernel
+from .tops import SAME, STEP, ground_kernel
+
+FOOT, TOE = 0.175, 0.095
+"""From heel to ball and on to the toes' end [m]."""
+SHIFTS = np.concatenate([[0.0], np.outer(np.arange(0.0125, 0.16, 0.0125), [-1.0, 1.0]).ravel(), -np.arange(0.1625, 0.51, 0.0125)])
+"""How much farther or nearer a foot comes down where it would not stand well, the nearest first [m]."""
+NONE, BALL, HALF, WHOLE = 0, 1, 2, 3
+"""How much of a foot stands: nothing that one could stand on; the ball, or else the heel; half of what is behind the ball, too; all."""
+WORTH = np.array([9.0, 0.22, 0.12, 0.0])
+"""So much farther away a foot is set for more of it to stand [m]."""
+WITHIN = 0.02
+"""A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
+BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
+"""So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
+CERTAIN = 0.35
+"""After this share of its swing a foot keeps to the place where it will come down …"""
+FARTHEST = 0.6
+"""… unless that gets farther away than this [m]."""
+SLOWEST = 0.4
+"""Who must take shorter steps slows down, to no less than this share of the wish."""
+SLOW = 0.1
+"""Who goes slower than this [m/s] sets a foot nearer or farther along itself, others along their way."""
+EDGE = 0.04
+"""What is higher or lower than this one stride of the look ahead on is an edge [m], …"""
+LOOKS, FINER = 0.05, 4
+"""… which goes by such strides [m]; where the edge is, is found by halving one so often."""
+FLIGHT = 0.8
+"""Edges no farther apart than this are stairs; others are kerbs [m]."""
+STEPS, RISES, STAIRS = 2.6, 0.42, (0.5, 1.0)
+"""Nobody goes up or down stairs faster than so many treads a second, and so much up or down [m/s], within these [m/s] …"""
+KERB = 1.4
+"""… nor over a kerb than this [m/s]."""
+BRAKES, BEFORE, LATE = 1.5, 0.45, 0.35
+"""Who comes to them brakes by the first [m/s²], to be as slow so far before them [m] as feet reach ahead; the third is how late speed
+follows a wish [s]."""
+BEHIND = 0.3
+"""So far beyond the last edge one foot is still to come over it [m]."""
+WALL = 0.2
+"""Who comes to what is too high for a step stops so far before it [m]."""
+
+
+@kernel
+def come_down(m, tops, floor, foot, progress, out):
+    """The ground (3,) where a foot comes down: as far from where it was planned to as it must to stand well and no step too
+    high. Once its swing is CERTAIN, it keeps to the place."""
+    heel, ball = m.coming[foot, 0], m.coming[foot, 1]
+    size = math.hypot(ball[0] - heel[0], ball[1] - heel[1]) + 1e-9
+    c, s = (ball[1] - heel[1]) / size, (ball[0] - heel[0]) / size
+    beside_x, beside_z = m.land[foot, 0], m.land[foot, 1]
+    x, z = ball[0] + beside_x, ball[1] + beside_z
+    aim = m.aim[foot]
+    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
+        m.land[foot, 0], m.land[foot, 1] = aim[0] - ball[0], aim[1] - ball[1]
+        out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
+        return
+    stands, shift, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
+    m.land[foot, 0] += beside_x
+    m.land[foot, 1] += beside_z
+    aim[0], aim[1] = ball[0] + m.land[foot, 0], ball[1] + m.land[foot, 1]
+    aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
+    even = stands == WHOLE and shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
+    m.aimed[foot] = 1 if stands > NONE and progress > CERTAIN and not even else 0
+    if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
+        step = max(0.5 * speed / cadence_kernel(m), 0.05)
+        m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)
+
+
+@kernel
+def _choose(m, tops, floor, foot, x, z, c, s, out):
+    """The ground (3,) that a foot comes down on near x, z, pointing to where cosine c and sine s say: how much of it stands there,
+    how far ahead that is [m], and how fast the body goes there [m/s]. Where nothing can be stepped on it is the highest that lies there."""
+    along_x, along_z = c * m.velocity[2] + s * m.velocity[0], -s * m.velocity[2] + c * m.velocity[0]
+    speed = math.hypot(along_x, along_z)
+    if speed > SLOW:
+        along_x, along_z = along_x / speed, along_z / speed
+    else:
+        along_x, along_z = s, c
+    other, here = m.base[1 - foot], np.empty(3)
+    best, least, most = 0.0, 9.0, NONE
+    for shift in SHIFTS:
+        if abs(shift) >= least:
+            break
+        stands = under_kernel(m, tops, floor, x + shift * along_x, z + shift * along_z, c, s, here)
+        if stands > NONE and abs(here[0] - other) <= STEP and abs(shift) + WORTH[stands] < least:
+            best, least, most = shift, abs(shift) + WORTH[stands], stands
+            out[0], out[1], out[2] = here[0], here[1], here[2]
+    m.land[foot, 0], m.land[foot, 1] = best * along_x, best * along_z
+    if most == NONE:
+        under_kernel(m, tops, floor, x, z, c, s, out)
+        if out[0] < other - STEP and speed > SLOW:  # over an edge: as the other one, until it is over it, too
+            out[0], out[1], out[2] = other, 0.0, 0.0
+    return most, best, speed
+
+
+@kernel
+def under_kernel(m, tops, floor, x, z, c, s, out):
+    """The ground (3,) under a foot whose ball is at x, z in the world, pointing to where cosine c and sine s say: the highest under heel
+    and ball; and how much of it stands there."""
+    part, there = np.empty(3), np.empty(len(BEHIND_BALL))
+    found, top = True, -9.0
+    for k in range(len(BEHIND_BALL)):
+        back = BEHIND_BALL[k]
+        found = ground_kernel(tops, x - back * s, z - back * c, floor, m.level, part) and found
+        there[k] = part[0] + back * (s * part[1] + c * part[2])
+        if there[k] > top:
+            top = there[k]
+            out[0], out[1], out[2] = top, part[1], part[2]
+    if ground_kernel(tops, x + (TOE + WITHIN) * s, z + (TOE + WITHIN) * c, floor, m.level, part):  # toes may hang over an edge
+        found = found and part[0] - (TOE + WITHIN) * (s * part[1] + c * part[2]) < top + SAME
+    ground_kernel(tops, x - (FOOT + WITHIN) * s, z - (FOOT + WITHIN) * c, floor, m.level, part)
+    if not found or part[0] + (FOOT + WITHIN) * (s * part[1] + c * part[2]) > top + SAME:
+        return NONE
+    half, heel = there[2] > top - SAME, there[3] > top - SAME
+    if min(there[0], there[1]) > top - SAME:
+        return WHOLE if half and heel else HALF if half else BALL
+    return BALL if half and heel else NONE  # over an edge ahead
+
+
+@kernel
+def most_speed(m, tops, floor):
+    """How fast one may go to where one wishes, for feet to find the edges that lie there [m/s]; 0 where nothing tells."""
+    speed = math.hypot(m.wished[0], m.wished[1])
+    if speed < 1e-3:
+        return 0.0
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    along_x, along_z = (c * m.wished[0] + s * m.wished[1]) / speed, (-s * m.wished[0] + c * m.wished[1]) / speed
+    goes = max(speed, math.hypot(m.velocity[0], m.velocity[2]))
+    sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
+    ground = np.empty(3)
+    ground_kernel(tops, m.ground[0] - BEHIND * along_x, m.ground[1] - BEHIND * along_z, floor, m.level, ground)
+    before, first, limit = ground[0], -9.0, 9.0
+    for k in range(1, 2 + int((sees + BEHIND + FLIGHT) / LOOKS)):
+        far = k * LOOKS - BEHIND
+        ground_kernel(tops, m.ground[0] + far * along_x, m.ground[1] + far * along_z, floor, before, ground)
+        rise = ground[0] - before
+        if abs(rise) < EDGE:
+            before = ground[0]
+            continue
+        if rise < -STEP:  # nobody walks on from here
+            break
+        if rise > STEP:
+            if far > 0.0:
+                limit = min(limit, math.sqrt(2.0 * BRAKES * max(far - WALL - LATE * goes, 0.0)))
+            break
+        near = far - LOOKS
+        for _ in range(FINER):
+            middle = 0.5 * (near + far)
+            ground_kernel(tops, m.ground[0] + middle * along_x, m.ground[1] + middle * along_z, floor, before, ground)
+            if abs(ground[0] - before) > 0.5 * abs(rise):
+                far = middle
+            else:
+                near = middle
+        tread, at = far - first, far
+        if tread < FLIGHT:
+            most, at = min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1]), first
+        else:
+            most = KERB
+        first, before = far, before + rise
+        limit = min(limit, math.sqrt(most * most + 2.0 * BRAKES * max(at - BEFORE - LATE * goes, 0.0)))
+        if far > sees:
+            break
+    return max(limit, 1e-3) if limit < speed else 0.0

@@ -1,0 +1,136 @@
+"""Measure walks up and down stairs of all kinds, by bodies of all sizes, as fast as they are asked to.
+
+    python scripts/measure/stairs.py [--only HEIGHT ...]
+
+Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
+again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
+told by the shortest way out of them, up or along; the deepest that a standing heel or ball, and that anything, got. Falls: people
+who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them.
+Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections import defaultdict
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import numpy as np
+
+from gambol.controllers.body import contact_points, end_positions, forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import DEFAULT_LIBRARY, Locomotion
+
+FPS = 60
+SOLE = 0.02
+"""How high heels, balls and toes' ends are in flat stance [m]."""
+TREADS, RISES = (0.22, 0.25, 0.27, 0.29, 0.35), (0.12, 0.15, 0.17, 0.20)
+HEIGHTS, SPEEDS = (1.2, 1.5, 1.74, 1.9, 2.1), (0.5, 0.8, 1.2, 2.0, 3.0)
+STANDARD = 1.74
+"""How tall the standard body is [m]: another walks as it does, in its own size (`controllers/scaled.py`)."""
+PEOPLE, COUNT, LANDING = 4, 6, 2.5
+DEEP, OVER, NOTHING = 0.01, 0.04, 0.33
+SLOWEST = 0.16
+"""Who gets ahead slower than this on the way [m/s] does not arrive."""
+
+
+class Walked(NamedTuple):
+    """What a way's walk came to: depths [m] over frames and people, shares, jerk [m/s³]."""
+
+    deep: np.ndarray
+    standing: float
+    falls: int
+    labels: float
+    jerk: float
+
+
+def flight(rise, tread, size):
+    """Stairs up, a landing and stairs down, as a body so many times the standard one's size sees them; and where they end [m]."""
+    end = 2.0 + COUNT * tread
+    spans = [(2.0 + k * tread, end, h) for k, h in enumerate(rise * np.arange(1, COUNT + 1))]
+    spans += [(end, end + LANDING, COUNT * rise)]
+    spans += [(end + LANDING, end + LANDING + (k + 1) * tread, h) for k, h in enumerate(rise * np.arange(COUNT, 0, -1))]
+    boxes = tuple(SimpleNamespace(centre=(0.0, 0.5 * h / size, 0.5 * (a + b) / size), size=(4.0, h / size, (b - a) / size), heading=0.0, slope=0.0)
+                  for a, b, h in spans)
+    return boxes, spans[-1][1] / size
+
+
+def ground(points, around):
+    """The ground (...) under points (..., 3): the highest of the steps, or the floor."""
+    high = np.zeros(points.shape[:-1])
+    for b in around:
+        high = np.where(np.abs(points[..., 2] - b.centre[2]) <= 0.5 * b.size[2], np.maximum(high, b.size[1]), high)
+    return high
+
+
+def depth(points, around):
+    """How deep points (..., 3) are in steps [m] by the shortest way out, up or along; negative: how high over them."""
+    below = ground(points, around) - points[..., 1]
+    at = below > DEEP
+    inside, deep = points[at], below[at]
+    for out in np.linspace(-0.3, 0.3, 61):
+        free = ground(inside + [0.0, 0.0, out], around) <= inside[:, 1]
+        deep = np.where(free, np.minimum(deep, abs(out)), deep)
+    below[at] = deep
+    return below
+
+
+def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
+    """Four people's walk up and down a flight of stairs, or for as long."""
+    size = height / STANDARD
+    around, end = flight(rise, tread, size)
+    begin = np.zeros((PEOPLE, 3))
+    begin[:, 1] = np.linspace(0.0, 0.5, PEOPLE)
+    state, states = locomotion.start(begin, np.zeros(PEOPLE)), []
+    wish = Intent(np.array([speed / math.sqrt(size), 0.0, 0.0]), around=around)
+    for _ in range(round((seconds or (end + 2.0) * math.sqrt(size) / SLOWEST) * FPS)):
+        state, _ = locomotion.step(state, wish, 1 / FPS)
+        states.append(state)
+        if (state.ground[:, 1] > end + 0.5).all():
+            break
+    skeleton = locomotion.skeleton
+    posed = forward_kinematics(skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
+    points, labels = contact_points(skeleton, *posed), np.array([s.contacts for s in states])
+    held = np.array([s.memory["grip"] for s in states]) >= 1.0
+    ends = end_positions(skeleton, *posed)[..., [skeleton.end_index["LeftToe"], skeleton.end_index["RightToe"]], :]
+    deep = depth(np.concatenate([points, ends], 2) - [0.0, SOLE, 0.0], around) * size
+    floor = np.array([s.floor for s in states])[..., None]
+    void = (np.maximum(points[..., 1], floor) - ground(points, around) > NOTHING).reshape(*labels.shape[:2], 2, 2).all(-1)
+    void &= labels.reshape(*labels.shape[:2], 2, 2).any(-1)
+    falls = int((void.any((0, 2)) | (state.ground[:, 1] < end)).sum())
+    feet = [skeleton.index(name) for name in ("LeftFoot", "LeftToe", "RightFoot", "RightToe")]
+    jerk = np.linalg.norm(np.diff(posed[0][:, :, feet], 3, axis=0), axis=-1).max() * FPS**3
+    wrong = float((-deep[..., :4][labels] > OVER).mean())
+    return Walked(deep.max(-1), float(deep[..., :4][held].max()), falls, wrong, float(jerk / math.sqrt(size)))
+
+
+def row(name, found: list[Walked]) -> str:
+    """A line of figures of several ways."""
+    deep = np.concatenate([one.deep.ravel() for one in found])
+    jerks = np.array([one.jerk for one in found]) / 1000.0
+    return (f"  {name:18s} in {100 * (deep > DEEP).mean():4.1f} %, standing {100 * max(max(one.standing for one in found), 0.0):4.1f} cm, at all "
+            f"{100 * deep.max():4.1f} cm · falls {sum(one.falls for one in found):2d} of {PEOPLE * len(found):3d} · labels "
+            f"{100 * np.mean([one.labels for one in found]):4.2f} % · jerk {jerks.max():4.0f}, {np.percentile(jerks, 95):4.0f} km/s³")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--library", default=DEFAULT_LIBRARY)
+    parser.add_argument("--only", nargs="+", type=float, help="only bodies so tall [m]")
+    arguments = parser.parse_args()
+    locomotion, found = Locomotion.load(arguments.library), defaultdict(list)
+    for i, height in enumerate(arguments.only or HEIGHTS):
+        for k, speed in enumerate(SPEEDS):
+            for n, tread in enumerate(TREADS):
+                rise = RISES[(i + k + n) % len(RISES)]
+                one = walked(locomotion, rise, tread, height, speed)
+                for name in (f"{height:g} m tall", f"asked {speed:g} m/s", f"treads {100 * tread:.0f} cm", f"rises {100 * rise:.0f} cm", "all"):
+                    found[name].append(one)
+    for name in sorted(found):
+        print(row(name, found[name]), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""Stairs of all kinds, bodies of all sizes, as fast as anybody asks: feet stand on treads, and pass over edges."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
+from stairs import walked  # noqa: E402
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.floats(0.12, 0.20), st.floats(0.22, 0.35), st.floats(1.2, 2.1), st.floats(0.5, 3.0))
+@example(0.17, 0.25, 1.74, 0.7)
+@example(0.17, 0.29, 1.2, 0.8)
+@example(0.17, 0.29, 2.1, 0.9)
+@example(0.17, 0.29, 1.74, 3.0)
+def test_feet_find_the_treads_of_any_stairs(locomotion, rise, tread, height, speed):
+    """Up and down again: no standing foot is in a step, next to none grazes one as it swings, and nobody falls."""
+    found = walked(locomotion, rise, tread, height, speed)
+    assert found.falls == 0
+    assert found.standing < 0.015 and found.deep.max() < 0.06
+    assert np.mean(found.deep > 0.01) < 0.005 and found.labels < 0.003
+    assert found.jerk < 80e3, "no foot pops out of a step"
+
+
+@pytest.mark.parametrize("height, rise", ((1.2, 0.25), (1.74, 0.33)))
+def test_nobody_walks_into_what_is_too_high_for_a_step(locomotion, height, rise):
+    """They come to a stop before it, as before a wall."""
+    found = walked(locomotion, rise, 0.35, height, 1.4, seconds=6.0)
+    assert found.deep.max() < 0.01 and not found.labels
