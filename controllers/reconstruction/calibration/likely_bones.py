@@ -95,4 +95,5 @@ def _sized(skeleton: Skeleton) -> np.ndarray:
 
 
 def _numbers(offsets: np.ndarray) -> np.ndarray:
-    return numbers(offsets, *np.zeros((2, len(WORN), 3)), np.zeros(()))[:BONES]
+    none = np.zeros((len(WORN), 3))
+    return numbers(offsets, none, none, np.zeros(()))[:BONES]
