@@ -2,12 +2,12 @@
 
 from .goal import Following, arrived, wish
 from .navigator import going
-from .obstacles import DEPTH, floor_at, gap, is_box, slide, slope
+from .obstacles import DEPTH, floor_at, gap, is_box, is_pillar, slide, slope
 from .path_following import Path, follow
 from .steering import Reach, Steering, drift, in_world, steer, turn_towards
 from .thinking import SHARE, Going
 
 __all__ = [
-    "DEPTH", "SHARE", "Following", "Going", "Path", "Reach", "Steering", "arrived", "drift", "floor_at", "follow", "gap", "going", "in_world", "is_box", "slide", "slope", "steer",
+    "DEPTH", "SHARE", "Following", "Going", "Path", "Reach", "Steering", "arrived", "drift", "floor_at", "follow", "gap", "going", "in_world", "is_box", "is_pillar", "slide", "slope", "steer",
     "turn_towards", "wish",
 ]
