@@ -15,6 +15,8 @@ from .memory import put
 
 LAG, BRAKE = 0.1, 6.0
 """Nobody goes faster towards a wall than he could stop who begins to so much later [s], braking so hard [m/s²], half as hard again as legs push."""
+LEAPS = 12.0
+"""Who wants to leap may come so much faster, as he will leave the ground before it [m/s²]."""
 BACK = 0.3
 """Who is too near to a wall as he walks is led away from it no faster than this [m/s]."""
 GIVES = 0.01
@@ -22,8 +24,8 @@ GIVES = 0.01
 
 
 def held_up(memory: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
-    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap, none. floors: (N,) [m]."""
-    if len(walls) and not memory["alert"].all():
+    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`. floors: (N,) [m]."""
+    if len(walls):
         hold_kernel(memory, floors, walls)
 
 
@@ -41,16 +43,16 @@ def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: n
 
 @kernel
 def hold_kernel(memory, floors, walls):
-    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands or wants to leap."""
+    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands."""
     velocity, rate = np.empty(2), np.empty(2)
     for n in range(memory.shape[0]):
         m = memory[n]
-        if m.settled or m.alert:
+        if m.settled:
             continue
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
         rate[0], rate[1] = velocity[0], velocity[1]
-        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, BRAKE, BACK):
+        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, LEAPS if m.alert else BRAKE, BACK):
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
             # nor does what is under way go on towards it
             x, z = velocity[0] - rate[0], velocity[1] - rate[1]

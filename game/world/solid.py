@@ -18,7 +18,7 @@ LAG, BRAKE = 0.45, 2.5
 """Nobody wishes to go towards a wall faster than he could stop whose legs follow so much later [s] and brake so hard [m/s²] …"""
 LATER, HARDER = 0.2, 3.5
 """… nor, who is told where to stop before it and lets go in time by himself, than by these."""
-HEAD_ON = 0.77
+HEAD_ON = 0.94
 """Who goes at a wall at less than the angle to its normal with this cosine stops before it; others go along it."""
 SEEN = 0.5, 0.7, 3.0
 """A wall is seen so far ahead [m], and so much farther for each m/s [s], and as braking by the third [m/s²], twice, takes."""

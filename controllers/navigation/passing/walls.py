@@ -25,8 +25,6 @@ PASSES = 3
 """So often all walls are gone through: where two meet, what one takes away another may bring back."""
 TRACED, MET = 48, 0.005
 """A straight way is followed in so many stretches at most, until something is nearer than this to where it holds somebody up [m]."""
-RESOLVED = 0.5
-"""Whether something farther away is a wall does not matter yet [m]."""
 
 
 def walls_of(around: Sequence[Any]) -> np.ndarray:
@@ -44,13 +42,14 @@ def walls_of(around: Sequence[Any]) -> np.ndarray:
 
 
 @kernel
-def wall_kernel(walls, k, x, z, floor, out):
-    """How far [m] a place on a floor [m] is from one of `walls_of`, endless where that holds nobody up; out: (3,) as `distance` has it."""
+def wall_kernel(walls, k, x, z, floor, bound, out):
+    """How far [m] a place on a floor [m] is from one of `walls_of`, endless where that holds nobody up; out: (3,) as `distance` has it. Of what is no nearer
+    than a bound [m], whether it holds anybody up is not asked."""
     low, high = walls[k, 6], walls[k, 7]
     if walls[k, 8] != 0.0 or high <= floor + STEPS or low >= floor + HEAD:
         return math.inf
     far = distance(x, z, walls[k, :6], out)
-    if far > RESOLVED:
+    if far >= bound:
         return far
     before = 0.0
     px, pz = x - (far - EDGE) * out[0], z - (far - EDGE) * out[1]
@@ -77,7 +76,7 @@ def slow_kernel(walls, x, z, floor, velocity, near, lag, brake, back):
             room = far - near
             allowed = brake * (math.sqrt(lag * lag + 2.0 * room / brake) - lag) if room > 0.0 else max(room / lag, -back)
             over = -velocity[0] * out[0] - velocity[1] * out[1] - allowed
-            if over > 1e-9 and wall_kernel(walls, k, x, z, floor, out) < math.inf:
+            if over > 1e-9 and wall_kernel(walls, k, x, z, floor, math.inf, out) < math.inf:
                 velocity[0] += over * out[0]
                 velocity[1] += over * out[1]
                 slowed = True
@@ -92,7 +91,7 @@ def way_kernel(walls, x, z, floor, ahead, near, most, out):
     for _ in range(TRACED):
         least = math.inf
         for k in range(walls.shape[0]):
-            room = wall_kernel(walls, k, x + gone * ahead[0], z + gone * ahead[1], floor, here) - near
+            room = wall_kernel(walls, k, x + gone * ahead[0], z + gone * ahead[1], floor, least + near, here) - near
             if room < least:
                 least = room
                 for i in range(3):
@@ -113,7 +112,7 @@ def out_kernel(walls, x, z, floor, since, near, shift):
     shift[0] = shift[1] = 0.0
     for _ in range(PASSES):
         for k in range(walls.shape[0]):
-            far = wall_kernel(walls, k, x + shift[0], z + shift[1], floor, out)
+            far = wall_kernel(walls, k, x + shift[0], z + shift[1], floor, near, out)
             if far >= near:
                 continue
             missing = min(near, distance(since[0], since[1], walls[k, :6], was)) - far
