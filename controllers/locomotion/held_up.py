@@ -15,8 +15,6 @@ from .memory import put
 
 LAG, BRAKE = 0.1, 6.0
 """Nobody goes faster towards a wall than he could stop who begins to so much later [s], braking so hard [m/s²], half as hard again as legs push."""
-LEAPS = 12.0
-"""Who wants to leap may come so much faster, as he will leave the ground before it [m/s²]."""
 BACK = 0.3
 """Who is too near to a wall as he walks is led away from it no faster than this [m/s]."""
 GIVES = 0.01
@@ -24,7 +22,7 @@ GIVES = 0.01
 
 
 def held_up(memory: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
-    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`. floors: (N,) [m]."""
+    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`, but for who wants to leap, onto one perhaps. floors: (N,) [m]."""
     if len(walls):
         hold_kernel(memory, floors, walls)
 
@@ -43,16 +41,16 @@ def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: n
 
 @kernel
 def hold_kernel(memory, floors, walls):
-    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands."""
+    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands or wants to leap."""
     velocity, rate = np.empty(2), np.empty(2)
     for n in range(memory.shape[0]):
         m = memory[n]
-        if m.settled:
+        if m.settled or m.alert:
             continue
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
         rate[0], rate[1] = velocity[0], velocity[1]
-        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, LEAPS if m.alert else BRAKE, BACK):
+        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, BRAKE, BACK):
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
             # nor does what is under way go on towards it
             x, z = velocity[0] - rate[0], velocity[1] - rate[1]
@@ -70,6 +68,6 @@ def beyond_kernel(memory, before, floors, walls, shifts):
     found = False
     for n in range(memory.shape[0]):
         m = memory[n]
-        if out_kernel(walls, m.ground[0], m.ground[1], floors[n], before[n], NEAR - GIVES, shifts[n]):
+        if not m.alert and out_kernel(walls, m.ground[0], m.ground[1], floors[n], before[n], NEAR - GIVES, shifts[n]):
             found = True
     return found

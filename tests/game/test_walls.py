@@ -74,7 +74,7 @@ def test_nobody_comes_nearer_than_a_body_is_thick(seed, heeds):
 def test_nor_do_small_and_large_bodies(height, speed):
     things = (Box((0.5, 1.2, 2.0), (3.0, 2.4, 0.1), 0.3), Pillar((-1.0, 0.0, 3.0), 0.4, 2.0))
     for velocity in (np.array([speed, 0.0, 0.0]), np.array([speed, -0.4, 0.0])):
-        assert least(walked(somebody(height), velocity, things, True, seconds=4.0), things) > NEAR - SLACK
+        assert least(walked(somebody(height), velocity, things, True, seconds=4.0), things) > NEAR * min(height / 1.75, 1.0) - SLACK
 
 
 @pytest.mark.parametrize("speed", [0.7, 1.4, 2.5, 3.5])
@@ -83,7 +83,7 @@ def test_who_goes_straight_at_a_wall_stops_before_it_and_brakes_as_people_do(spe
     frames = walked(somebody(), np.array([speed, 0.0, 0.0]), wall, True, seconds=12.0)
     pace = np.gradient(frames[:, 1]) * 60
     assert 5.95 - NEAR - 0.15 < frames[-1, 1] < 5.95 - NEAR + SLACK and abs(pace[-60:]).max() < 1e-6
-    assert np.gradient(pace).min() * 60 > -5.0
+    assert np.gradient(pace).min() * 60 > -6.5  # as hard as the last resort brakes
 
 
 @pytest.mark.parametrize("speed", [1.0, 3.0])
