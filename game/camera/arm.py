@@ -24,7 +24,7 @@ SHORTEN = 0.025
 """Half-life [s] of an arm that gives way to what is beside it."""
 WHISKER = 0.5
 """A prop this far beside the arm [rad] begins to shorten it, so that it is short when the prop arrives."""
-SOON, DRAWN = 0.07 * np.arange(1, 13), 6.0
+SOON, DRAWN = np.arange(1, 49) / 60, 6.0
 """What will come between at these times [s], as the character goes on, draws the arm in no faster than this [m/s]."""
 SPARED = 0.01
 """So far before a prop its way up is looked along [m]."""
@@ -204,11 +204,11 @@ class Armed(Turned):
         back = -_forwards(yaw, pitch)
         free = free_way(root, back, props)
         slope = self.distance / WHISKER
-        soft = min(float((free + slope * np.abs(_FAN).sum(-1)).min()), _foreseen(root, back[0], velocity, props), self.distance)
+        soft = min(float((free + slope * np.abs(_FAN).sum(-1)).min()), self.distance)
         s = self.settings
         arm = damp(self.arm, soft, SHORTEN if soft < self.arm else s.arm_halflife, dt)
         # what comes between unforeseen shortens the arm at once: nothing hides the character
-        arm, nearest = float(min(arm, free[0])), min(NEAREST, self.distance)
+        arm, nearest = float(min(arm, free[0], _foreseen(root, back[0], velocity, props))), min(NEAREST, self.distance)
         eye = root + arm * back[0]
         if arm < nearest:
             up = np.array([[0.0, 1.0, 0.0]])
