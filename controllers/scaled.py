@@ -15,7 +15,7 @@ import numpy as np
 
 from .body import Pose, Skeleton
 from .contract import LONGEST, CharacterState, Controller, Intent, Leap, Status, seconds
-from .navigation import is_box, slope
+from .navigation import is_box, is_pillar, slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,8 @@ class Scaled(Controller):
         look = None if intent.look is None else np.asarray(intent.look, float) / self.factor
         halt = None if intent.halt is None else np.asarray(intent.halt, float) / [self.factor, self.factor, 1.0]
         towards = None if intent.towards is None else np.asarray(intent.towards, float) / [1.0, self.factor**0.5]
-        around = tuple(_Shrunk(thing, self.factor) for thing in intent.around if is_box(thing))
+        around = tuple(_ShrunkBox(thing, self.factor) if is_box(thing) else _ShrunkPillar(thing, self.factor)
+                       for thing in intent.around if is_box(thing) or is_pillar(thing))
         return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, look=look, halt=halt, towards=towards)
 
     def _grown(self, state: CharacterState) -> CharacterState:
@@ -117,12 +118,20 @@ class Scaled(Controller):
         return _resized(state, 1.0 / self.factor, state.velocity / self._speeds)
 
 
-class _Shrunk:
+class _ShrunkBox:
     """A box as a body sees it that is taken for another's size."""
 
     def __init__(self, box: Any, factor: float):
         self.centre, self.size = (np.asarray(one, float) / factor for one in (box.centre, box.size))
         self.heading, self.slope = box.heading, slope(box)
+
+
+class _ShrunkPillar:
+    """A pillar likewise."""
+
+    def __init__(self, pillar: Any, factor: float):
+        self.foot = np.asarray(pillar.foot, float) / factor
+        self.radius, self.height = pillar.radius / factor, pillar.height / factor
 
 
 def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:

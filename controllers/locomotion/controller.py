@@ -16,9 +16,11 @@ from gambol import assets
 
 from ..body import Pose, Skeleton
 from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, level, seconds
+from ..navigation.passing import walls_of
 from .control_space import ControlSpace
 from .entry import entered
 from .first_stride import readiness
+from .held_up import held_up, led_out
 from .idle import ENDS
 from .kernel import DURATION_AT
 from .library import Library
@@ -131,7 +133,7 @@ class Locomotion(Controller):
         intent.velocity and intent.halt broadcast against the state's batch axes. A wish that is not finite counts
         as no wish. One beyond what the library holds is walked slower on the same arc (so a hard
         turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
-        turns or side-steps less.
+        turns or side-steps less. Nobody's middle comes nearer to a wall of intent.around than `NEAR`, in the library's size.
         """
         dt = seconds(dt)
         level(state.floor)
@@ -148,14 +150,17 @@ class Locomotion(Controller):
             self._look(memory, intent.look, shape, state.floor)
         _halt(memory, intent.halt, wish, shape)
         ground = tops(intent.around) if len(intent.around) else FLAT
+        walls = walls_of(intent.around)
         joints = len(self.skeleton)
         root = np.empty((len(memory), 3), np.float32)
         local = np.empty((len(memory), joints, 3, 3), np.float32)
         here = _spread(state.floor, shape).reshape(-1)
         parts = max(1, ceil(dt / FINEST - 1e-6))  # what is left of a frame may be as short as rounding
         for _ in range(parts):
-            floor = here.copy()
+            floor, before = here.copy(), memory["ground"][:, :2].copy()
+            held_up(memory, floor, walls)
             step_kernel(memory, wish, dt / parts, self.settings, *self.tables, ground, here, root, local)
+            led_out(memory, before, floor, walls, root)
         root[:, 1] += floor
         pose = Pose(root.reshape(shape + (3,)), local.reshape(shape + (joints, 3, 3)))
         memory = memory.reshape(shape)

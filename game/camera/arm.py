@@ -18,16 +18,19 @@ from ..input import Wish
 from ..scene import Camera, Prop
 from .line_of_sight import FLOOR, above_floor, beside, free_way, outside
 
-NEAREST = 0.9
-"""An arm that walls make shorter than this [m] lifts the eye over the character instead."""
+NEAREST = 1.4
+"""An arm that walls make shorter than this [m] lifts the eye over the character instead, so that it stays farther off than 1.2 m."""
 SHORTEN = 0.025
 """Half-life [s] of an arm that gives way to what is beside it."""
 WHISKER = 0.5
 """A prop this far beside the arm [rad] begins to shorten it, so that it is short when the prop arrives."""
+SOON, DRAWN = np.arange(1, 49) / 60, 6.0
+"""What will come between at these times [s], as the character goes on, draws the arm in no faster than this [m/s]."""
 SPARED = 0.01
 """So far before a prop its way up is looked along [m]."""
 MET = 0.01
 """An eye nearer than this to what it looks at [m] sees nothing that way."""
+REST = np.zeros(2)
 _YAWS, _PITCHES = 0.025 * np.arange(1, 11), 0.05 * np.arange(1, 5)
 _FAN = np.concatenate([[(0.0, 0.0)], [(side * a, 0.0) for side in (-1, 1) for a in _YAWS],
                        [(0.0, side * a) for side in (-1, 1) for a in _PITCHES]])
@@ -79,6 +82,17 @@ def _forwards(yaw: float, pitch: float) -> np.ndarray:
     yaws, pitches = yaw + _FAN[:, 0], pitch + _FAN[:, 1]
     flat = np.cos(pitches)
     return np.stack([np.sin(yaws) * flat, -np.sin(pitches), np.cos(yaws) * flat], -1)
+
+
+def _foreseen(root: np.ndarray, back: np.ndarray, velocity: np.ndarray, props: tuple[Prop, ...]) -> float:
+    """How long an arm from root (3,) along back (3,) may be [m], so that it need not be drawn in faster than `DRAWN` as its root goes on as it does."""
+    speed = math.hypot(velocity[0], velocity[1])
+    if speed < 0.1:
+        return math.inf
+    ahead = np.array([velocity[0], 0.0, velocity[1]]) / speed
+    times = SOON[SOON * speed < free_way(root, ahead[None], props)[0]]
+    free = free_way(root + speed * times[:, None] * ahead, np.tile(back, (len(times), 1)), props)
+    return float((free + DRAWN * times).min(initial=math.inf))
 
 
 def angles(way: np.ndarray) -> tuple[float, float, float]:
@@ -179,8 +193,8 @@ class Armed(Turned):
         """The camera at rest, as far from its target as props let it; ground: (3,) of whom it spares."""
         return self._reached(ground, math.inf, props, clear=False)
 
-    def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool) -> Self:
-        """The camera with its eye at the end of its arm. clear: whether the arm may meet nobody."""
+    def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool, velocity: np.ndarray = REST) -> Self:
+        """The camera with its eye at the end of its arm. clear: whether the arm may meet nobody. velocity: (2,) of what it looks at [m/s]."""
         props = tuple(props)
         root = outside(self.target, props)
         # the eye slides along the floor instead of going under it
@@ -193,14 +207,14 @@ class Armed(Turned):
         soft = min(float((free + slope * np.abs(_FAN).sum(-1)).min()), self.distance)
         s = self.settings
         arm = damp(self.arm, soft, SHORTEN if soft < self.arm else s.arm_halflife, dt)
-        # whatever comes between shortens the arm at once: nothing hides the character
-        arm = float(min(arm, free[0]))
+        # what comes between unforeseen shortens the arm at once: nothing hides the character
+        arm, nearest = float(min(arm, free[0], _foreseen(root, back[0], velocity, props))), min(NEAREST, self.distance)
         eye = root + arm * back[0]
-        if arm < NEAREST:
+        if arm < nearest:
             up = np.array([[0.0, 1.0, 0.0]])
             # from a little before what shortened the arm: on its very margin the way up is free or not by rounding
             before = root + max(arm - SPARED, 0.0) * back[0]
-            eye = eye + min(NEAREST * (1.0 - (arm / NEAREST) ** 2), free_way(before, up, props)[0]) * up[0]
-        if not clear or arm < NEAREST or eye[1] < FLOOR:
+            eye = eye + min(nearest * (1.0 - (arm / nearest) ** 2), free_way(before, up, props)[0]) * up[0]
+        if not clear or arm < nearest or eye[1] < FLOOR:
             eye = outside(beside(above_floor(eye), ground), props)
         return replace(self, eye=eye, arm=arm)

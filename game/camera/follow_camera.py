@@ -13,6 +13,7 @@ from gambol.controllers.body import damp, wrap
 
 from ..input import Wish
 from ..scene import Prop
+from .line_of_sight import as_far
 from .arm import Armed, CameraSettings, forward, nearer_to
 
 BESIDE, OVER = 0.62, 0.16
@@ -85,7 +86,7 @@ class Follow(Armed):
         """
         told, s = self._told(wish, dt), self.settings
         focus = nearer_to(told.focus, ground, level, s, dt)
-        ahead = damp(told.ahead, s.ahead * np.array([velocity[0], 0.0, velocity[1]]), s.ahead_halflife, dt)
+        ahead = as_far(focus, damp(told.ahead, s.ahead * np.array([velocity[0], 0.0, velocity[1]]), s.ahead_halflife, dt), tuple(props))
         slack = damp(told.slack, 0.0, s.change_halflife, dt)
         speed, wanted = math.hypot(velocity[0], velocity[1]), told.wanted_yaw
         if told.still > s.rest and speed > 1e-3:
@@ -95,4 +96,4 @@ class Follow(Armed):
             wanted = float(damp(wanted, wanted + error, s.swing / max(pull, 1e-6), dt))
         moved = replace(told, focus=focus, ahead=ahead, slack=slack, target=focus + ahead + slack,
                         wanted_yaw=wanted, still=told.still + dt, **told._swung(dt))
-        return moved._reached(ground, dt, props, clear=float(slack @ slack) < 0.01)
+        return moved._reached(ground, dt, props, clear=float(slack @ slack) < 0.01, velocity=velocity)

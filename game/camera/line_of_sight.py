@@ -62,7 +62,7 @@ def _solids(props: tuple[Prop, ...], margin: float) -> _Solids | None:
 
 
 def free_way(origin: np.ndarray, directions: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) -> np.ndarray:
-    """How far [m] from `origin` (3,) each ray (W, 3) of unit length is free: (W,), infinite without a prop.
+    """How far [m] from `origin`, (3,) or (W, 3), each ray (W, 3) of unit length is free: (W,), infinite without a prop.
 
     0 where the origin lies inside of one. Slab method (Kay and Kajiya 1986) in each box's own
     axes, and a quadratic for upright cylinders.
@@ -72,21 +72,30 @@ def free_way(origin: np.ndarray, directions: np.ndarray, props: tuple[Prop, ...]
     if solids is None:
         return free
     with np.errstate(divide="ignore", invalid="ignore"):
-        start = np.einsum("bij,bj->bi", solids.to_local, origin - solids.centre)[:, None]
+        origin = np.broadcast_to(origin, directions.shape)
+        start = np.einsum("bij,bwj->bwi", solids.to_local, origin - solids.centre[:, None])
         ray = _no_zeros(np.einsum("bij,wj->bwi", solids.to_local, directions))
         half = solids.half[:, None]
         first, second = (-half - start) / ray, (half - start) / ray
         _stop(free, np.minimum(first, second).max(-1), np.maximum(first, second).min(-1))
 
         flat, rise = directions[:, [0, 2]], _no_zeros(directions[:, 1])
-        across = origin[[0, 2]] - solids.axis
+        across = origin[:, [0, 2]] - solids.axis[:, None]
         a = np.maximum((flat ** 2).sum(-1), 1e-18)
-        b = across @ flat.T
-        root = np.sqrt(b * b - a * ((across ** 2).sum(-1) - solids.radius ** 2)[:, None])  # NaN: misses
-        first, second = (solids.low[:, None] - origin[1]) / rise, (solids.high[:, None] - origin[1]) / rise
+        b = (across * flat).sum(-1)
+        root = np.sqrt(b * b - a * ((across ** 2).sum(-1) - solids.radius[:, None] ** 2))  # NaN: misses
+        first, second = (solids.low[:, None] - origin[:, 1]) / rise, (solids.high[:, None] - origin[:, 1]) / rise
         _stop(free, np.maximum((-b - root) / a, np.minimum(first, second)),
               np.minimum((-b + root) / a, np.maximum(first, second)))
     return free
+
+
+def as_far(origin: np.ndarray, way: np.ndarray, props: tuple[Prop, ...]) -> np.ndarray:
+    """A way (3,) [m] from a point (3,), as far as it leads into nothing: what is looked at stays on this side of a wall and over the next tread."""
+    far = float(np.linalg.norm(way))
+    if far < 1e-6:
+        return way
+    return way * min(float(free_way(outside(origin, props), way[None] / far, props)[0]) / far, 1.0)
 
 
 def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) -> np.ndarray:

@@ -20,7 +20,7 @@ from gambol.controllers.navigation import in_world, slide
 from ..explain import preview
 from ..input import Aim, Command, RunUp, Wish, aloft, before, landing, leaps, leaving, push
 from ..scene import Prop
-from ..world import DT, RATE, Character, ground_between, jump_of
+from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
 from .actions import done
 from .passers import asked, polite
@@ -85,8 +85,9 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
             command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props)))
         players[-1] = replace(players[-1], run_up=run_up or RunUp())
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
-        intents.append(replace((run_up or RunUp()).heeded(state, command.intent(state, player.steering)), leap=leap, aim=ready, goal=goal,
-                               strike=push(player.camera.yaw, wish) if player.pushed else None))
+        intent = replace((run_up or RunUp()).heeded(state, command.intent(state, player.steering)), leap=leap, aim=ready, goal=goal,
+                         strike=push(player.camera.yaw, wish) if player.pushed else None)
+        intents.append(intent if aim.moving or run_up is not None else stopped(state, intent, props))  # a run-up may go at what it leaps onto
     passers, theirs = asked(moment)
     intents += theirs
     held, turns = (None, None) if moment.comparison is None else (moment.comparison.goals, moment.comparison.turns)

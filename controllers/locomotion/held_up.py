@@ -1,0 +1,73 @@
+"""Walls hold up who walks or runs at them, whatever he wishes: the last resort, for who wishes well has braked before.
+
+Before a step, what his command has towards a wall is no faster than he can brake hard; after it, what still came too near is led out, feet and all.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel
+from ..navigation.passing import NEAR, out_kernel, slow_kernel
+from .memory import put
+
+LAG, BRAKE = 0.1, 6.0
+"""Nobody goes faster towards a wall than he could stop who begins to so much later [s], braking so hard [m/s²], half as hard again as legs push."""
+BACK = 0.3
+"""Who is too near to a wall as he walks is led away from it no faster than this [m/s]."""
+GIVES = 0.01
+"""So much nearer than that [m] a step may end, and the next one makes up for it."""
+
+
+def held_up(memory: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
+    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`, but for who wants to leap, onto one perhaps. floors: (N,) [m]."""
+    if len(walls):
+        hold_kernel(memory, floors, walls)
+
+
+def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: np.ndarray, root: np.ndarray) -> None:
+    """Move characters (N,) and their roots (N, 3), in place, out of walls (K, 9) that came nearer to them in a step than they may. before: (N, 2) where they
+    were; floors: (N,) [m]."""
+    shift = np.zeros((len(memory), 2))
+    if len(walls) and beyond_kernel(memory, before, floors, walls, shift):
+        some = np.flatnonzero(shift.any(-1))
+        moved = memory[some]
+        put(moved, moved["ground"] + np.pad(shift[some], ((0, 0), (0, 1))))
+        memory[some] = moved
+        root[:, [0, 2]] += shift
+
+
+@kernel
+def hold_kernel(memory, floors, walls):
+    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands or wants to leap."""
+    velocity, rate = np.empty(2), np.empty(2)
+    for n in range(memory.shape[0]):
+        m = memory[n]
+        if m.settled or m.alert:
+            continue
+        c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+        velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
+        rate[0], rate[1] = velocity[0], velocity[1]
+        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, BRAKE, BACK):
+            m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
+            # nor does what is under way go on towards it
+            x, z = velocity[0] - rate[0], velocity[1] - rate[1]
+            far = max(math.hypot(x, z), 1e-9)
+            x, z = x / far, z / far
+            rate[0], rate[1] = c * m.rate[2] + s * m.rate[0], c * m.rate[0] - s * m.rate[2]
+            into = min(rate[0] * x + rate[1] * z, 0.0)
+            m.rate[0] -= into * (s * x + c * z)
+            m.rate[2] -= into * (c * x - s * z)
+
+
+@kernel
+def beyond_kernel(memory, before, floors, walls, shifts):
+    """Write by how much (N, 2) [m] characters (N,) have to be moved out of walls; whether any has."""
+    found = False
+    for n in range(memory.shape[0]):
+        m = memory[n]
+        if not m.alert and out_kernel(walls, m.ground[0], m.ground[1], floors[n], before[n], NEAR - GIVES, shifts[n]):
+            found = True
+    return found
