@@ -5,8 +5,8 @@
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
 told by the shortest way out of them, up or along; the deepest that a standing heel or ball, and that anything, got. Falls: people
-who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them.
-Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
+who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them,
+in the standard body's size. Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
     falls = int((void.any((0, 2)) | (state.ground[:, 1] < end)).sum())
     feet = [skeleton.index(name) for name in ("LeftFoot", "LeftToe", "RightFoot", "RightToe")]
     jerk = np.linalg.norm(np.diff(posed[0][:, :, feet], 3, axis=0), axis=-1).max() * FPS**3
-    wrong = float((-deep[..., :4][labels] > OVER).mean())
+    wrong = float((-deep[..., :4][labels] > OVER * size).mean())
     return Walked(deep.max(-1), float(deep[..., :4][held].max()), falls, wrong, float(jerk / math.sqrt(size)))
 
 
