@@ -52,8 +52,8 @@ def flight(rise, tread, size):
     spans = [(2.0 + k * tread, end, h) for k, h in enumerate(rise * np.arange(1, COUNT + 1))]
     spans += [(end, end + LANDING, COUNT * rise)]
     spans += [(end + LANDING, end + LANDING + (k + 1) * tread, h) for k, h in enumerate(rise * np.arange(COUNT, 0, -1))]
-    boxes = tuple(SimpleNamespace(centre=(0.0, 0.5 * h / size, 0.5 * (a + b) / size), size=(4.0, h / size, (b - a) / size), heading=0.0, slope=0.0)
-                  for a, b, h in spans)
+    boxes = tuple(SimpleNamespace(centre=(0.0, 0.5 * h / size, 0.5 * (a + b) / size), size=(4.0, h / size, (b - a) / size),
+                                  heading=0.0, slope=0.0) for a, b, h in spans)
     return boxes, spans[-1][1] / size
 
 
@@ -91,7 +91,8 @@ def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
         if (state.ground[:, 1] > end + 0.5).all():
             break
     skeleton = locomotion.skeleton
-    posed = forward_kinematics(skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
+    roots, rotations = (np.array([getattr(s.pose, name) for s in states], float) for name in ("root", "rotations"))
+    posed = forward_kinematics(skeleton, roots, rotations)
     points, labels = contact_points(skeleton, *posed), np.array([s.contacts for s in states])
     held = np.array([s.memory["grip"] for s in states]) >= 1.0
     ends = end_positions(skeleton, *posed)[..., [skeleton.end_index["LeftToe"], skeleton.end_index["RightToe"]], :]
