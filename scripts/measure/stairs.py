@@ -5,8 +5,8 @@
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
 told by the shortest way out of them, up or along; the deepest that a standing heel or ball, and that anything, got. Falls: people
-who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them.
-Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
+who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them,
+in the standard body's size. Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def flight(rise, tread, size):
     spans = [(2.0 + k * tread, end, h) for k, h in enumerate(rise * np.arange(1, COUNT + 1))]
     spans += [(end, end + LANDING, COUNT * rise)]
     spans += [(end + LANDING, end + LANDING + (k + 1) * tread, h) for k, h in enumerate(rise * np.arange(COUNT, 0, -1))]
-    boxes = tuple(SimpleNamespace(centre=(0.0, 0.5 * h / size, 0.5 * (a + b) / size), size=(4.0, h / size, (b - a) / size), heading=0.0, slope=0.0)
-                  for a, b, h in spans)
+    boxes = tuple(SimpleNamespace(centre=(0.0, 0.5 * h / size, 0.5 * (a + b) / size), size=(4.0, h / size, (b - a) / size),
+                                  heading=0.0, slope=0.0) for a, b, h in spans)
     return boxes, spans[-1][1] / size
 
 
@@ -91,7 +91,8 @@ def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
         if (state.ground[:, 1] > end + 0.5).all():
             break
     skeleton = locomotion.skeleton
-    posed = forward_kinematics(skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
+    roots, rotations = (np.array([getattr(s.pose, name) for s in states], float) for name in ("root", "rotations"))
+    posed = forward_kinematics(skeleton, roots, rotations)
     points, labels = contact_points(skeleton, *posed), np.array([s.contacts for s in states])
     held = np.array([s.memory["grip"] for s in states]) >= 1.0
     ends = end_positions(skeleton, *posed)[..., [skeleton.end_index["LeftToe"], skeleton.end_index["RightToe"]], :]
@@ -102,7 +103,7 @@ def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
     falls = int((void.any((0, 2)) | (state.ground[:, 1] < end)).sum())
     feet = [skeleton.index(name) for name in ("LeftFoot", "LeftToe", "RightFoot", "RightToe")]
     jerk = np.linalg.norm(np.diff(posed[0][:, :, feet], 3, axis=0), axis=-1).max() * FPS**3
-    wrong = float((-deep[..., :4][labels] > OVER).mean())
+    wrong = float((-deep[..., :4][labels] > OVER * size).mean())
     return Walked(deep.max(-1), float(deep[..., :4][held].max()), falls, wrong, float(jerk / math.sqrt(size)))
 
 
