@@ -20,7 +20,6 @@ from gambol.controllers.supervisor import both
 
 from ..scene import Box
 from .centre_of_mass import physique_of
-from .solid import STOPS
 
 TRUNK = 0.19
 """The radius of a body [m], at standard height, that others run into: shoulders turn, and arms give way, before it."""
@@ -31,6 +30,8 @@ BACK = 0.1
 _TOUCH = Strike((0.0, 0.0))
 WALKS, STANDS, PRESSES = 1.8, 0.3, 0.12
 """Who wishes to go no faster than the first [m/s] is held before who is slower than the second [m/s]; before others, and who runs, only as he is within the third of them [m]."""
+STOPS = 0.45
+"""Nobody who walks goes towards another faster than by what is left of the way in so much time [s]."""
 LATE = 0.3
 """A gait takes up a wish so late [s]: until then a body goes on as it does."""
 LIES, THICK = ("Hips", "Spine2", "Head", "LeftLeg", "RightLeg", "LeftFoot", "RightFoot"), 0.12
