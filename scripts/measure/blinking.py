@@ -1,0 +1,95 @@
+"""A body from points that blink, come at another rate, or are noisy: how far off its joints are.
+
+    python scripts/measure/blinking.py [--clip FILE] [--seconds 10]
+
+Without a clip the performer is somebody of Gambol's who walks and runs as hands that change their mind have it. By the network that ships, in a loop
+of one's own (`Reconstruction.step`) at 60 steps a second. Figures are the mean distance of the joints from the performer's [cm], over two seeds, and
+that of the worst frame.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+import numpy as np
+
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.mocap import load, retarget
+from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
+from gambol.controllers.reconstruction.trackers import Network, Trackers
+from reconstruction_figures import table
+
+RATE, SEEDS, CHANGES = 60, 2, 1.5
+MISSING, EVERY, NOISE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5), (2, 3, 4), (1, 2, 3, 5)
+
+
+def walked(seconds: float) -> np.ndarray:
+    """Joints (T, J, 3) [m] of somebody who is told something else every second and a half."""
+    walker, rng, joints = Locomotion.load(), np.random.default_rng(0), []
+    state, wish = walker.start(), np.zeros(3)
+    for number in range(round(seconds * RATE)):
+        if number % round(CHANGES * RATE) == 0:
+            wish = rng.uniform([0.0, -1.0, -0.3], [2.8, 1.0, 0.3])
+        state, pose = walker.step(state, Intent(wish), 1 / RATE)
+        joints.append(forward_kinematics(SKELETON, pose.root, pose.rotations)[0])
+    return np.array(joints)
+
+
+def recorded(file: Path) -> np.ndarray:
+    """Joints (T, J, 3) [m] of a clip on Gambol's skeleton."""
+    return retarget(load(file)).resample(RATE).kinematics()[0]
+
+
+def off(network: Network, truth: np.ndarray, points: str, seen: np.ndarray) -> np.ndarray:
+    """How far off (T − 1,) the joints of the body are that follows what is seen (T, n, 3), on the average [cm]."""
+    controls = parse(points, SKELETON)
+    method = Trackers(network, controls, 1 / RATE)
+    follower, found = Reconstruction(method, controls, starts=method), []
+    state = follower.begin(seen[0])
+    for place, true in zip(seen[1:], truth[1:], strict=True):
+        state, pose = follower.step(state, Intent(points=place), 1 / RATE)
+        found.append(np.linalg.norm(forward_kinematics(SKELETON, pose.root, pose.rotations)[0] - true, axis=-1).mean())
+    return 100 * np.array(found)
+
+
+def spoilt(points: np.ndarray) -> dict[str, list[np.ndarray]]:
+    """The same points (T, n, 3) as they are, and spoilt in several ways, each with several seeds."""
+    found: dict[str, list[np.ndarray]] = {}
+    for seed in range(SEEDS):
+        rng = np.random.default_rng(seed)
+        for share in MISSING:
+            some = points.copy()
+            some[1:][rng.random(some[1:].shape[:2]) < share] = np.nan
+            found.setdefault(f"{100 * share:.0f} % missing", []).append(some)
+        for noise in NOISE:
+            found.setdefault(f"{noise} cm of noise", []).append(points + rng.normal(0.0, 0.01 * noise, points.shape))
+    for step in EVERY:
+        some = np.full_like(points, np.nan)
+        some[::step] = points[::step]
+        found[f"each {step}. frame alone"] = [some]
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--clip", type=Path)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    args = parser.parse_args()
+    truth = (walked(args.seconds) if args.clip is None else recorded(args.clip))[:round(args.seconds * RATE)]
+    network, columns = Network.load(), {}
+    for points in ("6", "4"):
+        for name, ways in spoilt(truth[:, parse(points, SKELETON).joints]).items():
+            errors = [off(network, truth, points, seen) for seen in ways]
+            columns.setdefault(name, []).append(f"{np.mean(errors):.1f} ({np.max(errors):.1f})")
+XX
+
+
+if __name__ == "__main__":
+    main()
