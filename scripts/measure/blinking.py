@@ -88,7 +88,7 @@ def main() -> None:
         for name, ways in spoilt(truth[:, parse(points, SKELETON).joints]).items():
             errors = [off(network, truth, points, seen) for seen in ways]
             columns.setdefault(name, []).append(f"{np.mean(errors):.1f} ({np.max(errors):.1f})")
-XX
+    print(table(("", "6 points", "4 points"), [(name, *cells) for name, cells in columns.items()]))
 
 
 if __name__ == "__main__":
