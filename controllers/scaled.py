@@ -109,7 +109,7 @@ class Scaled(Controller):
         towards = None if intent.towards is None else np.asarray(intent.towards, float) / [1.0, self.factor**0.5]
         around = tuple(_ShrunkBox(thing, self.factor) if is_box(thing) else _ShrunkPillar(thing, self.factor)
                        for thing in intent.around if is_box(thing) or is_pillar(thing))
-        return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, look=look, halt=halt, towards=towards)
+        return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, aim=None if intent.aim is None else Leap(None), look=look, halt=halt, towards=towards)
 
     def _grown(self, state: CharacterState) -> CharacterState:
         return _resized(state, self.factor, state.velocity * self._speeds)

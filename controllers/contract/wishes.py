@@ -27,7 +27,7 @@ class Leap:
     """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land, or
     None for where it is now: straight up.
 
-    ValueError for what is none of these; a place or time that nobody can leap to is for the controller to refuse.
+    ValueError for what is no number; a place, time or foot that nobody can leap to is for the controller to refuse.
     airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
     on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or run on.
@@ -41,16 +41,12 @@ class Leap:
 
     def __post_init__(self):
         if self.place is not None:
-            object.__setattr__(self, "place", place := _numbers("a leap's place", self.place))
-            if place.shape != (3,):
-                raise ValueError(f"a leap's place is x, y, z [m], or None; got {self.place!r}")
+            object.__setattr__(self, "place", _numbers("a leap's place", self.place))
         for name in ("airtime", "slack", "heading"):
             if getattr(self, name) is not None and _numbers(f"a leap's {name}", getattr(self, name)).shape:
                 raise ValueError(f"a leap's {name} is one number, got {getattr(self, name)!r}")
         if not 0.0 <= self.slack < math.inf:
             raise ValueError(f"a leap's slack must be 0 m or more, got {self.slack!r}")
-        if self.on not in (None, "left", "right", "both"):
-            raise ValueError(f'a leap is on "left", "right" or "both", or None; got {self.on!r}')
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
@@ -135,7 +131,8 @@ class Intent:
     the velocity by which that plan is followed, to keep out of others' way: the plan waits meanwhile, and is made anew where it leads him off.
     held: no leap of the way goes off now, as somebody is where it leads.
     sighting: a frame of the cameras that watch whoever is to be tracked; None between two frames, and for no such wish.
-    aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again.
+    aim: a jump that is about to be wanted: who stands crouches for it and waits; with neither it nor a leap he stands up again. Who runs up to it, or wants
+    it already, is not held up by what he may leap onto.
     strike: what hits the body as this step begins, whatever is wanted; None for nothing. One in the air is struck once it stands again.
     ValueError for a field of another kind.
     """

@@ -40,7 +40,8 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     no faster than legs can push, and as hard only as they bear, so that feet need not slip; before stairs no faster than feet find them. lean: the share of its
     strength with which a body pushes. stance: where heels and balls are at rest (4, 2) [m]."""
     m.wished[0], m.wished[1] = wish[2], wish[0]
-    share = m.most / math.hypot(wish[0], wish[2]) if m.most > 0.0 else 1.0
+    speed = math.hypot(wish[0], wish[2])
+    share = m.most / speed if 0.0 < m.most < speed else 1.0
     m.wanted = RUN if share * wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
     for i in range(3):
         p[i] = (wish[i] if i == 1 else share * wish[i]) / SCALE[i]

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
+from .memory import WALK
 from .root_motion import cadence_kernel
 from .tops import SAME, STEP, ground_kernel
 
@@ -73,7 +74,8 @@ def come_down(m, tops, floor, foot, progress, out):
     aim[0], aim[1] = ball[0] + m.land[foot, 0], ball[1] + m.land[foot, 1]
     aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
     even = stands == WHOLE and shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
-    m.aimed[foot] = 1 if stands > NONE and progress > CERTAIN and not even else 0
+    runs_up = m.alert and m.family != WALK  # who runs up to a leap has no time to
+    m.aimed[foot] = 1 if stands > NONE and progress > CERTAIN and not even and not runs_up else 0
     if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
         step = max(0.5 * speed / cadence_kernel(m), 0.05)
         m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)

@@ -99,7 +99,7 @@ def follow_ground(m, tops, floor, swing, dt):
         m.level = before + 0.5 * (rate + m.level_rate) * dt
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
-    m.most = most_speed(m, tops, floor)
+    m.most = 0.0 if m.alert else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto
 
 
 @kernel

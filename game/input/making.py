@@ -30,6 +30,8 @@ PATIENCE = 1.0
 """So long [s] a jump that can't be made from a stand is asked for."""
 HOPS_UP = 0.4
 """What is higher over the ground than this [m] is hopped against, not onto."""
+UNDER_WAY = 0.7
+"""Who runs up to a jump faster than this [m/s] aims at it; who is slower would crouch for it."""
 LAST, BENDS = 0.3, 1.25
 """So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
 AHEAD = 0.85, 0.5
@@ -123,9 +125,10 @@ class Making:
             ready = abs(math.remainder(heading - float(state.ground[2]), math.tau)) < ASKEW
         else:
             ready = True
-        if not ready:
-            return self, intent
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
+        if not ready:
+            runs = move.runs and state.active == "locomotion" and np.hypot(state.velocity[0], state.velocity[2]) > UNDER_WAY
+            return self, replace(intent, aim=leap) if runs else intent
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])

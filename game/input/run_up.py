@@ -91,7 +91,8 @@ def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], ar
     """What comes of going on for so long: whether he leaps is asked only if he would else come to where he can't walk."""
     walks, way, blocked, now = asks(), [state.ground[:2]], None, state
     for _ in range(round(seconds / dt)):
-        now, _ = controller.step(now, but(walks(now), leap=None, aim=None, around=around), dt)
+        intent = walks(now)
+        now, _ = controller.step(now, but(intent, leap=None, aim=intent.leap or intent.aim, around=around), dt)
         way.append(now.ground[:2])
         floor = float(now.floor)
         if blocked is None and room(way[-1], floor, around) <= 0.0:
@@ -112,7 +113,7 @@ def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[A
             if controller.refusal(state, intent) == "":
                 return number + 1
             refused = Asked("", intent, state)
-        state, _ = controller.step(state, but(intent, leap=None, aim=None), dt)
+        state, _ = controller.step(state, but(intent, leap=None, aim=intent.leap or intent.aim), dt)
     return 0
 
 
