@@ -123,7 +123,7 @@ def _take_hold(m, k, height, dt):
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
     if wanted > m.grip[k] and not m.settled and (
-            m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE or m.high[k // 2] > GATE):
+            m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
         wanted = m.grip[k]
     step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
