@@ -207,9 +207,12 @@ CROWD = 20
 """So many people cost as much as all other films together."""
 
 
+NOTHING = "nothing to step on"
+
+
 @pytest.mark.parametrize("name", shipped())
 def test_shipped_films_show_whom_they_are_about(name, walker, monkeypatch):
-    """In every shot and view, whoever it is about is in the picture; a camera is never in a prop; and nothing is refused but what is to be.
+    """In every shot and view, whoever it is about is in the picture; a camera is never in a prop; nothing is refused but what is to be, and nobody steps into nothing.
 
     Who follows points walks after them: what makes a body of them plays no part, and costs a hundred times as much.
     Nor do overlays; and of a crowd the first seconds are enough.
@@ -218,11 +221,12 @@ def test_shipped_films_show_whom_they_are_about(name, walker, monkeypatch):
     monkeypatch.setattr(film, "tracked_of", lambda *_: walker)
     monkeypatch.setattr(Watches, "sighting", lambda *_: None)
     scenario = load(name).at_fps(4)
-    lost, seen, refused = 0, 0, set()
+    lost, seen, refused, fell = 0, 0, set(), set()
     long = scenario.frames if len(scenario.actors) <= CROWD else 6 * scenario.fps
     for frame, scenes in itertools.islice(film.scenes(scenario, walker, Overlays()), long):
         shot = [s for s in scenario.shots if s.at <= frame.time][-1]
         refused.update(frame.refused)
+        fell.update(one.name for one in frame.after.characters if NOTHING in one.state.refused)
         for table, scene in zip(shot.cameras, scenes, strict=True):
             assert blocked(scene.camera.eye, scenario.stage(), 0.0) is None and scene.camera.eye[1] > 0.1
             aspect = scene.part[2] * scenario.size[0] / (scene.part[3] * scenario.size[1])
@@ -235,6 +239,7 @@ def test_shipped_films_show_whom_they_are_about(name, walker, monkeypatch):
                 seen, lost = seen + 1, lost + (not there)
     assert lost <= 0.03 * seen, f"{lost} of {seen}"
     assert len(refused) == (name == "narrow_door"), refused
+    assert not fell
 
 
 def test_the_demo_goes_as_it_is_told(walker, monkeypatch):
