@@ -161,7 +161,7 @@ class Intent:
         if not hasattr(self.around, "__getitem__"):
             raise ValueError(f"around is a sequence of what stands about, empty for nothing; got {self.around!r}")
         for one in self.around[:1]:  # as the first, so the others
-            if not (hasattr(one, "centre") or hasattr(one, "foot")):
+            if not any(hasattr(one, name) for name in ("centre", "foot", "place")):  # a goal has a place, and stops nobody
                 raise ValueError(f"what stands about has a box's centre, size and heading, or a pillar's foot, radius and height; got {one!r}")
 
     @staticmethod
