@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
-from .memory import WALK
+from .memory import RUN, WALK
 from .root_motion import cadence_kernel
 from .tops import SAME, STEP, ground_kernel
 
@@ -43,8 +43,8 @@ FLIGHT = 0.8
 """Edges no farther apart than this are stairs; others are kerbs [m]."""
 STEPS, RISES, STAIRS = 2.6, 0.42, (0.5, 1.0)
 """Nobody goes up or down stairs faster than so many treads a second, and so much up or down [m/s], within these [m/s] …"""
-KERB = 1.4
-"""… nor over a kerb than this [m/s]."""
+KERB, RUN_OVER = 1.4, 0.24
+"""… nor over a kerb than the first [m/s]: but who runs goes on running over one no higher or deeper than the second [m]."""
 BRAKES, BEFORE, LATE = 1.5, 0.45, 0.35
 """Who comes to them brakes by the first [m/s²], to be as slow so far before them [m] as feet reach ahead; the third is how late speed
 follows a wish [s]."""
@@ -170,7 +170,7 @@ def most_speed(m, tops, floor):
         if tread < FLIGHT:
             most, at = min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1]), first
         else:
-            most = KERB
+            most = 9.0 if m.wanted == RUN and abs(rise) < RUN_OVER else KERB
         first, before = far, before + rise
         limit = min(limit, math.sqrt(most * most + 2.0 * BRAKES * max(at - BEFORE - LATE * goes, 0.0)))
         if far > sees:

@@ -1,4 +1,4 @@
-"""The way back: who is told in his walk to go where he came from brakes with a step, turns over it as from rest, and goes.
+"""The way back: who is told in his walk or run to go where he came from brakes with a step, turns over it as from rest, and goes.
 
 So do recorded people: the foot ahead takes the speed, both feet stand for a moment, and the one behind is set down turned. Which
 way round they turn is up to the foot that is ahead when they are slow.
@@ -14,10 +14,10 @@ from .root_motion import cadence_kernel, short_way
 from .turning_step import BEFORE, GOES, enter_turn
 
 BACK = 2.75
-"""Who walks and is told to face another way by more than this [rad] turns back …"""
+"""Who is told to face another way by more than this [rad] turns back …"""
 LEAST, GONE = 0.5, 1.2
 """… if he goes faster than the first [m/s], until he has less than the second [rad] to turn."""
-SLOW = 0.4
+SLOW = 0.7
 """He turns once he is no faster than this [m/s]."""
 MEANWHILE = 0.8
 """So fast he turns while he brakes [rad/s]."""
@@ -29,12 +29,16 @@ BEYOND = 0.6
 
 @kernel
 def turn_back(m, turns, wish, settings, row):
-    """Brake and begin a turn where somebody who walks is to go back. wish: (3,), which is changed meanwhile. row: (COLUMNS,) scratch."""
-    walks = m.family == WALK and not (m.settled or m.waits or m.turn != 0.0)
-    asked = m.heads and GOES < m.towards[1] < settings.run_above and turns.coefficients.shape[3] > 0
+    """Brake and begin a turn where somebody is to go back; who runs brakes to a walk first. wish: (3,), which is changed meanwhile. row: (COLUMNS,) scratch."""
+    goes = not (m.settled or m.waits or m.turn != 0.0)
+    asked = m.heads and m.towards[1] > GOES and turns.coefficients.shape[3] > 0
     turn, speed = short_way(m.towards[0] - m.ground[2]), math.hypot(m.command[0], m.command[2])
-    if not (walks and asked) or m.backs == 0 and (abs(turn) < BACK or m.command[0] < LEAST):
+    if not (goes and asked) or (m.backs == 0 or m.family != WALK) and (abs(turn) < BACK or m.command[0] < LEAST):
         m.backs = 0
+        return
+    if m.family != WALK:  # he brakes first, straight on
+        m.backs = 1 if turn > 0.0 else -1
+        wish[0] = wish[1] = wish[2] = 0.0
         return
     if abs(turn) > BACK:
         m.backs = _side(m, speed, settings)

@@ -13,6 +13,7 @@ import numpy as np
 from ..body import spring_kernel
 from ..compiled import kernel
 from .foot_points import shown_kernel
+from .swing import smooth
 from .tops import SAME, STEP, ground_kernel
 from .treads import FOOT, TOE, come_down, most_speed, under_kernel
 
@@ -33,6 +34,8 @@ LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
 RISER = 0.06
 """What lies so much higher before or behind a foot is no slope [m]."""
+BETWEEN = 20
+"""So many places on a foot's way are looked at for what it must pass over."""
 REACHES = 0.06
 """A foot that goes up is up so far before a riser [m]."""
 TOUCHES, VOID = 0.035, 0.25
@@ -78,14 +81,19 @@ def follow_ground(m, tops, floor, swing, dt):
         m.held[foot] = 0
         come_down(m, tops, floor, foot, progress, under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
-        share = min(max(share, 0.0), 1.0)
-        path = m.left[foot] + (under[0] - m.left[foot]) * share * share * (3.0 - 2.0 * share)
+        path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
+        over = _between(m, tops, floor, foot, max(under[0], m.left[foot]))
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
+        body = path
+        if over > max(under[0], m.left[foot]) + SAME:  # a foot passes over it, the body does not rise for that
+            up, down = smooth(progress / RISES), smooth((progress - SINKS) / (1.0 - SINKS))
+            path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
+                       _beneath(m, tops, floor, foot, over + SAME, place))
         m.base[foot] = min(max(path, rising, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
         m.high[foot] = m.base[foot] - under[0]
-        bears[foot] = min(m.base[foot], path) if rising > path else m.base[foot]
+        bears[foot] = min(m.base[foot], body)
         if under[0] < m.left[foot]:  # the body sinks all the way down
             bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
         for i in range(2):
@@ -113,6 +121,19 @@ def _loose(m, tops, floor, foot, place, dt):
     now = min(max(goal, m.base[foot] - DROPS * dt), m.base[foot] + DROPS * dt) if lifted else high
     m.high[foot] = now - high  # it takes no hold up there
     return now
+
+
+@kernel
+def _between(m, tops, floor, foot, highest):
+    """How high the ground lies at most between where a foot left and where it comes down, as far as it can be stepped over from `highest`."""
+    ground, most = np.empty(3), -1e9
+    for k in range(BETWEEN):
+        share = (k + 1.0) / (BETWEEN + 1.0)
+        x = m.left_at[foot, 0] + share * (m.coming[foot, 1, 0] + m.land[foot, 0] - m.left_at[foot, 0])
+        z = m.left_at[foot, 1] + share * (m.coming[foot, 1, 1] + m.land[foot, 1] - m.left_at[foot, 1])
+        if ground_kernel(tops, x, z, floor, m.level, ground) and ground[0] <= highest + STEP:
+            most = max(most, ground[0])
+    return most
 
 
 @kernel

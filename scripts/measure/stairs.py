@@ -1,12 +1,14 @@
-"""Measure walks up and down stairs of all kinds, by bodies of all sizes, as fast as they are asked to.
+"""Measure walks up and down stairs of all kinds, by bodies of all sizes, as fast as they are asked to; and runs over single kerbs.
 
-    python scripts/measure/stairs.py [--only HEIGHT ...]
+    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs]
 
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
 told by the shortest way out of them, up or along; the deepest that a standing heel or ball, and that anything, got. Falls: people
 who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them,
 in the standard body's size. Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
+Kerbs: up one of 6–16 cm after five metres, on for 0.5–6 m, down again, straight on and askew; at least so fast meanwhile, as a share of
+the fastest before.
 """
 
 from __future__ import annotations
@@ -31,19 +33,24 @@ HEIGHTS, SPEEDS = (1.2, 1.5, 1.74, 1.9, 2.1), (0.5, 0.8, 1.2, 2.0, 3.0)
 STANDARD = 1.74
 """How tall the standard body is [m]: another walks as it does, in its own size (`controllers/scaled.py`)."""
 PEOPLE, COUNT, LANDING = 4, 6, 2.5
+KERBS, PACES, WIDTHS, ASKEW = (0.06, 0.10, 0.14, 0.16), (2.0, 2.5, 3.0, 3.5), (6.0, 0.5, 1.0, 2.0), 40.0
+"""How high kerbs are, how fast they are run over [m/s], how far it is to their other edge [m], and how far askew some run [degrees]."""
+BEFORE, AT_SPEED = 5.0, 1.5
+"""So far away a kerb is as they set off, and so near to it they are under way [m]."""
 DEEP, OVER, NOTHING = 0.01, 0.04, 0.33
 SLOWEST = 0.16
 """Who gets ahead slower than this on the way [m/s] does not arrive."""
 
 
 class Walked(NamedTuple):
-    """What a way's walk came to: depths [m] over frames and people, shares, jerk [m/s³]."""
+    """What a way's walk came to: depths [m] over frames and people, shares, jerk [m/s³], the lowest speed as a share."""
 
     deep: np.ndarray
     standing: float
     falls: int
     labels: float
     jerk: float
+    slowest: float
 
 
 def flight(rise, tread, size):
@@ -81,11 +88,25 @@ def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
     """Four people's walk up and down a flight of stairs, or for as long."""
     size = height / STANDARD
     around, end = flight(rise, tread, size)
+    return crossed(locomotion, around, end, size, speed, seconds or (end + 2.0) * math.sqrt(size) / SLOWEST)
+
+
+def ran(locomotion, rise, width, height, speed, askew=0.0) -> Walked:
+    """Four people's run up a kerb and down its other edge, askew [degrees] if they are told to."""
+    size = height / STANDARD
+    kerb = SimpleNamespace(centre=(0.0, 0.5 * rise / size, (BEFORE + 0.5 * width) / size), size=(60.0, rise / size, width / size),
+                           heading=0.0, slope=0.0)
+    end = (BEFORE + width + 2.0) / size
+    return crossed(locomotion, (kerb,), end, size, speed, 1.5 * end * math.sqrt(size), math.radians(askew))
+
+
+def crossed(locomotion, around, end, size, speed, seconds, askew=0.0) -> Walked:
+    """Four people's way over what stands about, until it ends [m] or for so many seconds, by bodies so many times the standard one's size."""
     begin = np.zeros((PEOPLE, 3))
-    begin[:, 1] = np.linspace(0.0, 0.5, PEOPLE)
+    begin[:, 1], begin[:, 2] = np.linspace(0.0, 0.5, PEOPLE), askew
     state, states = locomotion.start(begin, np.zeros(PEOPLE)), []
     wish = Intent(np.array([speed / math.sqrt(size), 0.0, 0.0]), around=around)
-    for _ in range(round((seconds or (end + 2.0) * math.sqrt(size) / SLOWEST) * FPS)):
+    for _ in range(round(seconds * FPS)):
         state, _ = locomotion.step(state, wish, 1 / FPS)
         states.append(state)
         if (state.ground[:, 1] > end + 0.5).all():
@@ -104,7 +125,9 @@ def walked(locomotion, rise, tread, height, speed, seconds=None) -> Walked:
     feet = [skeleton.index(name) for name in ("LeftFoot", "LeftToe", "RightFoot", "RightToe")]
     jerk = np.linalg.norm(np.diff(posed[0][:, :, feet], 3, axis=0), axis=-1).max() * FPS**3
     wrong = float((-deep[..., :4][labels] > OVER * size).mean())
-    return Walked(deep.max(-1), float(deep[..., :4][held].max()), falls, wrong, float(jerk / math.sqrt(size)))
+    goes, near = np.array([s.velocity[:, 0] for s in states]), np.array([s.ground[:, 1] for s in states]) > (BEFORE - AT_SPEED) / size
+    slowest = float((goes / np.maximum(np.maximum.accumulate(goes, 0), 0.1))[near].min(initial=1.0))
+    return Walked(deep.max(-1), float(deep[..., :4][held].max()), falls, wrong, float(jerk / math.sqrt(size)), slowest)
 
 
 def row(name, found: list[Walked]) -> str:
@@ -116,12 +139,31 @@ def row(name, found: list[Walked]) -> str:
             f"{100 * np.mean([one.labels for one in found]):4.2f} % · jerk {jerks.max():4.0f}, {np.percentile(jerks, 95):4.0f} km/s³")
 
 
+def kerbs(locomotion, heights) -> None:
+    """Print the figures of runs over kerbs."""
+    found = defaultdict(list)
+    for i, height in enumerate(heights):
+        for k, speed in enumerate(PACES):
+            for n, rise in enumerate(KERBS):
+                for askew in (0.0, ASKEW):
+                    one = ran(locomotion, rise, WIDTHS[(i + k + n) % len(WIDTHS)], height, speed, askew)
+                    for name in (f"{height:g} m tall", f"run at {speed:g} m/s", f"kerbs of {100 * rise:.0f} cm",
+                                 f"{WIDTHS[(i + k + n) % len(WIDTHS)]:g} m wide", "askew" if askew else "straight on", "all kerbs"):
+                        found[name].append(one)
+    for name in sorted(found):
+        print(row(name, found[name]) + f" · at least {100 * np.median([one.slowest for one in found[name]]):.0f} % of the speed", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--library", default=DEFAULT_LIBRARY)
     parser.add_argument("--only", nargs="+", type=float, help="only bodies so tall [m]")
+    parser.add_argument("--kerbs", action="store_true", help="only runs over kerbs")
     arguments = parser.parse_args()
     locomotion, found = Locomotion.load(arguments.library), defaultdict(list)
+    kerbs(locomotion, arguments.only or HEIGHTS)
+    if arguments.kerbs:
+        return
     for i, height in enumerate(arguments.only or HEIGHTS):
         for k, speed in enumerate(SPEEDS):
             for n, tread in enumerate(TREADS):

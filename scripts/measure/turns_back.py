@@ -20,7 +20,7 @@ from changes import FPS, Bench
 from gambol.controllers.locomotion import Library, Locomotion
 from gambol.controllers.navigation import steer
 
-SPEEDS, SECONDS, NEAR = (0.7, 1.0, 1.3, 3.0), 4.0, 0.1
+SPEEDS, SECONDS, NEAR = (0.7, 1.0, 1.3, 2.5, 3.0, 3.5), 5.0, 0.1
 BEGINS = 0.15
 
 

@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
-from stairs import walked  # noqa: E402
+from stairs import ran, walked  # noqa: E402
 
 
 @settings(max_examples=10, deadline=None)
@@ -25,6 +25,17 @@ def test_feet_find_the_treads_of_any_stairs(locomotion, rise, tread, height, spe
     assert found.standing < 0.015 and found.deep.max() < 0.06
     assert np.mean(found.deep > 0.01) < 0.005 and found.labels < 0.003
     assert found.jerk < 80e3, "no foot pops out of a step"
+
+
+@pytest.mark.parametrize("rise, width, height, speed, askew", ((0.15, 6.0, 1.74, 3.0, 0.0), (0.16, 1.0, 1.74, 2.0, 0.0),
+                                                               (0.12, 0.9, 1.5, 3.0, 0.0), (0.16, 6.0, 1.2, 2.5, 0.0), (0.16, 2.0, 1.9, 3.0, 40.0)))
+def test_who_runs_goes_on_running_over_a_kerb(locomotion, rise, width, height, speed, askew):
+    """At nine tenths of the speed, up and down; feet come down on what is there, or pass over it."""
+    found = ran(locomotion, rise, width, height, speed, askew)
+    assert found.slowest > 0.9
+    assert not found.falls and found.standing < 0.015 and found.deep.max() < 0.06
+    assert np.mean(found.deep > 0.01) < 0.005 and found.labels < 0.003
+    assert found.jerk < 80e3
 
 
 @pytest.mark.parametrize("height, rise", ((1.2, 0.25), (1.74, 0.33)))

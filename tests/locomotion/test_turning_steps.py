@@ -1,4 +1,4 @@
-"""Turns are made in as few steps as people take: from rest two into a walk, two or four on the spot, which end where they began; back in a walk three."""
+"""Turns are made in as few steps as people take: from rest two into a walk, two or four on the spot, which end where they began; back in a walk three, in a run five."""
 
 import numpy as np
 import pytest
@@ -64,6 +64,35 @@ def test_who_walks_and_is_to_go_back_steps_turns_over_it_and_goes(locomotion):
     assert np.abs(way[..., 0]).max() < 0.3 and way[..., 1].max() < 0.5
     assert np.allclose(states[-1].velocity[:, 0], 1.2, atol=0.05) and away[-1].max() < 0.05
     assert feet_apart(locomotion.skeleton, *motion_of(locomotion, states)).min() > 0.06
+
+
+def test_who_runs_and_is_to_go_back_brakes_turns_and_goes(locomotion):
+    """At any phase of a run, along the line that he came on, not round an arc."""
+    state = locomotion.start(np.zeros((8, 3)))
+    for k in range(5 * FPS):
+        state, _ = locomotion.step(state, Intent(np.stack([np.where(k < 6 * np.arange(8), 0.0, 3.0), np.zeros(8), np.zeros(8)], -1)), 1 / FPS)
+    assert (state.memory["family"] == 1).all() and np.ptp(state.memory["phase"]) > 0.5
+    states, begins = [], state.ground
+    for _ in range(5 * FPS):
+        state, _ = locomotion.step(state, steer(state.ground, np.array([0.0, -3.0]), None, state.velocity[:, 1]), 1 / FPS)
+        states.append(state)
+    away = off(states, np.full(8, 180.0))
+    facing = len(away) - (away > 0.1)[::-1].argmax(0)
+    assert facing.mean() < 2.45 * FPS and facing.max() < 2.7 * FPS, facing
+    way = np.array([s.ground for s in states]) - begins
+    assert np.abs(way[..., 0]).max() < 0.4 and way[..., 1].max() < 2.4
+    assert np.allclose(states[-1].velocity[:, 0], 3.0, atol=0.1) and away[-1].max() < 0.05
+    assert feet_apart(locomotion.skeleton, *motion_of(locomotion, states)).min() > 0.06
+
+
+def test_who_runs_back_may_think_better_of_it(locomotion):
+    """Told to go on, he runs on ahead, whenever that is while he brakes."""
+    state = locomotion.start(np.zeros((8, 3)))
+    for k in range(8 * FPS):
+        back = (k >= 4 * FPS) & (k < 4 * FPS + 10 * np.arange(8))
+        way = np.where(back[:, None], [0.0, -3.0], [0.0, 3.0])
+        state, _ = locomotion.step(state, steer(state.ground, way, None, state.velocity[:, 1]), 1 / FPS)
+    assert np.allclose(state.velocity[:, 0], 3.0, atol=0.1) and (np.abs(state.ground[:, 2]) < 0.05).all()
 
 
 def test_turns_on_the_spot_take_two_steps_and_end_where_they_began(locomotion):
