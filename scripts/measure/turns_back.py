@@ -1,9 +1,9 @@
-"""Measure how somebody who walks goes back: the stick thrown back, at every phase of a walk, and recorded people's U-turns.
+"""Measure how somebody who walks or runs goes back: the stick thrown back, at every phase, or less far round, and recorded people's U-turns.
 
     python scripts/measure/turns_back.py [--recordings DIR]
 
 Of every one: when the heading is within 0.1 rad of the way back, when the mass centre has nine tenths of its speed that way, steps until then,
-how far it goes on and aside. Recorded ones begin when heading or speed is a seventh off what it was; DIR is the folder of motion capture.
+how far it goes on and aside, its lowest speed on average. Recorded ones begin when heading or speed is a seventh off what it was; DIR is the folder of motion capture.
 """
 
 from __future__ import annotations
@@ -21,25 +21,30 @@ from gambol.controllers.locomotion import Library, Locomotion
 from gambol.controllers.navigation import steer
 
 SPEEDS, SECONDS, NEAR = (0.7, 1.0, 1.3, 2.5, 3.0, 3.5), 5.0, 0.1
+OTHERS = 90.0, 120.0, 150.0
+"""Smaller turns of a walk [degrees]."""
 BEGINS = 0.15
 
 
-def ours(bench: Bench, speed: float) -> None:
-    """Print the figures of one speed [m/s]."""
+def ours(bench: Bench, speed: float, degrees: float = 180.0) -> None:
+    """Print the figures of one speed [m/s] and turn."""
+    angle = np.radians(degrees)
+    new = np.array([np.sin(angle), np.cos(angle)])
     state, states = bench.at_all_phases((speed, 0, 0)), []
     for _ in range(round(SECONDS * FPS)):
-        state, _ = bench.locomotion.step(state, steer(state.ground, np.array([0.0, -speed]), None, state.velocity[:, 1]), 1 / FPS)
+        state, _ = bench.locomotion.step(state, steer(state.ground, speed * new, None, state.velocity[:, 1]), 1 / FPS)
         states.append(state)
     motion, rows = bench.motion(states), []
     feet = np.array([s.contacts.reshape(-1, 2, 2).any(-1) for s in states]).astype(int)
     strikes = (np.diff(feet, axis=0) > 0).sum(-1)
     heading = np.array([s.ground[:, 2] for s in states])
     for n in range(heading.shape[1]):
-        faces = int(np.flatnonzero(np.abs(heading[:, n] % (2 * np.pi) - np.pi) > NEAR)[-1]) + 1
-        slow = int(np.flatnonzero(motion.com_velocity[:faces + FPS, n, 2] > -0.9 * speed)[-1]) + 1
+        faces = int(np.flatnonzero(np.abs((heading[:, n] - angle + np.pi) % (2 * np.pi) - np.pi) > NEAR)[-1]) + 1
+        slow = int(np.flatnonzero(motion.com_velocity[:faces + FPS, n][:, [0, 2]] @ new < 0.9 * speed)[-1]) + 1
         way = motion.com[:, n] - motion.com[0, n]
         rows.append((faces / FPS, slow / FPS, strikes[:faces, n].sum(), way[:, 2].max(), np.abs(way[:faces, 0]).max()))
-    say(f"{speed:.1f} m/s", rows)
+    lowest = np.linalg.norm(motion.com_velocity[..., [0, 2]], axis=-1).min(0)
+    say(f"{speed:.1f} m/s" + (f", {degrees:.0f}°" if degrees != 180.0 else ""), rows, lowest.mean())
     print("    " + told([figures(motion)]))
 
 
@@ -81,10 +86,10 @@ def recorded(folder: Path, library: Library) -> None:
     say(f"recorded ({len(rows)}), {min(speeds):.1f}–{max(speeds):.1f} m/s", rows)
 
 
-def say(name: str, rows) -> None:
+def say(name: str, rows, lowest: float | None = None) -> None:
     mean, most = np.mean(rows, 0), np.max(rows, 0)
     print(f"{name}: faces back after {mean[0]:.2f} s (worst {most[0]:.2f}), nine tenths of the speed after {mean[1]:.2f} s ({most[1]:.2f}); {mean[2]:.1f} steps ({most[2]:.0f}); "
-          f"goes on {mean[3]:.2f} m ({most[3]:.2f}), aside {mean[4]:.2f} m ({most[4]:.2f})", flush=True)
+          f"goes on {mean[3]:.2f} m ({most[3]:.2f}), aside {mean[4]:.2f} m ({most[4]:.2f})" + (f"; at least {lowest:.2f} m/s" if lowest is not None else ""), flush=True)
 
 
 def main() -> None:
@@ -97,6 +102,8 @@ def main() -> None:
         recorded(asked.recordings, bench.locomotion.library)
     for speed in SPEEDS:
         ours(bench, speed)
+    for degrees in OTHERS:
+        ours(bench, 1.3, degrees)
 
 
 if __name__ == "__main__":
