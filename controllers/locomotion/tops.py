@@ -10,7 +10,6 @@ import numpy as np
 
 from ..compiled import kernel
 from ..navigation import is_box, slope
-from ..navigation.passing import STEP
 
 SEEN = 0.8
 """A foot comes down no more than a `STEP` higher or deeper than the other stands, and what is higher than this over the body's level is no ground [m]: feet go up two of the highest steps from one that stands."""
