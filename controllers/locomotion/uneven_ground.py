@@ -13,7 +13,8 @@ import numpy as np
 from ..body import spring_kernel
 from ..compiled import kernel
 from .foot_points import shown_kernel
-from .tops import SAME, STEP, ground_kernel
+from ..navigation.passing import STEP
+from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, come_down, most_speed, under_kernel
 
 ASTRAY = 0.06
