@@ -12,7 +12,7 @@ from .control_space import SCALE
 from .kernel import HIPS_AT, clamp_kernel, inner_kernel
 from .last_stride import come_over, plan_stop, quickness, time_to_stop
 from .memory import RUN, WALK
-from .root_motion import advance, cadence_kernel
+from .root_motion import advance, briskness, cadence_kernel
 from .swing import smooth
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
@@ -48,7 +48,8 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
     for i in range(3):
         p[i] *= SCALE[i]
-    p[0], p[2] = p[0] * m.pace, p[2] * m.pace
+    pace = m.pace * briskness(m)  # steps that are as short, and as brisk as they may be
+    p[0], p[2] = p[0] * pace, p[2] * pace
     most = settings.acceleration * settings.agility
     round_curve = most / max(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]), 0.1)
     p[1] = min(max(p[1], -round_curve), round_curve) * _turns(math.hypot(p[0], p[2]), math.hypot(m.command[0], m.command[2]))

@@ -24,7 +24,7 @@ from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .short_leg import give_way
 from .swing import SWING, swing_kernel, swing_progress
-from .tops import STEP
+from ..navigation.passing import STEP
 from .uneven_ground import RECOVERS, follow_ground, lie_kernel, rise_ahead, touch
 
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))

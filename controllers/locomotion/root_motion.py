@@ -17,6 +17,8 @@ PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
 
 SHORTEST = 0.3
 """No blend's cycle is shorter [s]."""
+BRISKEST = 1.4
+"""Who must take shorter steps takes them at most this many times as often."""
 
 
 @kernel
@@ -34,12 +36,18 @@ def time_ahead(m, table, share):
 @kernel
 def tempo_kernel(m):
     """How many times as fast as the blend's own the phase runs: at the command's stretch, more where a foot stands far from where it should,
-    and as who stops is quick."""
+    and as who stops is quick or who takes short steps brisk."""
     late = 0.0
     for foot in range(2):
         if m.standing[2 * foot] or m.standing[2 * foot + 1]:
             late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
-    return m.quick * (1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)) * math.sqrt(m.stretch)
+    return m.quick * (1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)) * math.sqrt(m.stretch) * briskness(m)
+
+
+@kernel
+def briskness(m):
+    """How many times as often somebody takes his steps where they must be short, as on stairs: the gait of a slower walk, played faster."""
+    return min(1.0 / max(m.pace, 0.1), BRISKEST)
 
 
 @kernel

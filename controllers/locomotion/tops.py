@@ -11,10 +11,8 @@ import numpy as np
 from ..compiled import kernel
 from ..navigation import is_box, slope
 
-STEP = 0.30
-"""A foot comes down no more than this higher or deeper than the other stands [m]: a child of 1.2 m goes up stairs of 20 cm …"""
 SEEN = 0.8
-"""… and what is higher than this over the body's level is no ground [m]: feet go up two of the highest steps from one that stands."""
+"""A foot comes down no more than a `STEP` higher or deeper than the other stands, and what is higher than this over the body's level is no ground [m]: feet go up two of the highest steps from one that stands."""
 SAME = 0.02
 """Grounds nearer to each other than this are the same one [m]."""
 FLAT = np.zeros((0, 8))

@@ -13,7 +13,8 @@ import numpy as np
 from ..compiled import kernel
 from .memory import RUN, WALK
 from .root_motion import cadence_kernel
-from .tops import SAME, STEP, ground_kernel
+from ..navigation.passing import STEP
+from .tops import SAME, ground_kernel
 
 FOOT, TOE = 0.175, 0.095
 """From heel to ball and on to the toes' end [m]."""

@@ -12,9 +12,10 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
+from ..navigation.passing import STEP
 from .foot_points import shown_kernel
 from .swing import smooth
-from .tops import SAME, STEP, ground_kernel
+from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, come_down, most_speed, under_kernel
 
 ASTRAY = 0.06

@@ -30,7 +30,7 @@ def steady_velocities(library: Library, weights: np.ndarray) -> np.ndarray:
     weights = np.asarray(weights, np.float32)
     memory = np.zeros(len(weights), memory_dtype(len(library.primitives)))
     memory["weights"][:, :weights.shape[1]] = weights
-    memory["row"][:, DURATION_AT] = memory["stretch"] = memory["quick"] = 1.0
+    memory["row"][:, DURATION_AT] = memory["stretch"] = memory["pace"] = memory["quick"] = 1.0
     frames = np.zeros((len(weights), 2, 3))
     time = np.zeros(len(weights))
     _walk_cycles(memory, frames, time, 1 / 240, Settings(), body_tables(library), legs_of(library),

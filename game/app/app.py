@@ -45,7 +45,7 @@ class Play(Game):
     def open(self, wanted: comparison.Comparison) -> None:
         """Open a comparison; what it needs is learnt first, if it was not yet."""
         asked, said = self.held_points.open(wanted)
-        self._ask(asked, 0) if asked else self.kept.say(said)
+        self._answer(asked, said)
 
     def _reached(self, event: Event) -> bool:
         """Take an event that is about a point under the pointer; whether it was."""
@@ -77,7 +77,7 @@ class Play(Game):
             self.done, self.helping = not self.helping, False
         elif action.startswith("study_") or action == "study":
             asked, said = self.held_points.asked(action, self.now)
-            self._ask(asked, 0) if asked else self.kept.say(said)
+            self._answer(asked, said)
         elif action == "screenshot":
             self.wants_picture = True
         elif action == "film":
@@ -113,6 +113,13 @@ class Play(Game):
         else:
             self.kept.say(f"this is the past: {self.hands.key('resume')} plays on from here")
 
+    def _answer(self, asked: str, said: str) -> None:
+        """Do what an action came to, or tell it."""
+        if asked:
+            self._ask(asked, 0)
+        elif said:
+            self.kept.say(said)
+
     def _wish(self, wish: Wish, player: int = 0) -> None:
         """Add to what the next tick is asked for, unless the help holds everything."""
         if not self.helping:
@@ -129,6 +136,7 @@ class Play(Game):
             self._ask(due, 0) if not due.startswith("!") else self.kept.say(due[1:])
         if self.helping:
             self.held += seconds
+            self.hands.ticked()
         else:
             due, self.clock = self.clock.add(seconds)
             number = self.now.number
@@ -136,7 +144,7 @@ class Play(Game):
                 self._tick()
             self.held += (due - (self.now.number - number)) * DT
             if self.teacher is not None and self._taught and not self.now.paused:
-                self.teacher.tick(self.now, seconds)
+                self.teacher.tick(self.now, seconds, self.jumps)
         if self.sending is not None:
             self.sending.send(self.now.after)
         self.kept.save_sometimes(seconds, self.now)
@@ -159,6 +167,7 @@ class Play(Game):
             self._take_over("you play on from here")
         elif not self.watching.halted and self.jumps:  # a log may jump at once
             self._play_back(self.watching)
+        self.hands.ticked()
 
     def _advance(self, asked_for: tuple[Wish, ...]) -> None:
         before = self.now

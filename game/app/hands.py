@@ -23,12 +23,14 @@ class Heard(NamedTuple):
 
 
 class Hands:
-    """Keyboard, mouse and pads, by a table of bindings. pending: what each player asked for since the last tick."""
+    """Keyboard, mouse and pads, by a table of bindings. pending: what each player asked for since the last tick. tapped: the keys that went
+    down since then: a tap may be over before the next tick looks."""
 
     def __init__(self, bindings: Bindings):
         self.bindings, self.keyboard = bindings, Keyboard()
         self.pads: list[PadState | None] = [None] * PADS
         self.pending: dict[int, Wish] = {}
+        self.tapped: frozenset[str] = frozenset()
 
     def hear(self, event: Event, players: int, rewound: bool, captured: bool) -> Heard:
         """Take an event; those that mean nothing here are ignored.
@@ -37,11 +39,9 @@ class Hands:
         """
         match event:
             case KeyEvent(key, True):
-                self.keyboard = self.keyboard.press(key)
-                # a tap may be over before the next tick looks
-                jump = any(row.action == "jump" for row in self.bindings.rows_of(key))
+                self.keyboard, self.tapped = self.keyboard.press(key), self.tapped | {key}
                 mode = mode_of(None, self.pads, players, rewound)
-                return Heard(Wish(jump=True) if jump else None, tuple(self.bindings.pressed_by(key, mode=mode)))
+                return Heard(None, tuple(self.bindings.pressed_by(key, mode=mode)))
             case KeyEvent(key, False):
                 self.keyboard = self.keyboard.release(key)
             case MouseMove(dx=dx, dy=dy):
@@ -76,16 +76,24 @@ class Hands:
         """Whether the next tick is to do something that was pressed."""
         return any(wish.pressed for wish in self.pending.values())
 
+    def ticked(self) -> None:
+        """What was tapped has had its tick."""
+        self.tapped = frozenset()
+
+    @property
+    def _keys(self) -> Keyboard:
+        return Keyboard(self.keyboard.down | self.tapped)
+
     def wishes(self, players: int) -> tuple[Wish, ...]:
         """What every player asks for in this tick; what was pressed is asked for once."""
-        held = wishes(self.keyboard, self.pads, players, self.bindings)
+        held = wishes(self._keys, self.pads, players, self.bindings)
         asked_for = tuple(wish.merged(self.pending.get(who, Wish())).rounded() for who, wish in enumerate(held))
         self.pending.clear()
         return asked_for
 
     def holds(self, action: str) -> bool:
-        """Whether anybody holds the key or button of an action."""
-        return self.keyboard.held(action, self.bindings) or any(pad_held(pad, action, self.bindings) for pad in self.pads)
+        """Whether anybody holds the key or button of an action, or tapped it since the last tick."""
+        return self._keys.held(action, self.bindings) or any(pad_held(pad, action, self.bindings) for pad in self.pads)
 
     def sends(self, players: int) -> str:
         """With what the first player sends the character somewhere: the "pointer" as long as the key is held, the "middle" of the picture, which

@@ -74,7 +74,7 @@ class HeldPoints:
         if not missing:
             return wanted.action, ""
         self.wanted, self.learning = wanted, Learning(missing, self.methods.file)
-        return "", self._meanwhile
+        return "", ""
 
     @property
     def _meanwhile(self) -> str:

@@ -51,14 +51,14 @@ class Hints:
     opacity: float = 0.0
     time: float = 0.0
 
-    def step(self, now: Collection[str], seconds: float) -> Hints:
-        """`seconds` later, while all that is in `now` was being done."""
+    def step(self, now: Collection[str], seconds: float, early: Collection[str] = ()) -> Hints:
+        """`seconds` later, while all that is in `now` was being done. early: what nobody is taught yet."""
         spent = dict(self.spent)
         spent |= {name: spent.get(name, 0.0) + seconds for name in now if name in ORDER}
         done = self.done | {name for name, time in spent.items() if time >= NEEDS.get(name, 0.0)}
         later = replace(self, done=done, spent=tuple(spent.items()), time=self.time + seconds)
         if not self.name:
-            left = [name for name in ORDER if name not in done]
+            left = [name for name in ORDER if name not in done and name not in early]
             return replace(later, name=left[0], time=0.0) if left and later.time >= PAUSE else later
         if self.name not in done and self.time < LASTS.get(self.name, math.inf):
             return replace(later, opacity=min(self.opacity + seconds / FADE, 1.0))
@@ -151,10 +151,10 @@ class Teacher:
             case PadState(name=name) if name and (event.buttons or any(pad_wish(event, self.bindings).move)):
                 self.pad = True
 
-    def tick(self, moment: SessionState, seconds: float) -> None:
-        """`seconds` of play have led to a moment."""
+    def tick(self, moment: SessionState, seconds: float, jumps: bool = True) -> None:
+        """`seconds` of play have led to a moment. jumps: whether anybody can jump yet, and is taught to."""
         self.where = whither(moment)
-        before, self.hints = self.hints.done, self.hints.step(doing(moment), seconds)
+        before, self.hints = self.hints.done, self.hints.step(doing(moment), seconds, () if jumps else ("jump", "course"))
         if self.file is not None and self.hints.done != before:
             remember(self.file, self.hints.done)
 

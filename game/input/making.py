@@ -34,6 +34,8 @@ UNDER_WAY = 0.7
 """Who runs up to a jump faster than this [m/s] aims at it; who is slower would crouch for it."""
 LAST, BENDS = 0.3, 1.25
 """So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
+STANDS, STILL = 5.0, 0.1
+"""Who has stood for so long [s], no faster than this [m/s], on his way along a path will hardly get on."""
 AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
 
@@ -44,7 +46,7 @@ class Making:
 
     steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for; aimed: for how many it was aimed at; jumped:
     whether it began. hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
-    run_up: what it knows of its run-up.
+    run_up: what it knows of its run-up. stood: for how many steps somebody has stood on his way.
     """
 
     steps: int = 0
@@ -56,6 +58,7 @@ class Making:
     hops: tuple[float, float, float] | None = None
     hopped: tuple[float, float, float] | None = None
     run_up: RunUp = RunUp()
+    stood: int = 0
 
     def step(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
         """The same `dt` seconds later, and what is asked of a character in `state` meanwhile."""
@@ -63,7 +66,12 @@ class Making:
         now, intent = now._ask(move, state, dt)
         if move.jump is not None:
             now, intent = now._ask_jump(move, move.jump, state, intent, dt)
-        return replace(now, steps=now.steps + 1), intent
+        stands = now.path is not None and not now.jumped and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
+        return replace(now, steps=now.steps + 1, stood=now.stood + 1 if stands else 0), intent
+
+    def stuck(self, dt: float) -> bool:
+        """Whether that is to be told now: once, of every stand."""
+        return self.stood == math.ceil(STANDS / dt)
 
     def over(self, move: Move, state: CharacterState, dt: float) -> bool:
         """Whether it is done, or has been asked for long enough."""

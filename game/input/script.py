@@ -51,8 +51,13 @@ class Script:
             script = script._next(state)
         if not script.done:
             now, intent = script.now.step(script.moves[script.index], state, dt)
-            script = replace(script, now=now)
+            script = replace(script, now=now, refused=(*script.refused, script.stands) if now.stuck(dt) else script.refused)
         return script, but(intent, strike=reduce(both, hits)) if hits else intent
+
+    @property
+    def stands(self) -> str:
+        """What is told of who gets no farther."""
+        return "stands on the way to ({:g}, {:g}), which goes past nothing that is in it; go_to does".format(*self.moves[self.index].points[-1])
 
     def held(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
         """The same script, and what it asks of a character in `state` in this step, who on a run-up comes to rest before what he can't leap."""

@@ -62,6 +62,23 @@ def test_a_scenario_sends_somebody_from_goal_to_goal(walker, tmp_path):
     assert np.hypot(ground[0], ground[1] - 2.2) < 0.03 and abs(ground[2] - math.pi / 2) < math.radians(3)
 
 
+def test_who_stands_before_what_is_in_his_way_is_told_of_once(walker, tmp_path):
+    blocked = """
+title = "Blocked"
+duration = 9
+[[props]]
+centre = [0, 0.6, 2]
+size = [2, 1.2, 0.4]
+[[actors]]
+name = "A"
+moves = [{ walk_to = [0, 4] }]
+"""
+    for act in film.acts(load(written(tmp_path, blocked)), walker):
+        if act.world.time > 9:
+            break
+    assert act.refused == ("A: stands on the way to (0, 4), which goes past nothing that is in it; go_to does",)
+
+
 def test_whoever_can_not_walk_goes_on_with_his_moves():
     script, someone = Script((Move(math.inf, goal=Goal((0.0, 1.0))),)), Supervisor({"glide": Glide()})
     state = someone.start()

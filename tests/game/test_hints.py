@@ -59,6 +59,15 @@ def test_the_first_one_waits_and_the_others_go_by_themselves():
     assert after(hints, sum(LASTS.values()) + 30).done == set(ORDER)
 
 
+def test_what_can_not_be_done_yet_is_not_taught():
+    """A jump that is still being compiled."""
+    hints = Hints(frozenset(["walk", "run"]))
+    for _ in range(200):
+        hints = hints.step((), TICK, early=("jump", "course"))
+        assert hints.name in ("", "study")
+    assert after(Hints(frozenset(["walk", "run"])), 2.0).name == "jump"
+
+
 def test_keys_are_called_as_they_are_bound():
     assert worded("walk", DEFAULT, False) == (("W", True), ("A", True), ("S", True), ("D", True), ("to walk", False))
     assert worded("walk", DEFAULT, True)[0] == ("left stick", True)

@@ -9,7 +9,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
-from stairs import ran, walked  # noqa: E402
+from gambol.controllers.contract import Intent  # noqa: E402
+from stairs import flight, ran, walked  # noqa: E402
 
 
 @settings(max_examples=10, deadline=None)
@@ -36,6 +37,19 @@ def test_who_runs_goes_on_running_over_a_kerb(locomotion, rise, width, height, s
     assert not found.falls and found.standing < 0.015 and found.deep.max() < 0.06
     assert np.mean(found.deep > 0.01) < 0.005 and found.labels < 0.003
     assert found.jerk < 80e3
+
+
+def test_short_steps_are_brisk(locomotion):
+    """People climb at some 1.7 steps a second: who must take short steps takes more of them than the slow walk whose steps they are."""
+    around, end = flight(0.17, 0.29, 1.0)
+    state = locomotion.start()
+    wish = Intent(np.array([1.3, 0.0, 0.0]), around=around)
+    on = 0
+    for _ in range(900):
+        state, _ = locomotion.step(state, wish, 1 / 60)
+        on += 2.29 < state.ground[1] < 2.0 + 5 * 0.29
+    assert state.ground[1] > end, "up and down again"
+    assert 0.45 < 4 * 0.29 / (on / 60) < 0.7
 
 
 @pytest.mark.parametrize("height, rise", ((1.2, 0.25), (1.74, 0.33)))

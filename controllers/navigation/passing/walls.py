@@ -15,8 +15,8 @@ from ...compiled import kernel
 from ..obstacles import is_box, is_pillar, slope
 from ..routes import distance
 
-STEPS, HEAD = 0.26, 1.7
-"""What is no higher over the floor is stepped on, what hangs higher is walked under [m]."""
+STEP, HEAD = 0.30, 1.7
+"""What is no higher over the floor is stepped on, by a child of 1.2 m 20 cm; what hangs higher is walked under [m]."""
 NEAR = 0.18
 """How near to its middle a body of usual size lets walls come [m]."""
 EDGE = 0.04
@@ -46,7 +46,7 @@ def wall_kernel(walls, k, x, z, floor, bound, out):
     """How far [m] a place on a floor [m] is from one of `walls_of`, endless where that holds nobody up; out: (3,) as `distance` has it. Of what is no nearer
     than a bound [m], whether it holds anybody up is not asked."""
     low, high = walls[k, 6], walls[k, 7]
-    if walls[k, 8] != 0.0 or high <= floor + STEPS or low >= floor + HEAD:
+    if walls[k, 8] != 0.0 or high <= floor + STEP or low >= floor + HEAD:
         return math.inf
     far = distance(x, z, walls[k, :6], out)
     if far >= bound:
@@ -62,7 +62,7 @@ def wall_kernel(walls, k, x, z, floor, bound, out):
         top = walls[i, 7] + walls[i, 8] * along
         if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= high - EDGE:
             before = top
-    return far if high > before + STEPS else math.inf
+    return far if high > before + STEP else math.inf
 
 
 @kernel
