@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel
+from .first_stride import shift_left
 from .last_stride import AHEAD, NOWHERE, STOPS, lets_go, time_to_stop, to_halt
 from .root_motion import short_way
 
@@ -36,7 +37,8 @@ def heed_halt(m, wish, settings, table, dt):
         if math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) <= THERE and abs(turn) <= STRAIGHT:
             wish[0] = wish[1] = wish[2] = 0.0
         return
-    if m.halts == AHEAD and lets_go(m, settings, table):
+    # who sets off makes a step: one who stands beside the place would let go of it at once, and stand and set off in turns
+    if m.halts == AHEAD and shift_left(m) <= 0.0 and lets_go(m, settings, table):
         m.halts = STOPS
     if m.halts >= STOPS:
         wish[0] = wish[2] = 0.0

@@ -98,3 +98,15 @@ def test_random_scripts_end_where_they_end_at_any_rate(locomotion):
         apart.extend(np.hypot(*(ends[1] - ends[2]).T))
     # a wish that changes in the very tick in which a run may become a walk is heeded at once at one rate and a step later at the other
     assert np.median(apart) < 0.01 and np.mean(np.array(apart) > 0.1) < 1 / 6
+
+
+def test_who_stands_beside_his_place_steps_to_it(locomotion):
+    """However timidly he wishes to: he doesn't stand and set off in turns."""
+    state, stood = locomotion.start(np.zeros((4, 3))), []
+    wish = Intent(np.array([[0.0, 0.0, 0.08], [0.0, 0.0, -0.08], [0.08, 0.0, 0.0], [-0.08, 0.0, 0.0]]),
+                  halt=np.array([[0.05, 0.0, 0.0], [-0.05, 0.0, 0.0], [0.0, 0.05, 0.0], [0.0, -0.05, 0.0]]))
+    for _ in range(150):
+        state, _ = locomotion.step(state, wish, 1 / 60)
+        stood.append(state.memory["settled"])
+    assert (np.abs(np.diff(stood, axis=0)).sum(0) <= 4).all()
+    assert np.linalg.norm(state.ground[:, :2] - wish.halt[:, :2], axis=-1).max() < 0.03
