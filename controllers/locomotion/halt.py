@@ -21,6 +21,8 @@ BENDS = 0.1
 """… and before with this half-life [s]."""
 SPARES = 0.9
 """Of the square of his push so much is had for that and for braking."""
+STEP, IN = 0.2, 0.35
+"""What is no farther is a step away [m], which takes so long [s]."""
 SOONEST = 0.25
 """A turn that is left takes at least this long [s]."""
 
@@ -36,15 +38,28 @@ def heed_halt(m, wish, settings, table, dt):
         m.halts = AHEAD
         if math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) <= THERE and abs(turn) <= STRAIGHT:
             wish[0] = wish[1] = wish[2] = 0.0
+        else:
+            _step_there(m, wish)
         return
-    # who sets off makes a step: one who stands beside the place would let go of it at once, and stand and set off in turns
-    if m.halts == AHEAD and shift_left(m) <= 0.0 and lets_go(m, settings, table):
+    if m.halts == AHEAD and shift_left(m) > 0.0:  # who let go as he sets off beside the place would stand and set off in turns
+        _step_there(m, wish)
+    elif m.halts == AHEAD and lets_go(m, settings, table):
         m.halts = STOPS
     if m.halts >= STOPS:
         wish[0] = wish[2] = 0.0
         wish[1] = 2.0 * turn / max(time_to_stop(m, settings, table), SOONEST)
         if m.halts == STOPS and m.stop > 0.0 and to_halt(m) > NEAR and m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0:
             _bend(m, settings.acceleration * settings.agility, dt)
+
+
+@kernel
+def _step_there(m, wish):
+    """Let somebody who sets off to what is a step away wish to be there in a step's time, whatever else he wishes."""
+    x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
+    far = math.hypot(x, z)
+    if THERE < far < STEP:
+        c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+        wish[0], wish[2] = (s * x + c * z) / IN, (c * x - s * z) / IN
 
 
 @kernel
