@@ -13,10 +13,12 @@ from ..body import centre_of_mass, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import FEET, TOUCHES, faded, grounded_poses, places
 from .capture import FALLS
-from .held_falls import chosen, flesh, held, under
+from .ground import ground_about, level_kernel, rest_kernel
+from .held_falls import chosen, flesh, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
-from .surroundings import NOTHING, STEP
+from .settled import settled
+from .surroundings import NOTHING
 
 PACES = 0.9, 1.35
 """Falls are played at these shares of their recorded pace, until they strike the floor; from there on in WEARS seconds at their own."""
@@ -33,7 +35,8 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     of `about`."""
     flat = start.velocity[[0, 2]]
     pace = float(np.hypot(*flat))
-    fall, turn = chosen(physique, falls(physique), start.centre, math.atan2(flat[0], flat[1]), start.heading, floor, things)
+    ground = ground_about(things, start.centre[[0, 2]], floor) if len(things) else None
+    fall, turn = chosen(physique, falls(physique), start.centre, math.atan2(flat[0], flat[1]), start.heading, floor, ground)
     times, shown, toppled = _paced(fall, pace, rate)
     facing = start.heading + turn * np.clip(times / toppled, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(times / toppled, 0.0, 1.0))
     local = fall.turns(shown)
@@ -46,19 +49,23 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
     roots, centres = roots + slip, centres + slip
     positions, turned = forward_kinematics(physique.skeleton, roots, local)
-    if len(things):
-        off = held(*flesh(physique, positions, turned), floor, things)
-        roots, centres, positions = roots + off, centres + off, positions + off[:, None]
-        over = over + off[:, 1:2]
+    over, floors, supported = over[:, -FEET:], np.full(len(times), floor), True
+    if ground is not None:
+        roots = roots + held(*flesh(physique, positions, turned), floor, ground)
+        roots, local = settled(physique, roots, local, floor, float(start.root[1]), ground)
+        positions, turned = forward_kinematics(physique.skeleton, roots, local)
+        centres = centre_of_mass(physique.anatomy, positions, turned)
+        level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
+        supported = not np.isnan(floors).any()
+        floors = np.where(np.isnan(floors), floor, floors)
+        soles, rests = flesh(physique, positions, turned), np.empty((len(times), FEET))
+        rest_kernel(ground.things, ground.corner, ground.caps, soles[0][:, -FEET:], soles[1][-FEET:], rests)
+        over = soles[0][:, -FEET:, 1] - rests
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
     slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
-    contacts = slow & (over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
-    floors = np.full(len(times), floor)
-    if len(things):
-        floors = np.where(times > toppled, under(things, centres, floor), floor)
-        contacts &= (floors > floor - STEP)[:, None]
-    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors)
+    contacts = slow & (over.reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
+    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors, supported)
 
 
 def _paced(fall: Fall, pace: float, rate: float) -> tuple[np.ndarray, np.ndarray, float]:
