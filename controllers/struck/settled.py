@@ -1,0 +1,154 @@
+"""Lying on uneven ground: a fall that was recorded on a level floor, bent so that what lay on that lies on treads and edges.
+
+Every place of the body is to be as high over the ground as it was over the floor, the more so the nearer it was, and nothing below it. How the pelvis is turned and spine, neck,
+hips, knees, ankles, shoulders and elbows are bent for that is found by least squares for all moments at once, with as little as can be and evenly in time.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ..body import Skeleton, exp, forward_kinematics, log
+from ..jump.body import Physique
+from ..jump.motion import FEET
+from .ground import Ground, rest_kernel
+from .held_falls import flesh
+
+EVERY = 4
+"""So many moments of the fall are one of these."""
+ROUNDS = 8
+NEAR, HARD = 0.10, 3.0
+"""What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much."""
+STIFF, UPRIGHT, EVEN = 1e-3, 0.06, 0.15
+"""What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie; and that either changes its rate by 1 rad between moments."""
+BEGINS = 1e3
+"""How firmly it begins as it was."""
+LEVEL = 1e-3
+"""Ground that is no more uneven under a body [m] is level."""
+LEAST, LOCKED = 0.03, 3.0
+"""Knees and elbows are bent by no less [rad], and how firmly so."""
+
+
+class Bends(NamedTuple):
+    """What bends: B joints or hinges. joints: (B,); axes: (B,) 0, 1, 2 in the parent's frame, or, of hinges, in their own; hinges: (B,) 0 of none, else the sense in which it bends.
+    moves: (P, B) which places of the flesh it moves."""
+
+    joints: np.ndarray
+    axes: np.ndarray
+    hinges: np.ndarray
+    moves: np.ndarray
+
+
+@lru_cache(maxsize=16)
+def _bends(physique: Physique) -> Bends:
+    skeleton = physique.skeleton
+    rows = [(skeleton.index(name), axis, 0.0) for name in ("Hips", "Spine", "Neck", "LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm") for axis in range(3)]
+    for side, sense in (("Left", -1.0), ("Right", 1.0)):
+        rows += [(skeleton.index(side + "Leg"), 0, 1.0), (skeleton.index(side + "ForeArm"), 1, sense), (skeleton.index(side + "Foot"), 0, 0.0)]
+    joints, axes, hinges = np.array([row[0] for row in rows]), np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
+    # a place is moved by a joint if it moves as that joint turns
+    still = np.tile(np.eye(3), (1, len(skeleton), 1, 1))
+    base = flesh(physique, *forward_kinematics(skeleton, np.zeros((1, 3)), still))[0][0]
+    moves = np.zeros((len(base), len(rows)), bool)
+    for joint in set(joints.tolist()):
+        moved = np.zeros(len(base), bool)
+        for axis in np.eye(3):
+            other = still.copy()
+            other[0, joint] = exp(0.3 * axis)
+            moved |= np.linalg.norm(flesh(physique, *forward_kinematics(skeleton, np.zeros((1, 3)), other))[0][0] - base, axis=1) > 1e-9
+        moves[:, joints == joint] = moved[:, None]
+    return Bends(joints, axes, hinges, moves)
+
+
+def settled(physique: Physique, roots: np.ndarray, local: np.ndarray, floor: float, begins: float, ground: Ground) -> tuple[np.ndarray, np.ndarray]:
+    """Roots (N, 3) and joints' rotations (N, J, 3, 3) of a body that lies on the ground as it would on a level floor [m]. roots, local: how it lies on that. begins: how high its root is at
+    first [m]."""
+    from scipy.interpolate import CubicSpline  # no game waits for it at its start
+
+    bends, skeleton = _bends(physique), physique.skeleton
+    keys = np.unique(np.append(np.arange(0, len(roots), EVERY), len(roots) - 1))
+    root, turns = roots[keys].copy(), local[keys]
+    points, thick = flesh(physique, *forward_kinematics(skeleton, root, turns))
+    clear = points[..., 1] - thick - floor
+    rests = np.empty(points.shape[:2])
+    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, rests)
+    if np.abs(rests - thick - floor).max() < LEVEL:
+        return roots, local
+    lies = np.exp(-((clear[:, :-FEET].min(1) / (2.5 * NEAR * physique.size)) ** 2))
+    near = np.exp(-((clear / (NEAR * physique.size)) ** 2))
+    bent = np.zeros((len(keys), 1 + len(bends.joints)))
+    bent[:, 0] = begins - root[0, 1]
+    for _ in range(ROUNDS):
+        bent += _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground)
+    every = CubicSpline(keys, bent)(np.arange(len(roots)))
+    return roots + every[:, :1] * [0.0, 1.0, 0.0], _turned(local, bends, every[:, 1:])
+
+
+def _turned(local: np.ndarray, bends: Bends, by: np.ndarray) -> np.ndarray:
+    """Rotations (N, J, 3, 3), bent by (N, B) [rad]."""
+    local = local.copy()
+    for joint in dict.fromkeys(bends.joints.tolist()):
+        own = bends.joints == joint
+        vector = np.zeros((len(local), 3))
+        vector[:, bends.axes[own]] = by[:, own]
+        local[:, joint] = exp(vector) @ local[:, joint] if own.sum() == 3 else local[:, joint] @ exp(vector)
+    return local
+
+
+def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground: Ground) -> np.ndarray:
+    """What is to be added (N, 1 + B) to how high roots are and how far joints are bent: one step of Gauss and Newton over all moments."""
+    from scipy.linalg import solveh_banded  # no game waits for it at its start
+
+    skeleton = physique.skeleton
+    local = _turned(turns, bends, bent[:, 1:])
+    positions, turned = forward_kinematics(skeleton, root + bent[:, :1] * [0.0, 1.0, 0.0], local)
+    points, _ = flesh(physique, positions, turned)
+    rests = np.empty(points.shape[:2])
+    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, rests)
+    lacks = rests - points[..., 1]
+    weight, miss = near.copy(), lacks + clear
+    deep = lacks > 0.0
+    weight[deep], miss[deep] = HARD, lacks[deep] + np.minimum(clear[deep], 0.0)
+    jacobian = _jacobian(skeleton, bends, positions, turned, points)
+    count, wide = jacobian.shape[0], jacobian.shape[2]
+    square = np.einsum("npa,np,npb->nab", jacobian, weight, jacobian, optimize=True)
+    right = np.einsum("npa,np->na", jacobian, weight * miss)
+    cost = np.full((count, wide), STIFF)
+    cost[:, 1:4] = 0.1 * STIFF + UPRIGHT * (1.0 - lies[:, None])
+    cost[:, 0] = 0.0
+    cost[:2] = BEGINS
+    right[2:] -= cost[2:] * bent[2:]
+    diagonal = np.arange(wide)
+    square[:, diagonal, diagonal] += cost
+    hinged = np.flatnonzero(bends.hinges)
+    now = log(local[:, bends.joints[hinged]])[:, np.arange(len(hinged)), bends.axes[hinged]] * bends.hinges[hinged]
+    short = np.maximum(LEAST - now, 0.0)
+    right[:, 1 + hinged] += LOCKED * short * bends.hinges[hinged]
+    square[:, 1 + hinged, 1 + hinged] += LOCKED * (short > 0.0)
+    banded = np.zeros((2 * wide + 1, count * wide))  # upper form, see scipy
+    for column in range(wide):
+        for row in range(column + 1):
+            banded[2 * wide + row - column, column::wide] = square[:, row, column]
+    bends_evenly = np.diff(np.eye(count), 2, axis=0)
+    bends_evenly = bends_evenly.T @ bends_evenly
+    right -= EVEN * bends_evenly @ bent
+    for far in range(3):
+        banded[(2 - far) * wide, far * wide:] += EVEN * np.repeat(np.diagonal(bends_evenly, far), wide)
+    return solveh_banded(banded, right.ravel()).reshape(count, wide)
+
+
+def _jacobian(skeleton: Skeleton, bends: Bends, positions, turned, points) -> np.ndarray:
+    """How much higher (N, P, 1 + B) places are for the root's height and each bend."""
+    out = np.ones((len(points), points.shape[1], 1 + len(bends.joints)))
+    for b, (joint, axis, own) in enumerate(zip(bends.joints.tolist(), bends.axes.tolist(), (np.bincount(bends.joints)[bends.joints] < 3).tolist())):
+        if own:
+            line = turned[:, joint, :, axis]
+        else:
+            parent = skeleton.parents[joint]
+            line = turned[:, parent, :, axis] if parent >= 0 else np.broadcast_to(np.eye(3)[axis], (len(points), 3))
+        arm = points - positions[:, joint, None]
+        out[..., 1 + b] = (line[:, None, 2] * arm[..., 0] - line[:, None, 0] * arm[..., 2]) * bends.moves[:, b]
+    return out
