@@ -77,29 +77,42 @@ def cell_kernel(corner, cells, x, z, beyond):
 
 
 @kernel
-def rests_kernel(things, corner, caps, x, z, thick):
-    """How high [m] the middle of a ball of a radius `thick` [m] is that lies on the ground at a place, on treads' edges, too."""
-    cap = cell_kernel(corner, caps, x, z, -math.inf)
-    height = thick
+def rests_kernel(things, corner, caps, place, thick, aside, out):
+    """How high [m] the middle of a ball of a radius `thick` [m] is that lies on the ground at a place (3,), on treads' edges, too. Where it is nearer to what is beside a tread than to its top, and
+    may go `aside`, the way (2,) there is written instead [m]."""
+    cap = cell_kernel(corner, caps, place[0], place[2], -math.inf)
+    height, most = thick, 0.0
+    out[:] = 0.0
     for k in range(len(things)):
-        if things[k, 3] < 0.0 or things[k, 7] > cap + 10.0 * abs(things[k, 8]):
+        if things[k, 3] < 0.0:
             continue
-        dx, dz = x - things[k, 0], z - things[k, 1]
-        left, ahead = things[k, 4] * dx - things[k, 5] * dz, things[k, 5] * dx + things[k, 4] * dz
-        along = min(max(ahead, -things[k, 3]), things[k, 3])
-        far = math.hypot(max(abs(left) - things[k, 2], 0.0), ahead - along)
-        top = things[k, 7] + things[k, 8] * along
-        if far < thick and top <= cap:
-            height = max(height, top + math.sqrt(thick * thick - far * far) * math.sqrt(1.0 + things[k, 8] ** 2))
+        c, s = things[k, 4], things[k, 5]
+        dx, dz = place[0] - things[k, 0], place[2] - things[k, 1]
+        left, ahead = c * dx - s * dz, s * dx + c * dz
+        a, b = abs(left) - things[k, 2], abs(ahead) - things[k, 3]
+        far = math.hypot(max(a, 0.0), max(b, 0.0))
+        top = things[k, 7] + things[k, 8] * min(max(ahead, -things[k, 3]), things[k, 3])
+        if far >= thick or top > cap:
+            continue
+        lies = top + math.sqrt(thick * thick - far * far) * math.sqrt(1.0 + things[k, 8] ** 2)
+        beside = thick - (far if far > 0.0 else max(a, b))
+        if aside and things[k, 8] == 0.0 and beside < lies - place[1]:
+            if beside > most:
+                most = beside
+                across = math.copysign(beside, left) if a > b else 0.0
+                along = 0.0 if a > b else math.copysign(beside, ahead)
+                out[0], out[1] = c * across + s * along, c * along - s * across
+        else:
+            height = max(height, lies)
     return height
 
 
 @kernel
-def rest_kernel(things, corner, caps, points, thick, out):
-    """Write how high (N, P) [m] balls would lie at the places (N, P, 3) of their middles, see `rests_kernel`."""
+def rest_kernel(things, corner, caps, points, thick, aside, out, ways):
+    """Write how high (N, P) [m] balls would lie at the places (N, P, 3) of their middles, and what leads them aside (N, P, 2) [m], see `rests_kernel`."""
     for n in range(len(points)):
         for p in range(len(thick)):
-            out[n, p] = rests_kernel(things, corner, caps, points[n, p, 0], points[n, p, 2], thick[p])
+            out[n, p] = rests_kernel(things, corner, caps, points[n, p], thick[p], aside, ways[n, p])
 
 
 @kernel

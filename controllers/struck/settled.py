@@ -19,10 +19,11 @@ from .held_falls import flesh
 
 EVERY = 4
 """So many moments of the fall are one of these."""
-ROUNDS = 8
-NEAR, HARD = 0.10, 3.0
-"""What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much."""
-STIFF, UPRIGHT, EVEN = 1e-3, 0.06, 0.15
+ROUNDS, DAMPED, FARTHEST = 16, 0.05, 0.12
+"""So many steps of least squares, damped by so much, each of which lets no place rise or sink by more than this [m]."""
+NEAR, HARD, SINKS = 0.10, 3.0, 0.15
+"""What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much, and what is over it this."""
+STIFF, UPRIGHT, EVEN = 1e-2, 0.3, 0.15
 """What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie; and that either changes its rate by 1 rad between moments."""
 BEGINS = 1e3
 """How firmly it begins as it was."""
@@ -73,18 +74,18 @@ def settled(physique: Physique, roots: np.ndarray, local: np.ndarray, floor: flo
     root, turns = roots[keys].copy(), local[keys]
     points, thick = flesh(physique, *forward_kinematics(skeleton, root, turns))
     clear = points[..., 1] - thick - floor
-    rests = np.empty(points.shape[:2])
-    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, rests)
+    rests, ways = np.empty(points.shape[:2]), np.empty((*points.shape[:2], 2))
+    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, False, rests, ways)
     if np.abs(rests - thick - floor).max() < LEVEL:
         return roots, local
     lies = np.exp(-((clear[:, :-FEET].min(1) / (2.5 * NEAR * physique.size)) ** 2))
     near = np.exp(-((clear / (NEAR * physique.size)) ** 2))
-    bent = np.zeros((len(keys), 1 + len(bends.joints)))
-    bent[:, 0] = begins - root[0, 1]
-    for _ in range(ROUNDS):
-        bent += _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground)
+    bent = np.zeros((len(keys), 3 + len(bends.joints)))
+    bent[:, 1] = begins - root[0, 1]
+    for n in range(ROUNDS):
+        bent += _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground, n > ROUNDS // 2)
     every = CubicSpline(keys, bent)(np.arange(len(roots)))
-    return roots + every[:, :1] * [0.0, 1.0, 0.0], _turned(local, bends, every[:, 1:])
+    return roots + every[:, :3], _turned(local, bends, every[:, 3:])
 
 
 def _turned(local: np.ndarray, bends: Bends, by: np.ndarray) -> np.ndarray:
@@ -98,36 +99,47 @@ def _turned(local: np.ndarray, bends: Bends, by: np.ndarray) -> np.ndarray:
     return local
 
 
-def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground: Ground) -> np.ndarray:
-    """What is to be added (N, 1 + B) to how high roots are and how far joints are bent: one step of Gauss and Newton over all moments."""
+def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground: Ground, aside: bool) -> np.ndarray:
+    """What is to be added (N, 3 + B) to where roots are and how far joints are bent: one step of Gauss and Newton over all moments. aside: what is beside a tread may go out of it that way."""
     from scipy.linalg import solveh_banded  # no game waits for it at its start
 
     skeleton = physique.skeleton
-    local = _turned(turns, bends, bent[:, 1:])
-    positions, turned = forward_kinematics(skeleton, root + bent[:, :1] * [0.0, 1.0, 0.0], local)
+    local = _turned(turns, bends, bent[:, 3:])
+    positions, turned = forward_kinematics(skeleton, root + bent[:, :3], local)
     points, _ = flesh(physique, positions, turned)
-    rests = np.empty(points.shape[:2])
-    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, rests)
+    rests, ways = np.empty(points.shape[:2]), np.empty((*points.shape[:2], 2))
+    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, aside, rests, ways)
     lacks = rests - points[..., 1]
-    weight, miss = near.copy(), lacks + clear
+    weight, miss = SINKS * near, lacks + clear
+    soles = miss[:, -FEET:].reshape(-1, 2, FEET // 2)
+    soles[:] = soles.max(2, keepdims=True)  # a sole sinks as far as all of it can
+    rises = miss > 0.0
+    weight[rises] = near[rises]
     deep = lacks > 0.0
     weight[deep], miss[deep] = HARD, lacks[deep] + np.minimum(clear[deep], 0.0)
-    jacobian = _jacobian(skeleton, bends, positions, turned, points)
-    count, wide = jacobian.shape[0], jacobian.shape[2]
+    miss, far = np.clip(miss, -FARTHEST, FARTHEST), np.linalg.norm(ways, axis=-1)
+    moves = _jacobian(skeleton, bends, positions, turned, points)
+    jacobian = moves[..., 1, :]
     square = np.einsum("npa,np,npb->nab", jacobian, weight, jacobian, optimize=True)
     right = np.einsum("npa,np->na", jacobian, weight * miss)
+    if far.any():
+        way = ways / np.maximum(far, 1e-9)[..., None]
+        jacobian = np.einsum("npi,npia->npa", way, moves[..., ::2, :])
+        square += HARD * np.einsum("npa,npb->nab", jacobian, jacobian, optimize=True)
+        right += HARD * np.einsum("npa,np->na", jacobian, np.minimum(far, FARTHEST))
+    count, wide = right.shape
     cost = np.full((count, wide), STIFF)
-    cost[:, 1:4] = 0.1 * STIFF + UPRIGHT * (1.0 - lies[:, None])
-    cost[:, 0] = 0.0
+    cost[:, :3] = STIFF, 0.0, STIFF
+    cost[:, 3:6] = 0.1 * STIFF + UPRIGHT * (1.0 - lies[:, None])
     cost[:2] = BEGINS
     right[2:] -= cost[2:] * bent[2:]
     diagonal = np.arange(wide)
-    square[:, diagonal, diagonal] += cost
+    square[:, diagonal, diagonal] += cost + DAMPED
     hinged = np.flatnonzero(bends.hinges)
     now = log(local[:, bends.joints[hinged]])[:, np.arange(len(hinged)), bends.axes[hinged]] * bends.hinges[hinged]
     short = np.maximum(LEAST - now, 0.0)
-    right[:, 1 + hinged] += LOCKED * short * bends.hinges[hinged]
-    square[:, 1 + hinged, 1 + hinged] += LOCKED * (short > 0.0)
+    right[:, 3 + hinged] += LOCKED * short * bends.hinges[hinged]
+    square[:, 3 + hinged, 3 + hinged] += LOCKED * (short > 0.0)
     banded = np.zeros((2 * wide + 1, count * wide))  # upper form, see scipy
     for column in range(wide):
         for row in range(column + 1):
@@ -141,14 +153,12 @@ def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground
 
 
 def _jacobian(skeleton: Skeleton, bends: Bends, positions, turned, points) -> np.ndarray:
-    """How much higher (N, P, 1 + B) places are for the root's height and each bend."""
-    out = np.ones((len(points), points.shape[1], 1 + len(bends.joints)))
-    for b, (joint, axis, own) in enumerate(zip(bends.joints.tolist(), bends.axes.tolist(), (np.bincount(bends.joints)[bends.joints] < 3).tolist())):
-        if own:
-            line = turned[:, joint, :, axis]
-        else:
-            parent = skeleton.parents[joint]
-            line = turned[:, parent, :, axis] if parent >= 0 else np.broadcast_to(np.eye(3)[axis], (len(points), 3))
-        arm = points - positions[:, joint, None]
-        out[..., 1 + b] = (line[:, None, 2] * arm[..., 0] - line[:, None, 0] * arm[..., 2]) * bends.moves[:, b]
+    """Whither (N, P, 3, 3 + B) places go for the root's place and each bend."""
+    out = np.zeros((*points.shape, 3 + len(bends.joints)))
+    out[..., :3] = np.eye(3)
+    alone = np.bincount(bends.joints)[bends.joints] < 3
+    for b, (joint, axis) in enumerate(zip(bends.joints.tolist(), bends.axes.tolist())):
+        parent = skeleton.parents[joint]
+        line = turned[:, joint, :, axis] if alone[b] else turned[:, parent, :, axis] if parent >= 0 else np.eye(3)[axis][None]
+        out[..., 3 + b] = np.cross(line[:, None], points - positions[:, joint, None]) * bends.moves[:, b, None]
     return out

@@ -59,7 +59,7 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
         supported = not np.isnan(floors).any()
         floors = np.where(np.isnan(floors), floor, floors)
         soles, rests = flesh(physique, positions, turned), np.empty((len(times), FEET))
-        rest_kernel(ground.things, ground.corner, ground.caps, soles[0][:, -FEET:], soles[1][-FEET:], rests)
+        rest_kernel(ground.things, ground.corner, ground.caps, soles[0][:, -FEET:], soles[1][-FEET:], False, rests, np.empty((len(times), FEET, 2)))
         over = soles[0][:, -FEET:, 1] - rests
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
