@@ -17,10 +17,12 @@ from ..jump.motion import FEET
 from .ground import Ground, rest_kernel
 from .held_falls import flesh
 
-EVERY = 4
+EVERY = 5
 """So many moments of the fall are one of these."""
-ROUNDS, DAMPED, FARTHEST = 16, 0.05, 0.12
+ROUNDS, DAMPED, FARTHEST = 12, 0.05, 0.12
 """So many steps of least squares, damped by so much, each of which lets no place rise or sink by more than this [m]."""
+HANGS = 0.25
+"""What is farther over the ground than this [m] hangs."""
 NEAR, HARD, SINKS = 0.10, 3.0, 0.15
 """What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much, and what is over it this."""
 STIFF, UPRIGHT, EVEN = 1e-2, 0.3, 0.15
@@ -110,7 +112,8 @@ def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground
     rests, ways = np.empty(points.shape[:2]), np.empty((*points.shape[:2], 2))
     rest_kernel(ground.things, ground.corner, ground.caps, points, thick, aside, rests, ways)
     lacks = rests - points[..., 1]
-    weight, miss = SINKS * near, lacks + clear
+    miss = lacks + clear
+    weight = SINKS * near * np.exp(-((miss / HANGS) ** 2))
     soles = miss[:, -FEET:].reshape(-1, 2, FEET // 2)
     soles[:] = soles.max(2, keepdims=True)  # a sole sinks as far as all of it can
     rises = miss > 0.0
@@ -118,21 +121,20 @@ def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground
     deep = lacks > 0.0
     weight[deep], miss[deep] = HARD, lacks[deep] + np.minimum(clear[deep], 0.0)
     miss, far = np.clip(miss, -FARTHEST, FARTHEST), np.linalg.norm(ways, axis=-1)
-    moves = _jacobian(skeleton, bends, positions, turned, points)
-    jacobian = moves[..., 1, :]
-    square = np.einsum("npa,np,npb->nab", jacobian, weight, jacobian, optimize=True)
-    right = np.einsum("npa,np->na", jacobian, weight * miss)
-    if far.any():
-        way = ways / np.maximum(far, 1e-9)[..., None]
-        jacobian = np.einsum("npi,npia->npa", way, moves[..., ::2, :])
-        square += HARD * np.einsum("npa,npb->nab", jacobian, jacobian, optimize=True)
-        right += HARD * np.einsum("npa,np->na", jacobian, np.minimum(far, FARTHEST))
+    square, right = 0.0, 0.0
+    beside = np.stack([ways[..., 0], 0.0 * far, ways[..., 1]], -1) / np.maximum(far, 1e-9)[..., None]
+    for way, heavy, short in ((np.broadcast_to([0.0, 1.0, 0.0], points.shape), weight, miss), (beside, HARD, np.minimum(far, FARTHEST))):
+        moves = _jacobian(skeleton, bends, positions, turned, points, way)
+        heavier = (moves * np.broadcast_to(heavy, miss.shape)[..., None]).swapaxes(1, 2)
+        square, right = square + heavier @ moves, right + (heavier @ short[..., None])[..., 0]
+        if not far.any():
+            break
     count, wide = right.shape
     cost = np.full((count, wide), STIFF)
     cost[:, :3] = STIFF, 0.0, STIFF
     cost[:, 3:6] = 0.1 * STIFF + UPRIGHT * (1.0 - lies[:, None])
-    cost[:2] = BEGINS
-    right[2:] -= cost[2:] * bent[2:]
+    cost[0] += BEGINS
+    right[1:] -= cost[1:] * bent[1:]
     diagonal = np.arange(wide)
     square[:, diagonal, diagonal] += cost + DAMPED
     hinged = np.flatnonzero(bends.hinges)
@@ -152,13 +154,10 @@ def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground
     return solveh_banded(banded, right.ravel()).reshape(count, wide)
 
 
-def _jacobian(skeleton: Skeleton, bends: Bends, positions, turned, points) -> np.ndarray:
-    """Whither (N, P, 3, 3 + B) places go for the root's place and each bend."""
-    out = np.zeros((*points.shape, 3 + len(bends.joints)))
-    out[..., :3] = np.eye(3)
+def _jacobian(skeleton: Skeleton, bends: Bends, positions, turned, points, ways) -> np.ndarray:
+    """How far (N, P, 3 + B) places go along `ways` (N, P, 3) for the root's place and each bend."""
     alone = np.bincount(bends.joints)[bends.joints] < 3
-    for b, (joint, axis) in enumerate(zip(bends.joints.tolist(), bends.axes.tolist())):
-        parent = skeleton.parents[joint]
-        line = turned[:, joint, :, axis] if alone[b] else turned[:, parent, :, axis] if parent >= 0 else np.eye(3)[axis][None]
-        out[..., 3 + b] = np.cross(line[:, None], points - positions[:, joint, None]) * bends.moves[:, b, None]
-    return out
+    frames = np.where(alone, bends.joints, skeleton.parents[bends.joints])
+    lines = np.where((frames < 0)[:, None], np.eye(3)[bends.axes], turned[:, frames, :, bends.axes].swapaxes(0, 1))
+    bent = np.cross(points, ways) @ lines.swapaxes(1, 2) - ways @ np.cross(lines, positions[:, bends.joints]).swapaxes(1, 2)
+    return np.concatenate([ways, bent * bends.moves], 2)
