@@ -22,11 +22,15 @@ EVERY = 5
 ROUNDS, DAMPED, FARTHEST = 12, 0.05, 0.12
 """So many steps of least squares, damped by so much, each of which lets no place rise or sink by more than this [m]."""
 HANGS = 0.25
-"""What is farther over the ground than this [m] hangs."""
+"""What is farther over the ground than this [m], where something else lies on it, hangs."""
 NEAR, HARD, SINKS = 0.10, 3.0, 0.15
 """What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much, and what is over it this."""
 STIFF, UPRIGHT, EVEN = 1e-2, 0.3, 0.15
 """What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie; and that either changes its rate by 1 rad between moments."""
+LED, MOST = np.linspace(-0.3, 0.3, 25), 0.24
+"""So far [m] a body may be led aside so that it gets up where its feet stand, one no higher than so much [m] over the other."""
+STUBS, HANGING, APART = 1.0, 0.05, 0.1
+"""What it costs there [m] that a heel or tip is in what is higher than its ball, hangs over an edge, and that feet are not on one level."""
 BEGINS = 1e3
 """How firmly it begins as it was."""
 LEVEL = 1e-3
@@ -43,6 +47,24 @@ class Bends(NamedTuple):
     axes: np.ndarray
     hinges: np.ndarray
     moves: np.ndarray
+
+
+def footing(soles: np.ndarray, thick: np.ndarray, ground: Ground) -> tuple[np.ndarray, float]:
+    """Whither (2,) x, z [m] a body is led so that it gets up where its feet stand on treads, and how high [m] the lower one stands there. soles: (6, 3) heel, ball and tip of either foot where it would
+    stand on a level floor, thick: (6,) [m]."""
+    x, z = (part.ravel() for part in np.meshgrid(LED, LED))
+    led = np.stack([x, z], -1)
+    places = np.repeat(soles[None], len(led), 0)
+    places[..., [0, 2]] += led[:, None]
+    rests = np.empty(places.shape[:2])
+    rest_kernel(ground.things, ground.corner, ground.caps, places, thick, False, rests, np.empty((*rests.shape, 2)))
+    heights = (rests - thick).reshape(-1, 2, FEET // 2)
+    balls = heights[..., 1]
+    stubs, hangs = (heights > balls[..., None] + 0.01).sum((1, 2)), (heights < balls[..., None] - 0.01).sum((1, 2))
+    lost = np.abs(balls - soles[:, 1].mean()).max(1) > 2.0 * MOST
+    cost = np.hypot(x, z) + STUBS * stubs + HANGING * hangs + APART * (np.ptp(balls, 1) > 0.01) + STUBS * (np.ptp(balls, 1) > MOST) + lost
+    best = int(cost.argmin())
+    return led[best], float(balls[best].min())
 
 
 @lru_cache(maxsize=16)
@@ -113,7 +135,8 @@ def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground
     rest_kernel(ground.things, ground.corner, ground.caps, points, thick, aside, rests, ways)
     lacks = rests - points[..., 1]
     miss = lacks + clear
-    weight = SINKS * near * np.exp(-((miss / HANGS) ** 2))
+    hangs = np.minimum(miss - np.minimum(miss.max(1, keepdims=True), 0.0), 0.0)
+    weight = SINKS * near * np.exp(-((hangs / HANGS) ** 2))
     soles = miss[:, -FEET:].reshape(-1, 2, FEET // 2)
     soles[:] = soles.max(2, keepdims=True)  # a sole sinks as far as all of it can
     rises = miss > 0.0

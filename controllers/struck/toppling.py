@@ -17,7 +17,7 @@ from .ground import ground_about, level_kernel, rest_kernel
 from .held_falls import chosen, flesh, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
-from .settled import settled
+from .settled import footing, settled
 from .surroundings import NOTHING
 
 PACES = 0.9, 1.35
@@ -38,7 +38,7 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     ground = ground_about(things, start.centre[[0, 2]], floor) if len(things) else None
     fall, turn = chosen(physique, falls(physique), start.centre, math.atan2(flat[0], flat[1]), start.heading, floor, ground)
     times, shown, toppled = _paced(fall, pace, rate)
-    facing = start.heading + turn * np.clip(times / toppled, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(times / toppled, 0.0, 1.0))
+    facing = start.heading + turn * _evenly(times / toppled)
     local = fall.turns(shown)
     local[:, 0] = yaw(facing) @ local[:, 0]
     left = faded(vectors(start.rotations @ np.swapaxes(local[0], -1, -2)), start.rates, FADE, times)
@@ -52,20 +52,29 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     over, floors, supported = over[:, -FEET:], np.full(len(times), floor), True
     if ground is not None:
         roots = roots + held(*flesh(physique, positions, turned), floor, ground)
+        soles, thick = (rows[..., -FEET:] if rows.ndim == 1 else rows[-1, -FEET:] for rows in flesh(physique, positions[-1:] + (roots[-1] - positions[-1, 0]), turned[-1:]))
+        led, stands = footing(soles, thick, ground)
+        roots[:, [0, 2]] += _evenly(times / toppled)[:, None] * led
         roots, local = settled(physique, roots, local, floor, float(start.root[1]), ground)
         positions, turned = forward_kinematics(physique.skeleton, roots, local)
         centres = centre_of_mass(physique.anatomy, positions, turned)
         level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
         supported = not np.isnan(floors).any()
-        floors = np.where(np.isnan(floors), floor, floors)
-        soles, rests = flesh(physique, positions, turned), np.empty((len(times), FEET))
-        rest_kernel(ground.things, ground.corner, ground.caps, soles[0][:, -FEET:], soles[1][-FEET:], False, rests, np.empty((len(times), FEET, 2)))
-        over = soles[0][:, -FEET:, 1] - rests
+        floors = np.where(times > toppled, stands, floor)
+        soles, rests = flesh(physique, positions, turned)[0][:, -FEET:], np.empty((len(times), FEET))
+        rest_kernel(ground.things, ground.corner, ground.caps, soles, thick, False, rests, np.empty((len(times), FEET, 2)))
+        over = soles[..., 1] - rests
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
     slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
     contacts = slow & (over.reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
     return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors, supported)
+
+
+def _evenly(share: np.ndarray) -> np.ndarray:
+    """From 0 to 1 as a share of the time (N,) goes from 0 to 1, without a jerk at either."""
+    share = np.clip(share, 0.0, 1.0)
+    return share**2 * (3.0 - 2.0 * share)
 
 
 def _paced(fall: Fall, pace: float, rate: float) -> tuple[np.ndarray, np.ndarray, float]:
