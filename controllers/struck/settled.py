@@ -16,6 +16,7 @@ from ..jump.body import Physique
 from ..jump.motion import FEET
 from .ground import Ground, rest_kernel
 from .held_falls import flesh
+from .recorded_falls import RATE
 
 EVERY = 5
 """So many moments of the fall are one of these."""
@@ -27,10 +28,11 @@ NEAR, HARD, SINKS = 0.10, 3.0, 0.15
 """What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much, and what is over it this."""
 STIFF, UPRIGHT, EVEN = 1e-2, 0.3, 0.15
 """What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie; and that either changes its rate by 1 rad between moments."""
-LED, MOST = np.linspace(-0.3, 0.3, 25), 0.24
-"""So far [m] a body may be led aside so that it gets up where its feet stand, one no higher than so much [m] over the other."""
-STUBS, HANGING, APART = 1.0, 0.05, 0.1
-"""What it costs there [m] that a heel or tip is in what is higher than its ball, hangs over an edge, and that feet are not on one level."""
+LED, LIFTED = np.linspace(-0.3, 0.3, 21), 0.01
+"""So far [m] a body may be led aside so that it gets up where its feet stand; a sole stands all over to this [m]."""
+STUBS, HANGING, APART, MOVES, EARLY = 1.0, 0.05, 0.5, 0.3, 0.05
+"""What it costs there [m] that a heel or tip is in what is higher than its ball, or a foot in the air; hangs over an edge; that feet are not on one level; that they move by 1 m/s; and
+to have got up 1 s sooner."""
 BEGINS = 1e3
 """How firmly it begins as it was."""
 LEVEL = 1e-3
@@ -49,22 +51,33 @@ class Bends(NamedTuple):
     moves: np.ndarray
 
 
-def footing(soles: np.ndarray, thick: np.ndarray, ground: Ground) -> tuple[np.ndarray, float]:
-    """Whither (2,) x, z [m] a body is led so that it gets up where its feet stand on treads, and how high [m] the lower one stands there. soles: (6, 3) heel, ball and tip of either foot where it would
-    stand on a level floor, thick: (6,) [m]."""
+def uneven(points: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) -> bool:
+    """Whether the ground is anywhere else than at `floor` [m] beneath places (N, P, 3) of a body with flesh (P,) [m]."""
+    rests = np.empty(points.shape[:2])
+    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, False, rests, np.empty((*rests.shape, 2)))
+    return bool(np.abs(rests - thick - floor).max() > LEVEL)
+
+
+def footing(soles: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) -> tuple[int, np.ndarray, float]:
+    """At which of M moments a body has got up, whither (2,) x, z [m] it is led so that its feet stand on treads then, and how high [m] the lower one stands. soles: (M, 6, 3) heel, ball and tip
+    of either foot on a level floor [m], 1/RATE apart; thick: (6,) [m]."""
     x, z = (part.ravel() for part in np.meshgrid(LED, LED))
-    led = np.stack([x, z], -1)
-    places = np.repeat(soles[None], len(led), 0)
-    places[..., [0, 2]] += led[:, None]
-    rests = np.empty(places.shape[:2])
-    rest_kernel(ground.things, ground.corner, ground.caps, places, thick, False, rests, np.empty((*rests.shape, 2)))
-    heights = (rests - thick).reshape(-1, 2, FEET // 2)
-    balls = heights[..., 1]
-    stubs, hangs = (heights > balls[..., None] + 0.01).sum((1, 2)), (heights < balls[..., None] - 0.01).sum((1, 2))
-    lost = np.abs(balls - soles[:, 1].mean()).max(1) > 2.0 * MOST
-    cost = np.hypot(x, z) + STUBS * stubs + HANGING * hangs + APART * (np.ptp(balls, 1) > 0.01) + STUBS * (np.ptp(balls, 1) > MOST) + lost
-    best = int(cost.argmin())
-    return led[best], float(balls[best].min())
+    pace = np.linalg.norm(np.gradient(soles, 1.0 / RATE, axis=0), axis=-1).max(1)
+    lifted = (soles[..., 1] - thick - floor).max(1) > 2.0 * LIFTED
+    best, least = (len(soles) - 1, np.zeros(2), floor), np.inf
+    for n in range(len(soles) - 1, -1, -EVERY):
+        places = np.repeat(soles[n][None], len(x), 0)
+        places[..., [0, 2]] += np.stack([x, z], -1)[:, None]
+        rests = np.empty(places.shape[:2])
+        rest_kernel(ground.things, ground.corner, ground.caps, places, thick, False, rests, np.empty((*rests.shape, 2)))
+        heights = (rests - thick).reshape(-1, 2, FEET // 2)
+        balls, apart = heights[..., 1], np.ptp(heights[..., 1], 1)
+        stubs, hangs = (heights > balls[..., None] + LIFTED).sum((1, 2)), (heights < balls[..., None] - LIFTED).sum((1, 2))
+        cost = np.hypot(x, z) + STUBS * (stubs + lifted[n]) + HANGING * hangs + APART * (apart > LIFTED) + MOVES * pace[n] + EARLY * (len(soles) - 1 - n) / RATE
+        if cost.min() < least:
+            k = int(cost.argmin())
+            best, least = (n, np.array([x[k], z[k]]), float(balls[k].min())), float(cost[k])
+    return best
 
 
 @lru_cache(maxsize=16)
@@ -98,10 +111,6 @@ def settled(physique: Physique, roots: np.ndarray, local: np.ndarray, floor: flo
     root, turns = roots[keys].copy(), local[keys]
     points, thick = flesh(physique, *forward_kinematics(skeleton, root, turns))
     clear = points[..., 1] - thick - floor
-    rests, ways = np.empty(points.shape[:2]), np.empty((*points.shape[:2], 2))
-    rest_kernel(ground.things, ground.corner, ground.caps, points, thick, False, rests, ways)
-    if np.abs(rests - thick - floor).max() < LEVEL:
-        return roots, local
     lies = np.exp(-((clear[:, :-FEET].min(1) / (2.5 * NEAR * physique.size)) ** 2))
     near = np.exp(-((clear / (NEAR * physique.size)) ** 2))
     bent = np.zeros((len(keys), 3 + len(bends.joints)))

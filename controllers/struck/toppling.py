@@ -17,7 +17,7 @@ from .ground import ground_about, level_kernel, rest_kernel
 from .held_falls import chosen, flesh, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
-from .settled import footing, settled
+from .settled import footing, settled, uneven
 from .surroundings import NOTHING
 
 PACES = 0.9, 1.35
@@ -27,6 +27,8 @@ FADE, SPENT = 0.13, 0.15
 """Half-life with which the pose as it was struck gives way to the fall's [s]; what the mass centre is faster than the fall is spent on the floor with this time constant [s]."""
 SLIDES = 0.3
 """A heel or ball that is faster along the floor [m/s] does not stand on it."""
+UP = 0.93
+"""Hips this high, as a share of where they are at the end, have got up."""
 WHY = "struck too hard to be caught by a step: it falls, and gets up"
 
 
@@ -52,17 +54,21 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     over, floors, supported = over[:, -FEET:], np.full(len(times), floor), True
     if ground is not None:
         roots = roots + held(*flesh(physique, positions, turned), floor, ground)
-        soles, thick = (rows[..., -FEET:] if rows.ndim == 1 else rows[-1, -FEET:] for rows in flesh(physique, positions[-1:] + (roots[-1] - positions[-1, 0]), turned[-1:]))
-        led, stands = footing(soles, thick, ground)
-        roots[:, [0, 2]] += _evenly(times / toppled)[:, None] * led
-        roots, local = settled(physique, roots, local, floor, float(start.root[1]), ground)
+        points, thick = flesh(physique, positions, turned)
+        points = points + (roots - positions[:, 0])[:, None]
+        stands = floor
+        if uneven(points, thick, floor, ground):
+            up = max(len(times) - int(np.argmax(roots[::-1, 1] < floor + UP * (roots[-1, 1] - floor))), 2)
+            last, led, stands = footing(points[up - 2:, -FEET:], thick[-FEET:], floor, ground)
+            times, roots, local, facing, floors = (rows[:up - 1 + last] for rows in (times, roots, local, facing, floors))
+            roots, local = settled(physique, roots + _evenly(times / toppled)[:, None] * [led[0], 0.0, led[1]], local, floor, float(start.root[1]), ground)
         positions, turned = forward_kinematics(physique.skeleton, roots, local)
         centres = centre_of_mass(physique.anatomy, positions, turned)
         level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
         supported = not np.isnan(floors).any()
         floors = np.where(times > toppled, stands, floor)
         soles, rests = flesh(physique, positions, turned)[0][:, -FEET:], np.empty((len(times), FEET))
-        rest_kernel(ground.things, ground.corner, ground.caps, soles, thick, False, rests, np.empty((len(times), FEET, 2)))
+        rest_kernel(ground.things, ground.corner, ground.caps, soles, thick[-FEET:], False, rests, np.empty((len(times), FEET, 2)))
         over = soles[..., 1] - rests
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
