@@ -15,19 +15,21 @@ from ..body import Skeleton, exp, forward_kinematics, log
 from ..jump.body import Physique
 from ..jump.motion import FEET
 from .ground import Ground, rest_kernel
-from .held_falls import flesh
+from .held_falls import SPACED, flesh
 from .recorded_falls import RATE
 
 EVERY = 5
 """So many moments of the fall are one of these."""
 ROUNDS, DAMPED, FARTHEST = 12, 0.05, 0.12
 """So many steps of least squares, damped by so much, each of which lets no place rise or sink by more than this [m]."""
+SHINS = np.arange(2 * SPACED, 4 * SPACED)
+"""Places of the flesh that are near the ground as one stands, too, beside feet."""
 HANGS = 0.25
 """What is farther over the ground than this [m], where something else lies on it, hangs."""
 NEAR, HARD, SINKS = 0.10, 3.0, 0.15
 """What is this near the floor [m], at standard height, is to lie as near the ground; what is below that weighs so many times as much, and what is over it this."""
-STIFF, UPRIGHT, EVEN = 1e-2, 0.3, 0.15
-"""What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie; and that either changes its rate by 1 rad between moments."""
+STIFF, UPRIGHT, PLACED, EVEN = 1e-2, 0.3, 3.0, 0.15
+"""What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie, and to lead him aside by 1 m; and that either changes its rate by 1 rad between moments."""
 LED, LIFTED = np.linspace(-0.3, 0.3, 21), 0.01
 """So far [m] a body may be led aside so that it gets up where its feet stand; a sole stands all over to this [m]."""
 STUBS, HANGING, APART, MOVES, EARLY = 1.0, 0.05, 0.5, 0.3, 0.05
@@ -111,7 +113,7 @@ def settled(physique: Physique, roots: np.ndarray, local: np.ndarray, floor: flo
     root, turns = roots[keys].copy(), local[keys]
     points, thick = flesh(physique, *forward_kinematics(skeleton, root, turns))
     clear = points[..., 1] - thick - floor
-    lies = np.exp(-((clear[:, :-FEET].min(1) / (2.5 * NEAR * physique.size)) ** 2))
+    lies = np.exp(-((np.delete(clear[:, :-FEET], SHINS, 1).min(1) / (2.5 * NEAR * physique.size)) ** 2))
     near = np.exp(-((clear / (NEAR * physique.size)) ** 2))
     bent = np.zeros((len(keys), 3 + len(bends.joints)))
     bent[:, 1] = begins - root[0, 1]
@@ -163,7 +165,7 @@ def _better(physique, bends, root, turns, bent, clear, thick, near, lies, ground
             break
     count, wide = right.shape
     cost = np.full((count, wide), STIFF)
-    cost[:, :3] = STIFF, 0.0, STIFF
+    cost[:, :3] = np.outer(STIFF + PLACED * (1.0 - lies), [1.0, 0.0, 1.0])
     cost[:, 3:6] = 0.1 * STIFF + UPRIGHT * (1.0 - lies[:, None])
     cost[0] += BEGINS
     right[1:] -= cost[1:] * bent[1:]
