@@ -15,7 +15,7 @@ from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..compiled import kernel
 from ..jump.body import Physique
 from ..jump.motion import BONES, grounded_poses, sole_places
-from .ground import Ground, cell_kernel
+from .stepwise_ground import Ground, cell_kernel
 from .recorded_falls import RATE, Fall
 from .surroundings import STEP, aside_kernel
 

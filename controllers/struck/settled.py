@@ -14,7 +14,7 @@ import numpy as np
 from ..body import Skeleton, exp, forward_kinematics, log
 from ..jump.body import Physique
 from ..jump.motion import FEET
-from .ground import Ground, rest_kernel
+from .stepwise_ground import Ground, rest_kernel
 from .held_falls import SPACED, flesh
 from .recorded_falls import RATE
 

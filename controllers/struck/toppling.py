@@ -13,7 +13,7 @@ from ..body import centre_of_mass, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import FEET, TOUCHES, faded, grounded_poses, places
 from .capture import FALLS
-from .ground import ground_about, level_kernel, rest_kernel
+from .stepwise_ground import ground_about, level_kernel, rest_kernel
 from .held_falls import chosen, flesh, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
