@@ -43,6 +43,8 @@ NEARER = 0.0, 0.2, 0.4, -0.2, 0.6, 0.8
 """A leap that goes off by itself lands where the ring is, or so much nearer than it [m]."""
 UP = 0.95
 """It lands no higher than this over the feet [m], and no lower than a step."""
+RISES = 0.12
+"""What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
 LATE, TURNED = 6, 0.35
 """It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
 
@@ -79,7 +81,7 @@ class RunUp:
         """The same `dt` seconds later. asks: what is asked of him from here on."""
         if self.halt is not None or self.free > 0 or not len(around):
             return replace(self, free=self.free - 1)
-        return _played(controller, state, asks, around, dt, LOOK / _agility(controller))
+        return _played(controller, state, asks, around, dt, LOOK / agility(controller))
 
     def heeded(self, state: CharacterState, intent: Intent) -> Intent:
         """An intent of somebody who comes to rest before what he can't leap; as it is where he goes on."""
@@ -99,7 +101,7 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
         return None
     pace = float(np.hypot(state.velocity[0], state.velocity[2]))
     ahead = np.asarray(velocity, float) / speed
-    for far in np.arange(1, 2 + int((STOPS[0] + STOPS[1] * max(pace, speed)**2 / _agility(controller)) / PACE)) * PACE:
+    for far in np.arange(1, 2 + int((STOPS[0] + STOPS[1] * max(pace, speed)**2 / agility(controller)) / PACE)) * PACE:
         if room(here + far * ahead, floor, around) <= 0.0:
             low, high = far - PACE, far
             while high - low > FINE:
@@ -112,7 +114,14 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     return None
 
 
-def _agility(controller: Any) -> float:
+def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> bool:
+    """Whether the floor rises by more than a runner takes in stride where somebody goes with a velocity (2,) [m/s] in the world, no farther away than `before` looks."""
+    floor, ahead, speed = float(state.floor), np.asarray(velocity, float), math.hypot(*velocity)
+    places = np.asarray(state.ground[:2], float) + np.arange(1, 2 + int((STOPS[0] + STOPS[1] * speed**2 / agility(controller)) / PACE))[:, None] * PACE * ahead / speed
+    return any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in places)
+
+
+def agility(controller: Any) -> float:
     """How agile somebody is, beside a person, whose number is 1, and no more than that."""
     return min(getattr(controller.settings, "agility", 1.0), 1.0)
 
@@ -151,7 +160,7 @@ def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, f
     """The run-up of somebody who goes on with a velocity (2,) [m/s] to the last footfall from which he can leap over what he can't run over, or onto it; None
     where there is none."""
     footfalls, stood, now, floor, blocked = [], True, state, float(state.floor), None
-    for number in range(round(LOOK / _agility(controller) / dt)):
+    for number in range(round(LOOK / agility(controller) / dt)):
         pace = np.array(in_world(now.ground, now.velocity))
         speed = max(float(np.hypot(*pace)), 1e-6)
         ring = np.array(now.ground[:2]) + (AHEAD[0] + AHEAD[1] * speed) * pace / speed
@@ -161,7 +170,7 @@ def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, f
             footfalls.append((number, now, pace / speed, intent))
         stood = stands
         now, _ = controller.step(now, but(intent, leap=None, aim=intent.leap), dt)
-        if blocked is None and room(now.ground[:2], floor, around) <= 0.0:
+        if blocked is None and (room(now.ground[:2], floor, around) <= 0.0 or floor_at(now.ground[0], now.ground[1], around, floor + UP) > floor + RISES):
             blocked = np.array(now.ground[:2])
         if now.active == "jump" or _touches(now.ground[:2], floor, around) or blocked is not None and _edge(now.ground[:2], floor, around):
             break

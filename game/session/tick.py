@@ -18,7 +18,7 @@ from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import in_world, slide
 
 from ..explain import preview
-from ..input import PATIENCE, RUNS, Aim, Command, RunUp, Wish, aloft, before, landing, last_chance, leaps, leaving, push
+from ..input import PATIENCE, RUNS, Aim, Command, RunUp, Wish, agility, aloft, before, landing, last_chance, leaps, leaving, push, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -82,7 +82,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing)
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:
-            command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props)))
+            command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props, agility(character.controller))))
         known = run_up or RunUp()
         players[-1] = replace(players[-1], run_up=known)
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
@@ -110,9 +110,9 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
     if known.free > 1:
         return RunUp(known.free - 1)
     halt = before(controller, state, command.velocity, props)
-    if halt is None or jump is None:
-        return RunUp(0, halt)
     runs = math.hypot(*command.velocity) > RUNS
+    if jump is None or halt is None and not (runs and rises(controller, state, command.velocity, props)):
+        return RunUp(0, halt)
     if aim.aiming and not runs:
         return RunUp(0, halt)
     if known.free != 0 and not known.turned(command.velocity) and aim.waiting != PATIENCE:

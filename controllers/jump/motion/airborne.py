@@ -90,10 +90,10 @@ class Airborne:
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]))
         if way.lands is not None:
-            self.swung = self._passing(np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
+            self.swung = self._passing(way.lands, np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
 
-    def _passing(self, times: np.ndarray, rows: np.ndarray):
-        """The leg that goes on swinging, as recorded in rows (K, EACH) [rad] at times (K,) [s] after touch-down, its knee bent by as much more as keeps its foot off the floor
+    def _passing(self, lands: int, times: np.ndarray, rows: np.ndarray):
+        """The leg that goes on swinging of who lands on the other, `lands`: as recorded in rows (K, EACH) [rad] at times (K,) [s] after touch-down, its knee bent by as much more as keeps its foot off the floor
         until the lowest point: recorded bodies sink less over it."""
         swung, knee = keyed_leg(times, rows), np.zeros(len(times))
         until = times[:BETWEEN + 1]
@@ -111,7 +111,7 @@ class Airborne:
             for n in range(len(until)):
                 place_kernel(self.body, roots[n], local[n], positions, turned)
                 corners = sole_corners(self.physique.skeleton, positions[None], turned[None])[0]
-                low[n] = corners.reshape(2, -1, 3)[1 - self.way.lands, :, 1].min() - (self.landing[0, 1] - self.body.sole)
+                low[n] = corners.reshape(2, -1, 3)[1 - lands, :, 1].min() - (self.landing[0, 1] - self.body.sole)
             missing = np.maximum(CLEARS * self.physique.size - low, 0.0) / (LIFT * self.physique.size)
             if missing.max() < 1e-3:
                 break
