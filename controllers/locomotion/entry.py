@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, contact_points, exp, forward_kinematics, log, yaw
+from ..body import Pose, contact_height, contact_points, exp, forward_kinematics, log, yaw
 from ..contract import CharacterState
 from . import fourier
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel
@@ -25,6 +25,8 @@ ABOUT_TO_STEP = 0.95
 """The phase in which both feet stand and the left one is about to leave."""
 AHEAD = 0.01
 """How a gait moves is told from its poses so far apart, in phase."""
+TREADS = 0.04
+"""Feet that stand so far apart in height [m] are on two treads."""
 PHASES, LEAD = 64, 0.1
 """So many phases are compared; a difference of 1 m/s counts as one of so many metres."""
 
@@ -68,6 +70,8 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     memory["bears"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
     memory["offset"] = memory["offset_rate"] = memory["offset_push"] = memory["raised"] = memory["raised_rate"] = 0.0
+    apart = points[1::2, 1] - contact_height(locomotion.skeleton)
+    memory["base"] = memory["left"] = np.where(stands[1::2] & (np.abs(apart) > TREADS), apart, 0.0)  # its feet are on two treads
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 

@@ -119,11 +119,11 @@ def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -
     return height
 
 
-def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[Any]) -> np.ndarray:
+def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[Any], agile: float = 1.0) -> np.ndarray:
     """The velocity (2,) along x and z [m/s] nearest to the wished one that runs into nothing and over no edge.
 
     place: (2,) x, z [m]. velocity: (2,) wished. floor: how high the walker stands [m]. A walker that
-    finds no way stops; one that came too near to something, as its own speed carried it, may only leave.
+    finds no way stops, who is `agile` times as agile as people so much sooner; one that came too near to something, as its own speed carried it, may only leave.
     """
     place, velocity = np.asarray(place, float), np.asarray(velocity, float)
     speed = float(np.hypot(*velocity))
@@ -131,7 +131,7 @@ def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[
         return velocity
     left = room(place, floor, around)
     # as far as it takes to stop, looked at step by step, lest a thin wall be missed
-    ahead = np.arange(1, 2 + int(max(LOOK * speed, 0.25) / PACE)) * PACE / speed
+    ahead = np.arange(1, 2 + int(max(LOOK * speed / agile, 0.25) / PACE)) * PACE / speed
     for turn in DEVIATIONS:
         c, s = np.cos(turn), np.sin(turn)
         tried = c * np.array([c * velocity[0] + s * velocity[1], -s * velocity[0] + c * velocity[1]])

@@ -31,6 +31,8 @@ ANEW = 0.25
 """Points farther than this from the body's on the average [m] are of another pose: it is begun anew from the points."""
 LEAP = 0.03
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more …"""
+SHAKEN = 1.0
+"""… unless points are so noisy that poses shake: by so many times as far as points lately were from where their motion led."""
 TAKEN = 0.01
 """… and no joint takes more of it [m] at once."""
 FADE = 0.15
@@ -101,7 +103,7 @@ class Reconstruction(Controller):
     @property
     def kind(self) -> str:
         """What tells its motion from that of others."""
-        return f"Reconstruction {','.join(self.controls.names)} × {self.factor:.6f}"
+        return f"Reconstruction {type(self.method).__name__} {','.join(self.controls.names)} × {self.factor:.6f}"
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
         """READY if a point is seen; while points are followed, how firmly it holds on, but to no other number of them."""
@@ -230,7 +232,7 @@ class Reconstruction(Controller):
         lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
-        if leap <= LEAP:
+        if leap <= max(LEAP, SHAKEN * float(np.median(gate.rough))):
             return after
         # a little of it may be how bodies change their pace, and the rest fades
         step = difference(following.pose, following.before)

@@ -16,7 +16,7 @@ import numpy as np
 from ..body import margin_kernel
 from ..compiled import kernel
 from .swaying import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
-from .stepping import aim_kernel, far_kernel, home_kernel, walks_kernel, which_kernel
+from .stepping import SOONEST, aim_kernel, far_kernel, home_kernel, soon_kernel, walks_kernel, which_kernel
 from .surroundings import NOTHING, point_kernel, tread_kernel
 
 LONGEST = 6.0
@@ -29,8 +29,6 @@ GOES_ON = 0.12
 """Who walks on once a foot has landed: so long his way is still told [s]."""
 STRIDE = 0.5
 """A foot that was in the air when a fast body was struck lands as that has gone so far on [m], at standard height."""
-SOONEST = 0.1
-"""No foot lands sooner [s]."""
 SHOWN = 1.6
 """So long it takes until a body that was pushed has answered with trunk and arms [s]."""
 STANDS_BOTH = 0.05
@@ -107,7 +105,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 count = support_kernel(body, feet, free, points, corners)
                 behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, 2.0 * last - 1.0, wishes, body.size) > 1.0
                 lost = margin_kernel(corners, count, point[0], point[1]) < -LOST * body.size or caught > MOST or behind
-                if lost and not over:
+                if lost and not over or caught > 2 * MOST:
                     return n + 1, taken, FALLS, caught
                 if not closing and wishes and walks_kernel(v, heading, body.size):
                     ends = now + GOES_ON
@@ -121,6 +119,8 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 side = 0 if (feet[0, 0] - feet[1, 0]) * v[0] + (feet[0, 1] - feet[1, 1]) * v[1] > 0.0 else 1
             swift = STRIDE * body.size / max(math.hypot(v[0], v[1]), 0.1)
             swing, lands, closing = side, now + max(min(haste * SWINGS, swift), SOONEST), False
+            if over:
+                lands = now + soon_kernel(things, body, swing, feet, x, v, p, rate, lands - now, heading, points, corners)
             gone = aim_kernel(things, body, swing, feet, x, v, p, rate, lands - now, heading, wish, over, target, points, corners)
             steps[taken, 0], steps[taken, 1], steps[taken, 2] = swing, now, lands
             steps[taken, 3:7] = target
@@ -136,6 +136,8 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 if now >= lifts - 0.5 * dt:
                     swing = which_kernel(feet, point, heading) if taken == 0 else 1 - last
                     long = haste * SWINGS if taken == 0 else AGAIN
+                    if over:
+                        long = soon_kernel(things, body, swing, feet, x, v, p, rate, long, heading, points, corners)
                     lands, closing, fate, lifts = now + long, False, STEPS, -1.0
                     gone = aim_kernel(things, body, swing, feet, x, v, p, rate, long, heading, wish, over, target, points, corners)
             elif inside >= 0.0:

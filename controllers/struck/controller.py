@@ -12,7 +12,7 @@ from ..contract import CharacterState, Controller, Intent, Status, Strike, Unabl
 from ..jump import GRAVITY, Physique, start_of
 from ..jump.body import measures
 from ..navigation.passing import drawn_in
-from .capture import DROPS, FALLS, Way, way
+from .capture import FALLS, Way, way
 from .recorded_pushes import response
 from .recovery import Recovery
 from .stepping import walks_kernel
@@ -115,7 +115,7 @@ class Struck(Controller):
             if _slides(self.skeleton, made) < SLIDES:
                 return made
         made = topple(self.physique, start, floor, self.rate, things)
-        if made.supported or (goes := going(True)).fate != DROPS:
+        if made.supported or (goes := going(True)).fate == FALLS:
             return made
         return played(goes)
 

@@ -1,7 +1,7 @@
 """Falls beside walls and on several levels: the way that is free, and what holds a falling body where none is.
 
 A body falls most nearly the way that it goes, and aside where a wall stands or the ground ends there. A wall that it comes to all the same holds it: its feet slide away below it.
-What is no higher than a step it lies on.
+What one comes to step by step is no wall: it lies on that (`settled`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ..compiled import kernel
 from ..jump.body import Physique
 from ..jump.motion import BONES, grounded_poses, sole_places
+from .stepwise_ground import Ground, cell_kernel
 from .recorded_falls import RATE, Fall
-from .surroundings import STEP, abyss_kernel, aside_kernel, tread_kernel
+from .surroundings import STEP, aside_kernel
 
 ASIDE = np.radians([0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0, 65.0, -65.0, 90.0, -90.0, 125.0, -125.0, 180.0])
 """So far from where it goes a body may fall [rad]; the nearest first."""
@@ -46,18 +47,18 @@ def flesh(physique: Physique, positions: np.ndarray, turned: np.ndarray) -> tupl
     return np.stack([*places, *soles], 1), np.array(thick + [0.02 * physique.size] * len(soles))
 
 
-def chosen(physique: Physique, every: Sequence[Fall], place: np.ndarray, way: float, heading: float, floor: float, things: np.ndarray) -> tuple[Fall, float]:
+def chosen(physique: Physique, every: Sequence[Fall], place: np.ndarray, way: float, heading: float, floor: float, ground: Ground | None) -> tuple[Fall, float]:
     """Of falls the one, and how far [rad] it is turned as it topples, of a body at a place (3,) that goes `way` [rad] in the world and faces `heading`: that which is turned least and nearest
     to its way, but not into walls, nor over an edge where there is another."""
     best, least = (every[0], 0.0), math.inf
     for fall in every:
-        points, thick, centre = _sampled(physique, fall) if len(things) else (np.zeros((0, 0, 3)), np.zeros(0), np.zeros((0, 3)))
-        for aside in ASIDE if len(things) else ASIDE[:1]:
+        points, thick, centre = _sampled(physique, fall) if ground is not None else (np.zeros((0, 0, 3)), np.zeros(0), np.zeros((0, 3)))
+        for aside in ASIDE if ground is not None else ASIDE[:1]:
             turn = math.remainder(way + aside - heading - fall.way, math.tau)
             cost = COSTS[0] * (abs(turn) + abs(aside))
-            if len(things) and cost < least:
+            if ground is not None and cost < least:
                 facing, here = yaw(heading + turn).T, np.array([place[0], floor, place[2]])
-                deep, lost = looked_kernel(things, points @ facing + here, thick, centre @ facing + here, floor)
+                deep, lost = looked_kernel(*ground, points @ facing + here, thick, centre @ facing + here, floor)
                 cost += COSTS[1] * deep + COSTS[2] * lost
             if cost < least:
                 best, least = (fall, turn), cost
@@ -75,39 +76,40 @@ def _sampled(physique: Physique, fall: Fall) -> tuple[np.ndarray, np.ndarray, np
 
 
 @kernel
-def looked_kernel(things, points, thick, centre, floor):
-    """How deep places (N, P, 3) with flesh (P,) go into walls at most [m], and for what share of the moments a mass centre (M, 3) is over an abyss."""
-    deep, lost, out = 0.0, 0, np.empty(2)
-    for n in range(len(points)):
-        for p in range(len(thick)):
-            low = max(points[n, p, 1] - thick[p], floor + STEP)
-            deep = max(deep, thick[p] - aside_kernel(things, points[n, p, 0], points[n, p, 2], low, max(points[n, p, 1] + thick[p], low + 1e-6), out))
-    for n in range(len(centre)):
-        lost += abyss_kernel(things, centre[n, 0], centre[n, 2], floor)
-    return deep, lost / max(len(centre), 1)
-
-
-def held(points: np.ndarray, thick: np.ndarray, floor: float, things: np.ndarray) -> np.ndarray:
-    """How far (N, 3) [m] a body is led off in every moment, whose flesh is (P,) thick at places (N, P, 3): away from walls, where it stays, and up onto what is a step."""
-    from scipy.ndimage import gaussian_filter1d, maximum_filter1d  # no game waits for it at its start
-
-    off = np.zeros((len(points), 3))
-    held_kernel(things, points, thick, floor, off)
-    early = min(round(EARLY * RATE), len(off) - 1)
-    off[:, [0, 2]] = np.concatenate([off[early:, [0, 2]], np.repeat(off[-1:, [0, 2]], early, 0)])
-    if len(off) > 1:
-        off[:, [0, 2]] = off[:, [0, 2]] - off[0, [0, 2]] * np.clip(1.0 - np.arange(len(off)) / (2.0 * early + 1.0), 0.0, 1.0)[:, None]
-    off[:, [0, 2]] = gaussian_filter1d(off[:, [0, 2]], SMOOTH * RATE, axis=0, mode="nearest")
-    moved, lifts = points + off[:, None] * [1.0, 0.0, 1.0], np.zeros(len(off))
-    lift_kernel(things, moved, thick, floor, lifts)
-    wide = round(2.0 * EARLY * RATE)
-    off[:, 1] = gaussian_filter1d(maximum_filter1d(lifts, 2 * wide + 1, mode="nearest"), 0.5 * wide, mode="nearest")
-    off[:, 1] *= np.clip(np.arange(len(off)) / (1.5 * wide), 0.0, 1.0)
-    return off
+def wall_kernel(things, corner, caps, floor, place, thick, out):
+    """How far a ball of a radius `thick` [m] about a place (3,) is from walls, its middle, see `aside_kernel`: from what stands higher than what one comes to step by step."""
+    low = max(place[1] - thick, cell_kernel(corner, caps, place[0], place[2], floor))
+    low = max(low, floor + STEP) if low == floor or low == -math.inf else low
+    return aside_kernel(things, place[0], place[2], low, max(place[1] + thick, low + 1e-6), out)
 
 
 @kernel
-def held_kernel(things, points, thick, floor, off):
+def looked_kernel(things, corner, levels, caps, points, thick, centre, floor):
+    """How deep places (N, P, 3) with flesh (P,) go into walls at most [m], and for what share of the moments a mass centre (M, 3) is where nobody comes step by step."""
+    deep, lost, out = 0.0, 0, np.empty(2)
+    for n in range(len(points)):
+        for p in range(len(thick)):
+            deep = max(deep, thick[p] - wall_kernel(things, corner, caps, floor, points[n, p], thick[p], out))
+    for n in range(len(centre)):
+        lost += math.isnan(cell_kernel(corner, levels, centre[n, 0], centre[n, 2], math.nan))
+    return deep, lost / max(len(centre), 1)
+
+
+def held(points: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) -> np.ndarray:
+    """How far (N, 3) [m] a body is led off along the floor in every moment, whose flesh is (P,) thick at places (N, P, 3): away from walls, where it stays."""
+    from scipy.ndimage import gaussian_filter1d  # no game waits for it at its start
+
+    off = np.zeros((len(points), 3))
+    held_kernel(ground.things, ground.corner, ground.caps, points, thick, floor, off)
+    early = min(round(EARLY * RATE), len(off) - 1)
+    off = np.concatenate([off[early:], np.repeat(off[-1:], early, 0)])
+    if len(off) > 1:
+        off = off - off[0] * np.clip(1.0 - np.arange(len(off)) / (2.0 * early + 1.0), 0.0, 1.0)[:, None]
+    return gaussian_filter1d(off, SMOOTH * RATE, axis=0, mode="nearest")
+
+
+@kernel
+def held_kernel(things, corner, caps, points, thick, floor, off):
     """Write into `off` (N, 3) how far along the floor places (N, P, 3) are led out of walls: no nearer again once they were led off."""
     out = np.empty(2)
     for n in range(len(points)):
@@ -116,35 +118,10 @@ def held_kernel(things, points, thick, floor, off):
         for _ in range(6):
             deep, ox, oz = 0.0, 0.0, 0.0
             for p in range(len(thick)):
-                low = max(points[n, p, 1] - thick[p], floor + STEP)
-                gap = aside_kernel(things, points[n, p, 0] + off[n, 0], points[n, p, 2] + off[n, 2], low, max(points[n, p, 1] + thick[p], low + 1e-6), out)
+                gap = wall_kernel(things, corner, caps, floor, points[n, p] + off[n], thick[p], out)
                 if thick[p] - gap > deep:
                     deep, ox, oz = thick[p] - gap, out[0], out[1]
             if deep <= 1e-4:
                 break
             off[n, 0] += deep * ox
             off[n, 2] += deep * oz
-
-
-@kernel
-def lift_kernel(things, points, thick, floor, lifts):
-    """Write how far (N,) places (N, P, 3) with flesh (P,) are below what is no higher than a step."""
-    for n in range(len(points)):
-        for p in range(len(thick)):
-            lifts[n] = max(lifts[n], tread_kernel(things, points[n, p, 0], points[n, p, 2], floor + STEP, floor) + thick[p] - points[n, p, 1])
-
-
-def under(things: np.ndarray, centres: np.ndarray, floor: float) -> np.ndarray:
-    """How high (N,) [m] the ground lies under mass centres (N, 3); where something stands there, as high as the floor [m]."""
-    levels = np.full(len(centres), floor)
-    under_kernel(things, centres, floor, levels)
-    return levels
-
-
-@kernel
-def under_kernel(things, centres, floor, levels):
-    """Write how high the ground lies, see `under`."""
-    for n in range(len(centres)):
-        level = tread_kernel(things, centres[n, 0], centres[n, 2], floor + STEP, floor)
-        if level > floor - STEP or abyss_kernel(things, centres[n, 0], centres[n, 2], floor):
-            levels[n] = level

@@ -8,14 +8,14 @@ import numpy as np
 
 from ..body import Pose
 from ..jump.motion import between_kernel
-from .surroundings import STEP
 
 
 @dataclass(frozen=True, eq=False)
 class Recovery:
     """A motion of N samples. times: (N,) [s]. roots: (N, 3), local: (N, J, 3, 3) poses. centres, velocities: (N, 3) of the mass centre [m, m/s]. contacts: (N, 4) bool of heels
     and balls. headings: (N,) [rad] where it faces. fate: of `capture`; caught: the steps that caught it. landings: (L, 2) which foot lands, and when [s]. rests: when [s] it
-    stands, but for trunk and arms. why: what is to be said of it. floors: (N,) how high it stands [m]."""
+    stands, but for trunk and arms. why: what is to be said of it. floors: (N,) how high it stands [m].
+    supported: whether the ground carries it in every moment, and it does not lie over an abyss."""
 
     times: np.ndarray
     roots: np.ndarray
@@ -30,16 +30,12 @@ class Recovery:
     rests: float
     why: str
     floors: np.ndarray
+    supported: bool = True
 
     @property
     def duration(self) -> float:
         """Seconds until it stands at rest."""
         return float(self.times[-1])
-
-    @property
-    def supported(self) -> bool:
-        """Whether the ground carries it in every moment: it does not lie over an abyss."""
-        return bool(self.floors.min() > self.floors[0] - STEP)
 
     def stands(self, time: float) -> bool:
         """Whether it has come to rest on both feet, but for trunk and arms."""

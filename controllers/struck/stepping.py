@@ -27,6 +27,8 @@ APART = 0.27
 CROSSES, SIDEWAYS = (0.10, 0.16, 0.0), 0.6
 """A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then [m], at standard height; and it does so first where the capture point is so far
 beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
+SOONEST = 0.1
+"""No foot lands sooner [s]."""
 BEYOND = 0.05
 """A foot is set down so far beyond the capture point [m], at standard height: its sole brakes."""
 
@@ -69,6 +71,20 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     target[1] = there[1] - s * left + c * ahead - along * math.cos(yaw)
     target[2] = yaw
     return place_kernel(things, body, side, feet, heading, over, target)
+
+
+@kernel
+def soon_kernel(things, body, side, feet, x, v, p, rate, time, heading, points, corners):
+    """In how long a foot lands that would in `time` [s]: sooner, where the mass centre gets farther from the other than a leg is long."""
+    there, moves, press, goal, free = x.copy(), v.copy(), p.copy(), np.empty(2), np.zeros(2, np.bool_)
+    free[side] = True
+    middle_kernel(body, feet[1 - side], goal)
+    count = support_kernel(body, feet, free, points, corners)
+    for n in range(int(round(time * RATE))):
+        sway_kernel(things, feet[1 - side, 3], body.size, there, moves, press, goal, corners, count, rate, 1.0 / RATE)
+        if n >= SOONEST * RATE and far_kernel(feet[1 - side], there, heading, 2.0 * side - 1.0, False, body.size) > 1.0:
+            return (n + 1) / RATE
+    return time
 
 
 @kernel

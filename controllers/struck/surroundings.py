@@ -127,14 +127,18 @@ def point_kernel(things, floor, size, x, v, rate, point):
 
 @kernel
 def stands_kernel(things, body, x, z, yaw, level):
-    """How high [m] the ground lies under a whole sole whose ball is at x, z, and that points to `yaw` [rad]; NaN where it does not lie flat, is no step from `level` [m], or something stands."""
+    """How high [m] the ground lies under the ball of a sole at x, z that points to `yaw` [rad]; NaN where that is no step from `level` [m], something stands there, or is higher under heel
+    or tip. Over an edge are no more than one of them."""
     height = tread_kernel(things, x, z, level + STEP * body.size, level)
     if height < level - STEP * body.size:
         return math.nan
-    out, s, c = np.empty(2), math.sin(yaw), math.cos(yaw)
+    out, s, c, over = np.empty(2), math.sin(yaw), math.cos(yaw), 0
     for along in (body.heel[2] - body.toe[2], 0.0, body.tip[2]):
         px, pz = x + along * s, z + along * c
-        if abs(tread_kernel(things, px, pz, level + STEP * body.size, level) - height) > 0.05 * body.size:
+        higher = tread_kernel(things, px, pz, level + STEP * body.size, level) - height
+        if higher < -0.05 * body.size:
+            over += 1
+        if higher > 0.05 * body.size or over > 1:
             return math.nan
         if aside_kernel(things, px, pz, height + 0.06 * body.size, height + 0.3 * body.size, out) < 0.055 * body.size:
             return math.nan

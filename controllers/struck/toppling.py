@@ -13,10 +13,12 @@ from ..body import centre_of_mass, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import FEET, TOUCHES, faded, grounded_poses, places
 from .capture import FALLS
-from .held_falls import chosen, flesh, held, under
+from .stepwise_ground import ground_about, level_kernel, rest_kernel
+from .held_falls import chosen, flesh, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
-from .surroundings import NOTHING, STEP
+from .settled import footing, settled, uneven
+from .surroundings import NOTHING
 
 PACES = 0.9, 1.35
 """Falls are played at these shares of their recorded pace, until they strike the floor; from there on in WEARS seconds at their own."""
@@ -25,6 +27,8 @@ FADE, SPENT = 0.13, 0.15
 """Half-life with which the pose as it was struck gives way to the fall's [s]; what the mass centre is faster than the fall is spent on the floor with this time constant [s]."""
 SLIDES = 0.3
 """A heel or ball that is faster along the floor [m/s] does not stand on it."""
+UP = 0.93
+"""Hips this high, as a share of where they are at the end, have got up."""
 WHY = "struck too hard to be caught by a step: it falls, and gets up"
 
 
@@ -33,9 +37,10 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     of `about`."""
     flat = start.velocity[[0, 2]]
     pace = float(np.hypot(*flat))
-    fall, turn = chosen(physique, falls(physique), start.centre, math.atan2(flat[0], flat[1]), start.heading, floor, things)
+    ground = ground_about(things, start.centre[[0, 2]], floor) if len(things) else None
+    fall, turn = chosen(physique, falls(physique), start.centre, math.atan2(flat[0], flat[1]), start.heading, floor, ground)
     times, shown, toppled = _paced(fall, pace, rate)
-    facing = start.heading + turn * np.clip(times / toppled, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(times / toppled, 0.0, 1.0))
+    facing = start.heading + turn * _evenly(times / toppled)
     local = fall.turns(shown)
     local[:, 0] = yaw(facing) @ local[:, 0]
     left = faded(vectors(start.rotations @ np.swapaxes(local[0], -1, -2)), start.rates, FADE, times)
@@ -46,19 +51,36 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
     roots, centres = roots + slip, centres + slip
     positions, turned = forward_kinematics(physique.skeleton, roots, local)
-    if len(things):
-        off = held(*flesh(physique, positions, turned), floor, things)
-        roots, centres, positions = roots + off, centres + off, positions + off[:, None]
-        over = over + off[:, 1:2]
+    over, floors, supported = over[:, -FEET:], np.full(len(times), floor), True
+    if ground is not None:
+        roots = roots + held(*flesh(physique, positions, turned), floor, ground)
+        points, thick = flesh(physique, positions, turned)
+        points = points + (roots - positions[:, 0])[:, None]
+        stands = floor
+        if uneven(points, thick, floor, ground):
+            up = max(len(times) - int(np.argmax(roots[::-1, 1] < floor + UP * (roots[-1, 1] - floor))), 2)
+            last, led, stands = footing(points[up - 2:, -FEET:], thick[-FEET:], floor, ground)
+            times, roots, local, facing, floors = (rows[:up - 1 + last] for rows in (times, roots, local, facing, floors))
+            roots, local = settled(physique, roots + _evenly(times / toppled)[:, None] * [led[0], 0.0, led[1]], local, floor, float(start.root[1]), ground)
+        positions, turned = forward_kinematics(physique.skeleton, roots, local)
+        centres = centre_of_mass(physique.anatomy, positions, turned)
+        level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
+        supported = not np.isnan(floors).any()
+        floors = np.where(times > toppled, stands, floor)
+        soles, rests = flesh(physique, positions, turned)[0][:, -FEET:], np.empty((len(times), FEET))
+        rest_kernel(ground.things, ground.corner, ground.caps, soles, thick[-FEET:], False, rests, np.empty((len(times), FEET, 2)))
+        over = soles[..., 1] - rests
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
     slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
-    contacts = slow & (over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
-    floors = np.full(len(times), floor)
-    if len(things):
-        floors = np.where(times > toppled, under(things, centres, floor), floor)
-        contacts &= (floors > floor - STEP)[:, None]
-    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors)
+    contacts = slow & (over.reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
+    return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors, supported)
+
+
+def _evenly(share: np.ndarray) -> np.ndarray:
+    """From 0 to 1 as a share of the time (N,) goes from 0 to 1, without a jerk at either."""
+    share = np.clip(share, 0.0, 1.0)
+    return share**2 * (3.0 - 2.0 * share)
 
 
 def _paced(fall: Fall, pace: float, rate: float) -> tuple[np.ndarray, np.ndarray, float]:

@@ -5,7 +5,7 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from .aim import Aim
+from .aim import PATIENCE, Aim
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
                       player_of, wheel_wish, wishes)
@@ -15,13 +15,13 @@ from .making import aloft, jumping, landing, leaving
 from .moves import Jump, Move
 from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, user_file
-from .run_up import RunUp, before, leaps
+from .run_up import RUNS, RunUp, agility, before, last_chance, leaps, rises
 from .script import Script
 from .wish import STEPS, Wish, push
 
 __all__ = [
     "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
-    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "aloft", "as_toml",
-    "before", "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "leaps", "leaving", "load", "mode_of", "mouse_wish",
-    "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "user_file", "wheel_wish", "wishes",
+    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
+    "before", "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
+    "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "rises", "user_file", "wheel_wish", "wishes",
 ]

@@ -17,6 +17,7 @@ import numpy as np
 from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.navigation import floor_at, in_world
 
+from .run_up import AHEAD, UP
 from .wish import Wish, in_view
 
 MOVING = 0.9
@@ -29,16 +30,12 @@ FARTHEST = 2.6
 """How far from a standing body the ring may be [m]."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
-AHEAD = 0.60, 0.53
-"""How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
 SLACK = 0.3
 """Who runs and would come too near for the ring lands at most so far beyond it [m]."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
 SINKS = 0.35
 """A body goes down so long [s] behind the aim: it crouches for the jump that will be aimed at then."""
-STEP_UP = 0.95
-"""The ring climbs onto whatever is no higher than this over the feet [m]."""
 PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 ASKEW = 0.35
@@ -63,12 +60,13 @@ class Aim:
     moving: bool = False
     place: tuple[float, float] | None = None
     heading: float | None = None
+    spent: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
         the state is then that in which it will stand there."""
-        if leaving:
-            return Aim()
+        if leaving or wish.jump and self.spent:
+            return Aim(spent=wish.jump and (self.aiming or self.spent))
         if not wish.jump:
             if self.aiming:
                 x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
@@ -129,7 +127,7 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
-        return Leap(np.array([x, floor_at(x, z, around, floor + STEP_UP), z]), slack=SLACK if self.moving else 0.0, heading=self.heading)
+        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK if self.moving else 0.0, heading=self.heading)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""

@@ -1,6 +1,7 @@
 """Run-ups: who wants to leap goes on at what he can't walk over as long as he could still stop before it, and farther only if his leap goes off.
 
-He plays ahead what he is about to do: controllers are pure functions.
+He plays ahead what he is about to do: controllers are pure functions. Hands that hold a leap at a run over what can't be run over go on to the last
+footfall from which it can be leapt, and it goes off there by itself.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Intent, but
-from gambol.controllers.navigation import STEP, floor_at, gap, room
+from gambol.controllers.contract import CharacterState, Intent, Leap, but
+from gambol.controllers.navigation import STEP, floor_at, gap, in_world, room
 from gambol.controllers.supervisor import Asked
 
 LOOK, EVERY = 2.0, 0.15
@@ -34,22 +35,53 @@ PACE, FINE = 0.1, 0.01
 STOPS = 0.6, 0.45
 """Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
 
+RUNS = 1.8
+"""Hands that ask for more than this [m/s] run [m/s]: a leap that they hold goes off by itself; who walks comes to rest before what is ahead, and aims."""
+AHEAD = 0.60, 0.53
+"""How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
+NEARER = 0.0, 0.2, 0.4, -0.2, 0.6, 0.8
+"""A leap that goes off by itself lands where the ring is, or so much nearer than it [m]."""
+UP = 0.95
+"""It lands no higher than this over the feet [m], and no lower than a step."""
+RISES = 0.12
+"""What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
+LATE, TURNED = 6, 0.35
+"""It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
+
 Asks = Callable[[CharacterState], Intent]
 """What is asked of somebody from state to state, step after step."""
 
 
 @dataclass(frozen=True)
 class RunUp:
-    """What somebody knows of his run-up. free: for so many steps he goes on as he does, −1 where his leap was found not to go off; halt: x, z [m] where he is to come to rest, as he can't leap."""
+    """What somebody knows of his run-up. free: for so many steps he goes on as he does, −1 where his leap was found not to go off; halt: x, z [m] where he is to come to rest, as he can't leap.
+    leap: what goes off by itself after these steps, of a run of `velocity` [m/s] along x and z."""
 
     free: int = 0
     halt: tuple[float, float] | None = None
+    leap: Leap | None = None
+    velocity: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def off(self) -> Leap | None:
+        """The leap that goes off by itself now."""
+        return self.leap if self.free <= 0 else None
+
+    def turned(self, velocity: tuple[float, float]) -> bool:
+        """Whether hands ask for a velocity (2,) [m/s] another way than when this was found; who lets go of the stick does not."""
+        across = self.velocity[0] * velocity[1] - self.velocity[1] * velocity[0]
+        along = self.velocity[0] * velocity[0] + self.velocity[1] * velocity[1]
+        return math.hypot(*velocity) > 1e-6 and abs(math.atan2(across, along)) > TURNED
+
+    def onward(self, velocity: tuple[float, float]) -> RunUp | None:
+        """The same a step later of somebody whose hands ask for a velocity (2,) [m/s]. None where no leap was found that goes off by itself, it did not, or he turned."""
+        return None if self.leap is None or self.free <= -LATE or self.turned(velocity) else replace(self, free=self.free - 1)
 
     def step(self, controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float) -> RunUp:
         """The same `dt` seconds later. asks: what is asked of him from here on."""
         if self.halt is not None or self.free > 0 or not len(around):
             return replace(self, free=self.free - 1)
-        return _played(controller, state, asks, around, dt, LOOK / _agility(controller))
+        return _played(controller, state, asks, around, dt, LOOK / agility(controller))
 
     def heeded(self, state: CharacterState, intent: Intent) -> Intent:
         """An intent of somebody who comes to rest before what he can't leap; as it is where he goes on."""
@@ -69,7 +101,7 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
         return None
     pace = float(np.hypot(state.velocity[0], state.velocity[2]))
     ahead = np.asarray(velocity, float) / speed
-    for far in np.arange(1, 2 + int((STOPS[0] + STOPS[1] * max(pace, speed)**2 / _agility(controller)) / PACE)) * PACE:
+    for far in np.arange(1, 2 + int((STOPS[0] + STOPS[1] * max(pace, speed)**2 / agility(controller)) / PACE)) * PACE:
         if room(here + far * ahead, floor, around) <= 0.0:
             low, high = far - PACE, far
             while high - low > FINE:
@@ -82,7 +114,14 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     return None
 
 
-def _agility(controller: Any) -> float:
+def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> bool:
+    """Whether the floor rises by more than a runner takes in stride where somebody goes with a velocity (2,) [m/s] in the world, no farther away than `before` looks."""
+    floor, ahead, speed = float(state.floor), np.asarray(velocity, float), math.hypot(*velocity)
+    places = np.asarray(state.ground[:2], float) + np.arange(1, 2 + int((STOPS[0] + STOPS[1] * speed**2 / agility(controller)) / PACE))[:, None] * PACE * ahead / speed
+    return any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in places)
+
+
+def agility(controller: Any) -> float:
     """How agile somebody is, beside a person, whose number is 1, and no more than that."""
     return min(getattr(controller.settings, "agility", 1.0), 1.0)
 
@@ -115,6 +154,38 @@ def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[A
             refused = Asked("", intent, state)
         state, _ = controller.step(state, but(intent, leap=None, aim=intent.leap or intent.aim), dt)
     return 0
+
+
+def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, float], asks: Asks, around: Sequence[Any], dt: float) -> RunUp | None:
+    """The run-up of somebody who goes on with a velocity (2,) [m/s] to the last footfall from which he can leap over what he can't run over, or onto it; None
+    where there is none."""
+    footfalls, stood, now, floor, blocked = [], True, state, float(state.floor), None
+    for number in range(round(LOOK / agility(controller) / dt)):
+        pace = np.array(in_world(now.ground, now.velocity))
+        speed = max(float(np.hypot(*pace)), 1e-6)
+        ring = np.array(now.ground[:2]) + (AHEAD[0] + AHEAD[1] * speed) * pace / speed
+        intent = but(asks(now), leap=Leap(np.array([ring[0], floor_at(ring[0], ring[1], around, floor + UP), ring[1]])), around=around)
+        stands = controller.precondition(now, intent) >= READY
+        if stands and not stood:
+            footfalls.append((number, now, pace / speed, intent))
+        stood = stands
+        now, _ = controller.step(now, but(intent, leap=None, aim=intent.leap), dt)
+        if blocked is None and (room(now.ground[:2], floor, around) <= 0.0 or floor_at(now.ground[0], now.ground[1], around, floor + UP) > floor + RISES):
+            blocked = np.array(now.ground[:2])
+        if now.active == "jump" or _touches(now.ground[:2], floor, around) or blocked is not None and _edge(now.ground[:2], floor, around):
+            break
+    if blocked is None:
+        return None
+    for number, at, ahead, intent in reversed(footfalls):
+        for nearer in NEARER:
+            x, z = intent.leap.place[[0, 2]] - nearer * ahead
+            high = floor_at(x, z, around, floor + UP)
+            if float((np.array([x, z]) - blocked) @ ahead) <= 0.0 or high < floor - STEP:
+                continue
+            leap = Leap(np.array([x, high, z]))
+            if controller.refusal(at, but(intent, leap=leap)) == "":
+                return RunUp(number, None, leap, velocity)
+    return None
 
 
 def _edge(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:

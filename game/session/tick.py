@@ -18,7 +18,7 @@ from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import in_world, slide
 
 from ..explain import preview
-from ..input import Aim, Command, RunUp, Wish, aloft, before, landing, leaps, leaving, push
+from ..input import PATIENCE, RUNS, Aim, Command, RunUp, Wish, agility, aloft, before, landing, last_chance, leaps, leaving, push, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -82,10 +82,12 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing)
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:
-            command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props)))
-        players[-1] = replace(players[-1], run_up=run_up or RunUp())
+            command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props, agility(character.controller))))
+        known = run_up or RunUp()
+        players[-1] = replace(players[-1], run_up=known)
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
-        intent = replace((run_up or RunUp()).heeded(state, command.intent(state, player.steering)), leap=leap, aim=ready, goal=goal,
+        command = command if known.leap is None else replace(command, velocity=known.velocity)
+        intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, aim=known.leap or ready, goal=goal,
                          strike=push(player.camera.yaw, wish) if player.pushed else None)
         intents.append(intent if aim.moving or run_up is not None else stopped(state, intent, props))  # a run-up may go at what it leaps onto
     passers, theirs = asked(moment)
@@ -97,24 +99,34 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
 
 
 def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:
-    """What is known of the run-up of somebody who aims at a run, or has let go: goes on as he does if his leap will go off, else comes to rest before
-    what he can't walk over. None of who does neither."""
+    """What is known of the run-up of somebody who aims at a run, or has let go: goes on as he does if his leap will go off, or until he can just still leap over
+    what is ahead, and else comes to rest before it. None of who does neither."""
     if not (aim.moving and (aim.aiming or aim.waiting > 0.0)):
         return None
-    if player.run_up.free > 1:
-        return RunUp(player.run_up.free - 1)
-    state, controller, jump = character.state, character.controller, jump_of(character.controller)
+    known, state, controller, jump = player.run_up, character.state, character.controller, jump_of(character.controller)
+    onward = known.onward(command.velocity)
+    if onward is not None:
+        return onward
+    if known.free > 1:
+        return RunUp(known.free - 1)
     halt = before(controller, state, command.velocity, props)
-    if halt is None or jump is None or aim.aiming:
+    runs = math.hypot(*command.velocity) > RUNS
+    if jump is None or halt is None and not (runs and rises(controller, state, command.velocity, props)):
         return RunUp(0, halt)
-    if player.run_up.free == 0:  # whether it goes off is found out once, and only where something is ahead
+    if aim.aiming and not runs:
+        return RunUp(0, halt)
+    if known.free != 0 and not known.turned(command.velocity) and aim.waiting != PATIENCE:
+        return replace(known, free=-1, halt=halt, leap=None)
+    # what comes of it is found out once, and only where something is ahead
+    if not aim.aiming:
         gravity, longest = -float(jump.gravity[1]), jump.longest
 
         def asks(now: CharacterState) -> Intent:
             return replace(command.intent(now, player.steering), leap=aim.asked(now, props, gravity, longest))
         if number := leaps(controller, state, asks, props, DT, round(aim.waiting / DT)):
             return RunUp(number)
-    return RunUp(-1, halt)
+    found = last_chance(controller, state, command.velocity, lambda now: command.intent(now, player.steering), props, DT) if runs else None
+    return found or RunUp(-1, halt, velocity=command.velocity)
 
 
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:

@@ -19,6 +19,8 @@ DT, PLAYED = 1.0 / 60.0, 8.0
 """Steps [s], and for how long who is struck is looked at [s]."""
 HARD = 0.3, 3.0
 """By how much strikes change a body's velocity [m/s]."""
+ALOFT, LONG = 0.05, 0.1
+"""Who is farther over the ground than this [m], for longer than this [s], floats."""
 ROOMS = "walls", "platforms", "stairs"
 
 
@@ -59,6 +61,14 @@ def deepest(body: Physique, states: Sequence[Any], things: Sequence[Any]) -> tup
     return worst, when
 
 
+def floats(body: Physique, states: Sequence[Any], things: Sequence[Any]) -> float:
+    """For how long [s] nothing of a body is within ALOFT of the ground, but for falls through the air."""
+    placed = forward_kinematics(body.skeleton, np.stack([np.asarray(s.pose.root, float) for s in states]), np.stack([np.asarray(s.pose.rotations, float) for s in states]))
+    points, thick = flesh(body, *placed)
+    low = [min(y - t - floor_at(x, z, things, y + 0.3) for (x, y, z), t in zip(row, thick)) for row in points]
+    return DT * sum(gap > ALOFT for gap, state in zip(low, states) if state.active != "jump")
+
+
 def struck_in(somebody, kind: str, seed: int, number: int) -> tuple[list[Any], tuple, np.ndarray]:
     """All states of somebody who is struck in a room, what stands about, and the strike [m/s]."""
     rng = np.random.default_rng([seed, ROOMS.index(kind), number])
@@ -78,16 +88,17 @@ def report(somebody, seed: int, count: int) -> None:
     """Print what becomes of people who are struck in so many rooms of each kind."""
     body = somebody.parts["struck"].physique
     for kind in ROOMS:
-        depths, fates, wrong = [], Counter(), []
+        depths, fates, wrong, aloft = [], Counter(), [], []
         for number in range(count):
             states, things, _ = struck_in(somebody, kind, seed, number)
             why = states[1].memory.memory.made.why if states[1].active == "struck" else states[1].memory.why
             fates[why + (", over an edge" if any(s.active == "jump" for s in states) else "")] += 1
             depths.append(100.0 * deepest(body, states, things)[0])
+            aloft.append(floats(body, states, things))
             x, z, _ = states[-1].ground
             off = abs(float(states[-1].floor) - floor_at(x, z, things, float(states[-1].floor) + 0.24))
             if off > 0.25 or states[-1].active != "locomotion":
                 wrong.append(number)
         print(f"{count} struck by {HARD[0]:g} … {HARD[1]:g} m/s beside {kind}: {', '.join(f'{n} {why}' for why, n in fates.most_common())}")
         print(f"  deepest in anything: median {np.median(depths):.1f} cm, 95 % {np.percentile(depths, 95):.1f}, worst {max(depths):.1f} (number {int(np.argmax(depths))}); "
-              f"more than 2 cm: {np.mean(np.array(depths) > 2.0):.0%}; do not stand on ground at the end: {len(wrong)} {wrong[:8] or ''}")
+              f"more than 2 cm: {np.mean(np.array(depths) > 2.0):.0%}; float: {np.mean(np.array(aloft) > LONG):.0%}, for {sum(aloft):.1f} s in all; do not stand on ground at the end: {len(wrong)} {wrong[:8] or ''}")

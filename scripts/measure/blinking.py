@@ -1,8 +1,9 @@
 """A body from points that blink, come at another rate, or are noisy: how far off its joints are.
 
-    python scripts/measure/blinking.py [--clip FILE] [--seconds 10]
+    python scripts/measure/blinking.py [--clip FILE] [--seconds 10] [--hands 1]
 
-Without a clip the performer is somebody of Gambol's who walks and runs as hands that change their mind have it. By the network that ships, in a loop
+Without a clip the performer is somebody of Gambol's who walks and runs as hands that change their mind have it; others for other --hands. Where trackers
+turn, what is missing has neither a place nor a turn. By the network that ships, in a loop
 of one's own (`Reconstruction.step`) at 60 steps a second. Figures are the mean distance of the joints from the performer's [cm], over two seeds, and
 that of the worst frame.
 """
@@ -25,36 +26,38 @@ from gambol.controllers.mocap import load, retarget
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
 from gambol.controllers.reconstruction.trackers import Network, Trackers
 from reconstruction_figures import table
+from reconstruction_trackers import WORN
 
 RATE, SEEDS, CHANGES = 60, 2, 1.5
 MISSING, EVERY, NOISE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5), (2, 3, 4), (1, 2, 3, 5)
 
 
-def walked(seconds: float) -> np.ndarray:
-    """Joints (T, J, 3) [m] of somebody who is told something else every second and a half."""
-    walker, rng, joints = Locomotion.load(), np.random.default_rng(0), []
+def walked(seconds: float, hands: int) -> tuple[np.ndarray, np.ndarray]:
+    """Joints (T, J, 3) [m] and orientations (T, J, 3, 3) of somebody who is told something else every second and a half."""
+    walker, rng, joints = Locomotion.load(), np.random.default_rng(hands), []
     state, wish = walker.start(), np.zeros(3)
     for number in range(round(seconds * RATE)):
         if number % round(CHANGES * RATE) == 0:
             wish = rng.uniform([0.0, -1.0, -0.3], [2.8, 1.0, 0.3])
         state, pose = walker.step(state, Intent(wish), 1 / RATE)
-        joints.append(forward_kinematics(SKELETON, pose.root, pose.rotations)[0])
-    return np.array(joints)
+        joints.append(forward_kinematics(SKELETON, pose.root, pose.rotations))
+    return np.array([one[0] for one in joints]), np.array([one[1] for one in joints])
 
 
-def recorded(file: Path) -> np.ndarray:
-    """Joints (T, J, 3) [m] of a clip on Gambol's skeleton."""
-    return retarget(load(file)).resample(RATE).kinematics()[0]
+def recorded(file: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Joints (T, J, 3) [m] and orientations (T, J, 3, 3) of a clip on Gambol's skeleton."""
+    return retarget(load(file)).resample(RATE).kinematics()
 
 
-def off(network: Network, truth: np.ndarray, points: str, seen: np.ndarray) -> np.ndarray:
-    """How far off (T − 1,) the joints of the body are that follows what is seen (T, n, 3), on the average [cm]."""
+def off(network: Network, truth: np.ndarray, points: str, seen: np.ndarray, turns: np.ndarray | None) -> np.ndarray:
+    """How far off (T − 1,) the joints of the body are that follows what is seen (T, n, 3), with turns (T, n, 3, 3) if trackers turn, on the average [cm]."""
     controls = parse(points, SKELETON)
     method = Trackers(network, controls, 1 / RATE)
     follower, found = Reconstruction(method, controls, starts=method), []
-    state = follower.begin(seen[0])
-    for place, true in zip(seen[1:], truth[1:], strict=True):
-        state, pose = follower.step(state, Intent(points=place), 1 / RATE)
+    told = [None] * len(seen) if turns is None else list(np.where(np.isfinite(seen)[..., None], turns, np.nan))
+    state = follower.begin(seen[0], turns=told[0])
+    for place, turn, true in zip(seen[1:], told[1:], truth[1:], strict=True):
+        state, pose = follower.step(state, Intent(points=place, turns=turn), 1 / RATE)
         found.append(np.linalg.norm(forward_kinematics(SKELETON, pose.root, pose.rotations)[0] - true, axis=-1).mean())
     return 100 * np.array(found)
 
@@ -81,14 +84,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--clip", type=Path)
     parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--hands", type=int, default=0, help="whose hands: a seed")
     args = parser.parse_args()
-    truth = (walked(args.seconds) if args.clip is None else recorded(args.clip))[:round(args.seconds * RATE)]
+    truth, turned = (some[:round(args.seconds * RATE)] for some in (walked(args.seconds, args.hands) if args.clip is None else recorded(args.clip)))
     network, columns = Network.load(), {}
-    for points in ("6", "4"):
-        for name, ways in spoilt(truth[:, parse(points, SKELETON).joints]).items():
-            errors = [off(network, truth, points, seen) for seen in ways]
+    for points, turning in WORN.values():
+        joints = parse(points, SKELETON).joints
+        for name, ways in spoilt(truth[:, joints]).items():
+            errors = [off(network, truth, points, seen, turned[:, joints] if turning else None) for seen in ways]
             columns.setdefault(name, []).append(f"{np.mean(errors):.1f} ({np.max(errors):.1f})")
-    print(table(("", "6 points", "4 points"), [(name, *cells) for name, cells in columns.items()]))
+    print(table(("", *WORN), [(name, *cells) for name, cells in columns.items()]))
 
 
 if __name__ == "__main__":

@@ -104,3 +104,38 @@ def test_hands_that_walk_at_a_platform_leap_onto_it_and_at_a_wall_stop(library):
         assert deepest(who, states, line.now.after.props) < 0.02
         ends.append(states[-1])
     assert ends[0].floor == pytest.approx(0.35) and ends[1].floor == 0.0
+
+
+def running(who, things, floor, far, held=True):
+    """All states of somebody whose hands run at something `far` away, the leap held from 3 m before it, if at all."""
+    line, states = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), 1)), []
+    while len(states) < 600 and (not states or states[-1].ground[1] < far + 3.5):
+        states.append(line.now.after.characters[0].state)
+        z = states[-1].ground[1]
+        line.advance((Wish(move=(0.0, 1.0), run=0.9, jump=held and z > far - 3.0).rounded(),))
+    return states
+
+
+@pytest.mark.parametrize("things, floor, far", [((box(-3.0, 1.0, 8.0), box(6.1, 1.0)), 1.0, 5.0), ((box(5.3, 0.35),), 0.0, 5.3), ((box(5.6, 0.4, 0.15),), 0.0, 5.6)])
+def test_a_leap_held_at_a_run_goes_off_at_the_last_footfall_and_he_runs_on(library, things, floor, far):
+    who = person(library.tuned(Settings(idle=0.0)))
+    states = running(who, things, floor, far)
+    leapt = [s for s in states if s.active == "jump"]
+    first = next(n for n, s in enumerate(states) if s.active == "jump")
+    assert states[first - 1].velocity[0] > 2.2, "nothing braked him"
+    assert not any(s.memory.memory.fault for s in leapt) and states[-1].ground[1] > far + 3.4
+    assert min(s.velocity[0] for s in states[first:]) > 1.2
+    assert sum(now.active == "jump" and was.active != "jump" for was, now in zip(states, states[1:])) == 1, "the held button means one leap"
+
+
+def test_a_leap_held_at_a_run_over_a_gap_too_wide_for_it_is_braked(library):
+    who = person(library.tuned(Settings(idle=0.0)))
+    states = running(who, (box(-3.0, 1.0, 8.0), box(8.5, 1.0)), 1.0, 5.0)
+    assert all(s.active == "locomotion" or s.velocity[0] < 0.3 for s in states) and states[-1].floor == 1.0 and states[-1].ground[1] < 5.0
+
+
+@pytest.mark.parametrize("agility", [0.5, 1.0])
+def test_nobody_whose_hands_run_at_an_edge_goes_over_it(library, agility):
+    who = person(library.tuned(Settings(idle=0.0, agility=agility)))
+    states = running(who, (box(-3.0, 1.0, 8.0), box(6.3, 1.0)), 1.0, 5.0, held=False)
+    assert all(s.active == "locomotion" and s.ground[1] < 5.0 for s in states) and np.hypot(*states[-1].velocity[[0, 2]]) < 0.2

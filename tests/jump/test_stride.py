@@ -98,3 +98,19 @@ def test_the_foot_stays_where_it_comes_down_and_no_hip_sinks_through_the_stride(
     assert min(sole_corners(jump.skeleton, *one)[..., 1].min() for one in placed) > -0.015
     heights = np.array([one[0][0, 1] for one in placed])
     assert heights.min() > 0.74 and np.abs(np.diff(heights, 2)).max() < 0.02
+
+
+@pytest.mark.parametrize("high", [0.0, 0.34])
+def test_the_leg_that_swings_on_clears_the_floor_as_it_lands(person, runner, high):
+    jump, state = person.parts["jump"], runner
+    for _ in range(60):
+        own = person.active(state)[1]
+        leap = Leap(np.array([state.ground[0], high, state.ground[1] + (1.8 if high else 2.1)]))
+        if jump.precondition(own, Intent(WISH, leap)) >= 1.0 and not jump.refusal(own, Intent(WISH, leap)):
+            break
+        state, _ = person.step(state, Intent(WISH), 1 / FPS)
+    made = jump.plan(own, Intent(WISH, leap))
+    assert made.path.lands is not None
+    landing = (made.times >= made.touch_down) & (made.times <= made.through)
+    soles = sole_corners(jump.skeleton, *forward_kinematics(jump.skeleton, made.roots[landing], made.local[landing])).reshape(-1, 2, 6, 3)
+    assert (soles[:, 1 - made.path.lands, :, 1] - high).min() > 0.0

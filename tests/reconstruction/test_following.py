@@ -333,3 +333,9 @@ def test_a_walker_goes_to_points_that_are_too_far_away(follower, points):
     assert duty[0] == "locomotion" and duty[-1] == "reconstruction"
     assert np.abs(follower.controls.on(*_placed([state]))[0] - there).max() < 0.03
     assert not towards(state, there * np.nan).any()
+
+
+def test_methods_tell_their_motions_apart():
+    """By the same points."""
+    kinds = {Reconstruction(type(name, (), {})(), parse("4", SKELETON)).kind for name in ("One", "Other")}  # type: ignore[arg-type]
+    assert len(kinds) == 2

@@ -57,6 +57,18 @@ def test_exchanged_points_are_told_apart(first, count, order, step):
         gate, _ = gate.admit(own, truth, np.zeros_like(truth), step * DT)
 
 
+@pytest.mark.parametrize("seed", range(3, 15, 3))
+def test_noise_exchanges_no_points(seed):
+    """5 cm of it takes points 20 cm apart past each other's places; they keep their numbers."""
+    seen = swinging() + 0.2 * np.arange(2)[:, None] * [0.0, 1.0, 0.0]
+    noisy = seen + np.random.default_rng(seed).normal(0.0, 0.05, seen.shape)
+    gate = Gate.before(2 * seen[0] - seen[1], (seen[1] - seen[0]) / DT)
+    for now, truth in zip(noisy, seen):
+        gate, own = gate.named(now, DT)
+        gate, _ = gate.admit(own, truth, np.zeros_like(truth), DT)
+    assert list(gate.order) == [0, 1]
+
+
 @given(st.integers(60, 120), st.integers(1, 30), st.floats(0.3, 1.4))
 @settings(max_examples=40)
 def test_a_point_that_comes_back_elsewhere_comes_there_without_a_pop(lost, count, away):

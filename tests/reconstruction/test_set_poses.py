@@ -7,7 +7,9 @@ from typer.testing import CliRunner
 
 from gambol.controllers.body import contact_height, exp, forward_kinematics, yaw
 from gambol.controllers.reconstruction import SKELETON
-from gambol.controllers.reconstruction.calibration import JOINTS, POSES, WORN, Stood, calibrated, fitted, stance, CalibrationNetwork
+from gambol.controllers.reconstruction.calibration import (JOINTS, POSES, WORN, CalibrationNetwork, Stood, calibrated, fitted, load_bones,
+                                                           stance)
+from gambol.controllers.reconstruction.calibration.pose_fit import PoseFit
 from gambol.controllers.reconstruction.live import placed
 from gambol.game import cli
 from gambol.game.cli import set_poses
@@ -89,6 +91,43 @@ def test_trackers_that_are_not_worn_are_never_read():
         some, turned = (np.where(there.reshape(-1, *[1] * (part.ndim - 2)), part, unknown) for part in (places, turns))
         found.append(fitted(Stood.of(some[:1], turned[:1], there[None]), some, turned, range(len(POSES))))
     assert np.isfinite(found[0].offsets).all() and np.array_equal(found[0].offsets[there], found[1].offsets[there])
+
+
+def test_slopes_are_those_of_what_is_told():
+    """Of bones, mounts, the floor and all joints, somewhere."""
+    rng = np.random.default_rng(8)
+    there = np.array([name != "Head" for name in WORN])
+    places, turns = worn(rng, *stood_in(rng, 3.0), OFF)
+    stood = Stood.of(places[:1], turns[:1], there[None])
+    likely = load_bones()
+    fit = PoseFit.of(stood, places, turns, ASKED, np.arange(len(POSES)) == 7, (likely.means[0], likely.spread))
+    shared, own = fit.mean + rng.normal(0.0, 0.3, fit.mean.shape), rng.normal(0.0, 0.3, fit.loose.shape)
+    at = fit.told(shared, own)
+    for _ in range(5):
+        way, aside = rng.normal(size=shared.shape), rng.normal(size=own.shape)
+        ahead, behind = (fit.told(shared + step * way, own + step * aside).found for step in (1e-6, -1e-6))
+        said = at.shared @ way + np.einsum("kmo,ko->km", at.own, aside)
+        assert np.allclose((ahead - behind) / 2e-6, said, rtol=1e-5, atol=1e-4 * np.abs(said).max())
+
+
+def test_what_is_found_is_likelier_than_all_beside_it():
+    """And as sure of what poses share as the whole problem's curvature has it, own unknowns and all."""
+    rng = np.random.default_rng(9)
+    places, turns = worn(rng, *stood_in(rng, 3.0), OFF)
+    likely = load_bones()
+    fit = PoseFit.of(Stood.of(places[:1], turns[:1], ALL[None]), places, turns, ASKED, np.arange(len(POSES)) == 7, (likely.means[0], likely.spread))
+    found = fit.solved()
+    for _ in range(10):
+        shared, own = found.shared + 0.3 * rng.normal(size=found.shared.shape), found.own + 0.1 * fit.loose * rng.normal(size=found.own.shape)
+        assert fit.cost(shared, own, fit.told(shared, own).found) > fit.cost(found.shared, found.own, fit.told(found.shared, found.own).found)
+    at = fit.told(found.shared, found.own)
+    count, most, wide = at.own.shape
+    apart = np.zeros((count, most, count, wide))
+    apart[np.arange(count), :, np.arange(count)] = at.own
+    slopes = np.concatenate([at.shared, apart.reshape(count, most, -1)], -1).reshape(count * most, -1)
+    curved = slopes.T @ slopes + np.diag(np.concatenate([np.zeros(len(fit.mean)), fit.loose.ravel() ** -2.0]))
+    curved[:len(fit.mean), :len(fit.mean)] += fit.precision
+    assert np.allclose(np.linalg.inv(curved)[:len(fit.mean), :len(fit.mean)], found.spread, rtol=1e-3, atol=1e-6)
 
 
 def test_no_pose_tells_nothing():

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ...body import exp_kernel, product_kernel, yaw
+from ...body import exp_kernel, product_kernel, sole_corners, yaw
 from ...compiled import kernel
 from ..body import (FLEX, TOES_DOWN, Physique, Start, hermite, measures, monotone, parts_kernel, place_kernel, soles, stand_kernel,
                     carriage, turns, vectors)
@@ -48,6 +48,9 @@ LEANS, LEANT = (1.8, 0.2), np.array([0.2, 0.5, 0.8, 1.0, 1.0, 0.8, 0.55, 0.3, 0.
 """Who sinks deeper than the second [m] leans farther forward by the first [rad/m], lest the heels rise; and which share of that, from row to row."""
 UP = 0.98
 """Trunk and arms are as in standing once the body has come up so much of the way."""
+CLEARS, LIFT, LIFTS, BENT = 0.015, 0.35, 4, 2.3
+"""A leg that swings on as its body lands on the other clears the floor by so much [m]; a knee that is bent by 1 rad more lifts its foot by so much [m], at standard
+height; tried so often, and bent no farther than this [rad] for it."""
 SAME = 1e-3
 """The legs reach for a body turned to within this of how it lands [rad]."""
 
@@ -79,7 +82,6 @@ class Airborne:
         if way.lands is not None:
             free = self.legs[4 - 4 * way.lands:8 - 4 * way.lands]
             self.swings = slice(int(free[0]), int(free[-1]) + 1)
-            self.swung = keyed_leg(np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
         self.look = None if start.turn is None else Look.of(start, way, self.support.mean(0), physique.skeleton)
         rows = way.keys[3 * BETWEEN + 1:, :LEGS].copy()  # whoever comes down otherwise carried comes to them by and by
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
@@ -87,6 +89,38 @@ class Airborne:
         rows[:, 0] += LEANS[0] * max(sunk - LEANS[1], 0.0) * LEANT
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]))
+        if way.lands is not None:
+            self.swung = self._passing(way.lands, np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
+
+    def _passing(self, lands: int, times: np.ndarray, rows: np.ndarray):
+        """The leg that goes on swinging of who lands on the other, `lands`: as recorded in rows (K, EACH) [rad] at times (K,) [s] after touch-down, its knee bent by as much more as keeps its foot off the floor
+        until the lowest point: recorded bodies sink less over it."""
+        swung, knee = keyed_leg(times, rows), np.zeros(len(times))
+        until = times[:BETWEEN + 1]
+        centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[self.way.land], self.sunk[0]]).T], 1)
+        angles, feet = self.carriage(self.down + until), np.ones((len(until), 2, 6))
+        feet[..., :5] = self.landing
+        self._free(feet)
+        roots, local = np.empty((len(until), 3)), np.tile(np.eye(3), (len(until), self.count, 1, 1))
+        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
+        for _ in range(LIFTS):
+            local[:, self.swings] = swung(until)
+            ground_kernel(self.body, self.flex, angles, self.joints, np.zeros((len(until), self.count, 3)), self._upright(angles[:, 0], np.inf), centres, feet,
+                          centres[0] - [0.0, 0.05, 0.0], roots, local)
+            low = np.empty(len(until))
+            for n in range(len(until)):
+                place_kernel(self.body, roots[n], local[n], positions, turned)
+                corners = sole_corners(self.physique.skeleton, positions[None], turned[None])[0]
+                low[n] = corners.reshape(2, -1, 3)[1 - lands, :, 1].min() - (self.landing[0, 1] - self.body.sole)
+            missing = np.maximum(CLEARS * self.physique.size - low, 0.0) / (LIFT * self.physique.size)
+            if missing.max() < 1e-3:
+                break
+            knee[:BETWEEN + 1] += missing
+            knee[BETWEEN + 1:] = 0.5 * np.maximum(knee[BETWEEN + 1:], knee[BETWEEN])
+            bent = rows.copy()
+            bent[:, 1] = np.minimum(rows[:, 1] + knee[:len(rows)], np.maximum(rows[:, 1], BENT))
+            swung = keyed_leg(times, bent)
+        return swung
 
     def _landing_times(self, stand: float) -> np.ndarray:
         """When [s] after touch-down the rows of the prior are due: until the lowest point evenly, then as the body comes up to how

@@ -28,6 +28,8 @@ ROLLED = 1.2
 """Who rolls comes down so many times as fast as legs alone stop: the shoulder and the back take the rest."""
 STEEP = "too deep for legs alone"
 """Why nobody comes down so hard who does not roll."""
+HARD = "no leg pushes off so hard"
+"""Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
 RUNS_TURNED = 0.8
@@ -64,7 +66,7 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
     legs = 1 if way.single else 2
     if (way.running or way.push.springs) and force > RUNNER * legs * 9.81 * physique.strength:
-        return (f"no leg pushes off so hard from this {'run' if way.running else 'hop'}: {force / 9.81:.1f} times its weight on Earth, "
+        return (f"{HARD} from this {'run' if way.running else 'hop'}: {force / 9.81:.1f} times its weight on Earth, "
                 f"where {'this one has' if legs == 1 else 'these have'} {RUNNER * legs * physique.strength:.1f}")
     if way.course is not None and (way.course.outside > ASIDE * physique.size or way.course.lean > SLIP):
         gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.course.velocity[0])

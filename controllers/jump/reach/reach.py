@@ -12,7 +12,7 @@ from ..body import FLAT, Physique, Start, landing_feet, soles
 from ..motion import Path, Plan, grounded, path, rolled, rolls, room
 from ..planner import plan
 from ..prior import Prior
-from .feasibility import STEEP, fault, stopped, wrong
+from .feasibility import HARD, STEEP, fault, stopped, wrong
 from .sweep import Touch, touch, touches
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
@@ -131,8 +131,9 @@ class Reach:
                     continue
                 way = grounded(self.physique, start, self.path(start, place, floor, flight, low, tucked), floor)
                 first = first or way
-                yield way, fault(self.physique, way, around, floor)
-                if not way.strong:
+                why = fault(self.physique, way, around, floor)
+                yield way, why
+                if not way.strong or why.startswith(HARD):
                     return
             if airtime is not None or not len(around):
                 return

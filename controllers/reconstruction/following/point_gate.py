@@ -79,13 +79,13 @@ class Gate:
     def named(self, seen: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """Points (n, 3) [m] as they come dt [s] after the last ones, under their own numbers, and the gate that knows them.
 
-        Two that leapt at once, each to where the other one was going, have only exchanged their numbers. Closer to each
-        other than `SUDDEN` they can't be told apart.
+        Two that leapt at once, farther than noise takes them, each to where the other one was going, have only exchanged their numbers. Closer
+        to each other than `SUDDEN` they can't be told apart.
         """
         seen, order = seen[self.order], self.order.copy()
         ahead = self.raw + self.rate * dt
         apart = _length(seen[:, None] - ahead)  # of each seen one from where each one was going
-        leapt = np.flatnonzero((self.steady > 0.0) & (np.diagonal(apart) > SUDDEN))
+        leapt = np.flatnonzero((self.steady > 0.0) & (np.diagonal(apart) > self.usual))
         for k, i in enumerate(leapt):
             for j in leapt[k + 1:]:
                 if apart[i, j] <= SUDDEN and apart[j, i] <= SUDDEN:
@@ -105,7 +105,7 @@ class Gate:
         since = self.gone + dt
         moved, ahead = seen - self.raw, self.raw + self.smooth * dt
         away = np.minimum(_length(moved - self.rate * dt), _length(seen - ahead))
-        usual = np.clip(ROUGHLY * self.rough, SUDDEN, NEAR)
+        usual = self.usual
         limit = usual + np.where(self.steady > 0.0, SWERVE * self.gone, FASTEST * since)
         goes_on = there & known & (away <= limit)
         blinks = ~there & known & (since <= BLINK)
@@ -138,6 +138,11 @@ class Gate:
         spin = np.where(goes_on[:, None], damp(self.spin, found, _RATE, dt), np.where(blinks[:, None], self.spin, 0.0))
         turned = np.where(blinks[:, None, None], old @ exp(self.spin * dt), np.where(there[:, None, None], new, np.nan))
         return replace(self, turned=turned, spin=spin, untold=np.where(there, 0.0, since)), turned
+
+    @property
+    def usual(self) -> np.ndarray:
+        """How far (n,) [m] points may get from where their motion led within a frame."""
+        return np.clip(ROUGHLY * self.rough, SUDDEN, NEAR)
 
     @property
     def seen(self) -> np.ndarray:

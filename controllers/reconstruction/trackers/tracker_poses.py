@@ -30,6 +30,8 @@ LOOSENING = 30.0
 """How much larger the network's errors may be than on recordings: trackers are met."""
 EXACT_PLACE, EXACT_TURN = 0.01, np.radians(2.0)
 """How exactly trackers' places [m] and turns [rad] are met, standard deviations."""
+BLUR = 1.0
+"""Noise on points, over this, makes them met so much less exactly."""
 RESTING = 0.95
 """What is left of the body's velocity a frame later where no tracker is seen."""
 ACCELERATION = 10.0
@@ -114,7 +116,7 @@ class Trackers:
             level = noise(recent)
             filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
             points = np.where(np.isfinite(points), filtered.place, np.nan)
-        after = self._followed(memory, points, turns)
+        after = self._followed(memory, points, turns, BLUR * level)
         found = after.pose
         if not self.steady:
             return replace(after, recent=recent), shown_as(found)
@@ -153,14 +155,14 @@ class Trackers:
         frame[GROUND] = 0.0
         return frame[None], track[None]
 
-    def _followed(self, memory, points, turns):
+    def _followed(self, memory, points, turns, blur):
         """The memory a frame later."""
         if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
             told = self._told(memory, points, turns)
             pose = memory.pose + RESTING * less(memory.pose, memory.before)
             pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
             return replace(told, pose=pose, before=memory.pose, soles=Soles.none())
-        return self._solved(self._told(memory, points, turns), points, turns)[0]
+        return self._solved(self._told(memory, points, turns), points, turns, blur)[0]
 
     def _told(self, memory, points, turns):
         """The memory with what trackers say now."""
@@ -183,8 +185,8 @@ class Trackers:
         return replace(memory, places=np.concatenate([place[None], memory.places[:-1]]),
                        turns=np.concatenate([turn[None], memory.turns[:-1]]), turning=memory.turning | known)
 
-    def _solved(self, memory, points, turns):
-        """The memory with the pose of its newest places, and the energy of that."""
+    def _solved(self, memory, points, turns, blur=0.0):
+        """The memory with the pose of its newest places, and the energy of that. blur: [m] noise that is left on points."""
         places, spun = np.ascontiguousarray(memory.places[LAGS]), np.ascontiguousarray(memory.turns[LAGS])
         here = np.asarray(np.isfinite(places).all(-1))
         turned = np.asarray(np.isfinite(spun).all((-1, -2)) & self._hearing(memory.turning))
@@ -194,7 +196,7 @@ class Trackers:
         mean = expected + FADING * memory.off
         soles = memory.soles.told(standing)
         goals, hold = soles.goals(ground)
-        goals, hold = np.concatenate([on_ground(points, ground), goals]), np.concatenate([np.full(len(points), EXACT_PLACE ** -2.0), hold])
+        goals, hold = np.concatenate([on_ground(points, ground), goals]), np.concatenate([np.full(len(points), 1.0 / (EXACT_PLACE ** 2 + blur ** 2)), hold])
         hold[:len(points)][~np.isfinite(points).all(-1)] = 0.0
         keep = np.zeros(len(hold))
         keep[:len(points)][np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0

@@ -1,0 +1,87 @@
+"""Who is struck on stairs: he steps as far as legs reach, goes over an edge no faster than he fell, lies on treads, and gets up on them."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import centre_of_mass, forward_kinematics
+from gambol.controllers.contract import Intent, Strike
+from gambol.controllers.jump import Physique
+from gambol.controllers.navigation import floor_at, gap
+from gambol.controllers.person import person
+from gambol.controllers.struck import DROPS, FALLS, flesh
+from gambol.game.scene import Box
+
+DT, BODY = 1 / 60, Physique()
+RISE, GOING, TREADS = 0.16, 0.32, 8
+STAIRS = (*(Box((0.0, 0.5 * RISE * (n + 1), GOING * n), (2.4, RISE * (n + 1), GOING)) for n in range(TREADS)),
+          Box((0.0, 0.5 * RISE * TREADS, GOING * TREADS + 1.0), (2.4, RISE * TREADS, 2.0 + GOING)))
+
+
+@pytest.fixture(scope="module")
+def somebody():
+    return person()
+
+
+def struck(somebody, gained, aside=0.0, on=4, heading=0.0, seconds=0.0):
+    """What becomes of somebody who stands on a tread and is struck, by so much velocity (2,) [m/s], and all his states from then on."""
+    state, states = somebody.start((aside, GOING * on - 0.02, heading), RISE * (on + 1)), []
+    for n in range(11 + round(seconds / DT)):
+        state, _ = somebody.step(state, Intent(around=STAIRS, strike=Strike(tuple(BODY.mass * np.array(gained))) if n == 10 else None), DT)
+        if n >= 10:
+            states.append(state)
+    return states[0].memory.memory.made, states
+
+
+def over(roots, local):
+    """How far (N, P) [m] flesh is over the ground beneath it, and how deep (N, P) it is in anything."""
+    points, thick = flesh(BODY, *forward_kinematics(BODY.skeleton, roots, local))
+    high = np.array([[y - t - floor_at(x, z, STAIRS, y - t + 0.3) for (x, y, z), t in zip(row, thick)] for row in points])
+    deep = np.max([(thick - gap(points.reshape(-1, 3), thing).reshape(points.shape[:2])) for thing in STAIRS], 0)
+    return high, deep
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("hard", [0.8, 1.1, 1.4])
+def test_who_is_pushed_aside_steps_as_far_as_legs_reach(somebody, side, hard):
+    """No foot stands while the body flies away from it: it gains no more speed than by toppling over a leg."""
+    for aside in (0.0, 0.5 * side):
+        made, _ = struck(somebody, (side * hard, 0.0), aside)
+        pace = np.linalg.norm(made.velocities[:, [0, 2]], axis=1)
+        assert pace.max() < hard + 1.1
+
+
+def test_who_goes_over_the_edge_of_stairs_falls_as_gravity_has_it(somebody):
+    made, states = struck(somebody, (1.1, 0.0), 0.5, seconds=4.0)
+    assert made.fate == DROPS
+    air = [n for n, s in enumerate(states) if s.active == "jump" and not s.contacts.any()]
+    assert len(air) > 5 and np.array_equal(air, np.arange(air[0], air[-1] + 1))
+    at = [states[n] for n in air]
+    centre = centre_of_mass(BODY.anatomy, *forward_kinematics(BODY.skeleton, np.stack([np.asarray(s.pose.root, float) for s in at]), np.stack([np.asarray(s.pose.rotations, float) for s in at])))
+    assert np.abs(np.diff(centre[:, 1], 2) / DT**2 + 9.81)[2:-2].max() < 1.5
+    assert states[-1].active == "locomotion" and states[-1].floor == pytest.approx(floor_at(*states[-1].ground[:2], STAIRS, float(states[-1].floor) + 0.1), abs=0.02)
+
+
+@pytest.mark.parametrize(("gained", "heading"), [((0.0, -2.4), 0.0), ((0.4, 2.4), np.pi), ((0.0, -2.6), np.pi), ((-2.2, 0.5), 0.0), ((0.0, 2.2), np.pi)])
+def test_who_falls_on_stairs_lies_on_them_and_gets_up_on_treads(somebody, gained, heading):
+    """Where he lies some of his trunk lies on a tread or its edge, and none of him is far in one; he floats in no moment, and at the end his soles stand."""
+    made, _ = struck(somebody, gained, heading=heading)
+    assert made.fate == FALLS
+    every = slice(12, None, 4)
+    high, deep = over(made.roots[every], made.local[every])
+    lies = int(made.centres[every, 1].argmin())
+    assert high[lies].min() < 0.02 and np.sort(high[lies])[4] < 0.08
+    assert deep.max() < 0.06 and np.median(deep.max(1)) < 0.01
+    assert np.percentile(high.min(1), 95) < 0.03
+    assert high[-1, -6:].min() < 0.02 and np.abs(made.centres[-1, 1] - made.floors[-1] - 0.95) .max() < 0.15
+
+
+def test_lying_bends_and_begins_as_he_was_struck(somebody):
+    """The first pose is the one as he was struck, and on one level nothing is bent."""
+    made, states = struck(somebody, (0.0, -2.4))
+    assert made.fate == FALLS and made.roots[0, 1] == pytest.approx(float(states[0].pose.root[1]), abs=0.02)
+    level = (Box((0.0, 0.25, 0.0), (9.0, 0.5, 9.0)),)
+    state = somebody.start((0.0, 0.0, 0.0), 0.5)
+    own = somebody.active(state)[1]
+    strike = Strike((0.0, 2.6 * BODY.mass))
+    one, other = (somebody.parts["struck"].recovery(own, Intent(around=things), strike) for things in (level, ()))
+    assert one.fate == FALLS and np.array_equal(one.local, other.local) and np.allclose(one.roots, other.roots)
