@@ -17,7 +17,7 @@ from .motion import write_motion
 @plainly
 def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")] = None, *,
            out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")],
-           replay: Annotated[Path | None, typer.Option(help="Film this input log instead of a scenario, as its player saw it.")] = None,
+           replay: Annotated[Path | None, typer.Option(help="Film this input log instead of a scenario, from where its player saw it; rings and ways that he saw come with --overlay jump,path.")] = None,
            start: Annotated[float | None, typer.Option("--from", min=0.0, help="Where in the log to begin, in seconds.")] = None,
            end: Annotated[float | None, typer.Option("--to", min=0.0, help="Where in the log to end, in seconds.")] = None,
            size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,

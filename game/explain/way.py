@@ -90,7 +90,7 @@ def on_the_way(state: CharacterState) -> tuple[str, ...]:
     if way.there:
         return ("at the goal",)
     parts = cost_of(way.plan)
-    shares = "   ".join(f"{name} {value:.1f}" for name, value in zip(PARTS, parts) if value >= 0.05)
+    shares = "   ".join(f"{name} {value:.1f}".replace(" ", "\u00a0") for name, value in zip(PARTS, parts) if value >= 0.05)
     leaps = len(way.crossings)
     where = "the goal" if not leaps else "a leap" if leaps == 1 else f"the first of {leaps} leaps"
     return (f"to {where}: {min(way.time, way.plan.seconds):.1f} of {way.plan.seconds:.1f} s", f"cost {way.plan.cost:.1f}: {shares}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import unicodedata
 from dataclasses import dataclass
 from functools import lru_cache
@@ -96,13 +97,26 @@ def width_of(line: str, font: Atlas) -> float:
     return sum(font.advances[c] for c in line)
 
 
-def corner_rows(text: tuple[str, ...], font: Atlas) -> np.ndarray:
-    """Rows (N, 12) of lines at the top left: place and cell, left, top, width, height [px], then display RGB
+def wrapped(line: str, font: Atlas, width: float) -> list[str]:
+    """A line, spelled, in parts no wider than `width` [px] where it has spaces; those that do not break hold it together."""
+    first, *words = (spelled(word) for word in line.split(" "))
+    parts = [first]
+    for word in words:
+        longer = f"{parts[-1]} {word}"
+        if parts[-1].strip() and width_of(longer, font) > width:
+            parts.append(word)
+        else:
+            parts[-1] = longer
+    return parts
+
+
+def corner_rows(text: tuple[str, ...], font: Atlas, width: float = math.inf) -> np.ndarray:
+    """Rows (N, 12) of lines at the top left of a picture so wide [px]: place and cell, left, top, width, height [px], then display RGB
     and opacity."""
     rows: list[tuple] = []
     inset = round(0.8 * font.line)
-    for i, line in enumerate(text):
-        _write(rows, spelled(line), inset, inset + i * font.line, font)
+    for i, line in enumerate(part for line in text for part in wrapped(line, font, width - 2 * inset)):
+        _write(rows, line, inset, inset + i * font.line, font)
     return np.array(rows, np.float32).reshape(-1, 12)
 
 
@@ -141,7 +155,7 @@ def layout(text: tuple[str, ...], caption: Caption | None, size: tuple[int, int]
     made = []
     if text:
         letters = int(np.clip(round(min(size) / 40), 11, 96))
-        made.append((letters, corner_rows(text, atlas(letters))))
+        made.append((letters, corner_rows(text, atlas(letters), size[0])))
     if caption is not None and caption.opacity > 0.0:
         for line, share, base in ((caption.text, 1 / 13, 0.855), (caption.under, 1 / 30, 0.90)):
             line = spelled(line)

@@ -25,3 +25,15 @@ def test_lines_stand_under_each_other_and_no_text_draws_nothing():
     assert text.corner_rows((), atlas).shape == (0, 12)
     rows = text.corner_rows(("ab", "", "c"), atlas)
     assert len(rows) == 3 and rows[0, 0] == rows[2, 0] and rows[2, 1] - rows[0, 1] == 2 * atlas.line
+
+
+def test_lines_too_wide_for_the_picture_go_on_in_the_next_one():
+    """At spaces, but for those that hold a name and its number together; nothing is lost, and none is wider than the picture."""
+    atlas = text.atlas(12)
+    line = "  cost 17.2: time\u00a04.1 forward\u00a01.0 turning\u00a00.2 looking\u00a0away\u00a010.6"
+    for width in (90.0, 160.0, 240.0):
+        parts = text.wrapped(line, atlas, width)
+        assert " ".join(parts) == text.spelled(line) and "time 4.1" in " | ".join(parts)
+        assert max(text.width_of(part, atlas) for part in parts) <= max(width, text.width_of("looking away 10.6", atlas))
+    assert text.wrapped(line, atlas, 1e9) == [text.spelled(line)]
+    assert text.corner_rows((line, "c"), atlas, 260)[-1, 1] > text.corner_rows((line, "c"), atlas)[-1, 1]
