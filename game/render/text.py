@@ -115,7 +115,7 @@ def corner_rows(text: tuple[str, ...], font: Atlas, width: float = math.inf) -> 
     and opacity."""
     rows: list[tuple] = []
     inset = round(0.8 * font.line)
-    for i, line in enumerate(part for line in text for part in wrapped(line, font, width - 2 * inset)):
+    for i, line in enumerate(part for whole in text for part in wrapped(whole, font, width - 2 * inset)):
         _write(rows, line, inset, inset + i * font.line, font)
     return np.array(rows, np.float32).reshape(-1, 12)
 
