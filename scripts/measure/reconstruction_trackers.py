@@ -84,8 +84,9 @@ def raw(folder: Path, take: Take) -> Performance:
     return Performance(body, start + [0.0, up, 0.0], rotations, (own.positions + [0.0, up, 0.0])[:MOST + SPAN], turned[:MOST + SPAN], own.known)
 
 
-def followed(network: Network, on: Performance, points: str, turning: bool, given: bool) -> list[float]:
-    """A row's numbers of one performance; see HEAD. given: whether the half second before is known."""
+def played(network: Network, on: Performance, points: str, turning: bool, given: bool = False) -> tuple[np.ndarray, np.ndarray, float]:
+    """The body that follows a performance: root (T, 3), rotations (T, J, 3, 3), and a frame's time [s]. given: whether the half second before is known,
+    whose frames are left out then."""
     controls = parse(points, SKELETON)
     method = Trackers(network, controls, 1 / FPS, on.skeleton)
     seen, turns = on.positions[:, controls.joints], on.orientations[:, controls.joints]
@@ -99,12 +100,18 @@ def followed(network: Network, on: Performance, points: str, turning: bool, give
         memory, pose = method.step(memory, seen[now], turns[now] if turning else None)
         root.append(pose.root)
         rotations.append(pose.rotations)
-    spent = (time.process_time() - began) / len(root)
-    found, turned = forward_kinematics(on.skeleton, np.array(root), np.array(rotations))
+    return np.array(root), np.array(rotations), (time.process_time() - began) / len(root)
+
+
+def followed(network: Network, on: Performance, points: str, turning: bool, given: bool) -> list[float]:
+    """A row's numbers of one performance; see HEAD. given: whether the half second before is known."""
+    root, rotations, spent = played(network, on, points, turning, given)
+    begin = SPAN if given else 0
+    found, turned = forward_kinematics(on.skeleton, root, rotations)
     truth, judged = on.positions[begin:], on.known.copy()
     judged[0] = False
     errors = 100 * np.linalg.norm(found[:, judged] - truth[:, judged], axis=-1).mean(-1)
-    angles = np.degrees(metrics.angle_error(np.array(rotations), on.rotations[begin:begin + len(root)]))
+    angles = np.degrees(metrics.angle_error(rotations, on.rotations[begin:begin + len(root)]))
     own = forward_kinematics(on.skeleton, on.root, on.rotations)
     soles = contact_points(on.skeleton, own[0][begin:begin + len(root)], own[1][begin:begin + len(root)])
     stands = detect_contacts(soles[..., 1], point_speeds(soles, 1 / FPS))
