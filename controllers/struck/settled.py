@@ -18,9 +18,9 @@ from .stepwise_ground import Ground, rest_kernel
 from .held_falls import SPACED, flesh
 from .recorded_falls import RATE
 
-EVERY = 8
+EVERY = 5
 """So many moments of the fall are one of these."""
-ROUNDS, DAMPED, FARTHEST = 7, 0.05, 0.12
+ROUNDS, DAMPED, FARTHEST = 12, 0.05, 0.12
 """So many steps of least squares, damped by so much, each of which lets no place rise or sink by more than this [m]."""
 SHINS = np.arange(2 * SPACED, 4 * SPACED)
 """Places of the flesh that are near the ground as one stands, too, beside feet."""

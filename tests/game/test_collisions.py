@@ -119,7 +119,7 @@ def test_who_goes_to_a_goal_goes_round_who_lies(somebody, lies):
 def test_nobody_leaps_onto_who_lies(somebody, lies):
     """And is told why; beside him he may."""
     chest = lies.joints[0][somebody.skeleton.index("Spine2")]
-    for aside, words in ((0.0, "would hit"), (3.0, "")):
+    for aside, words in ((0.0, "inside something solid"), (3.0, "")):
         world = World((Character("leaps", somebody, somebody.start((chest[0] + aside, chest[2] - 1.2, 0.0))), lies))
         world = world.step([Intent(leap=Leap(np.array([chest[0] + aside, 0.0, chest[2]]))), Intent()])
         assert words in world.characters[0].state.refused and bool(words) == bool(world.characters[0].state.refused)
