@@ -70,8 +70,8 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     memory["bears"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
     memory["offset"] = memory["offset_rate"] = memory["offset_push"] = memory["raised"] = memory["raised_rate"] = 0.0
-    apart = points[1::2, 1] - contact_height(locomotion.skeleton)
-    memory["base"] = memory["left"] = np.where(stands[1::2] & (np.abs(apart) > TREADS), apart, 0.0)  # its feet are on two treads
+    apart = np.where(stands, points[:, 1] - contact_height(locomotion.skeleton), np.inf).reshape(2, 2).min(1)
+    memory["base"] = memory["left"] = np.where(np.isfinite(apart) & (np.abs(apart) > TREADS), apart, 0.0)  # its feet are on two treads
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 

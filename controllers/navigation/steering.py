@@ -102,6 +102,14 @@ def in_world(ground, velocity) -> np.ndarray:
     return np.stack([v_f * sine + v_l * cosine, v_f * cosine - v_l * sine], -1)
 
 
+def in_frame(ground, velocity, turn=0.0) -> np.ndarray:
+    """The (..., 3) v_f, ω, v_l with which ground frames (..., 3) move that have world velocities (..., 2) along x and z [m/s] and turn so fast [rad/s]: what `in_world` undoes."""
+    heading, velocity = np.asarray(ground, float)[..., 2], np.asarray(velocity, float)
+    cosine, sine = np.cos(heading), np.sin(heading)
+    x, z = velocity[..., 0], velocity[..., 1]
+    return np.stack([x * sine + z * cosine, np.broadcast_to(turn, x.shape), x * cosine - z * sine], -1)
+
+
 def drift(ground, velocity, seconds) -> np.ndarray:
     """Ground frames (..., T, 3) that constant velocities lead to: arcs of circles.
 

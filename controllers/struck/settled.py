@@ -32,9 +32,13 @@ STIFF, UPRIGHT, PLACED, EVEN = 1e-2, 0.3, 3.0, 0.15
 """What it costs to bend a joint by 1 rad; to turn the pelvis of who does not lie, and to lead him aside by 1 m; and that either changes its rate by 1 rad between moments."""
 LED, LIFTED = np.linspace(-0.3, 0.3, 21), 0.01
 """So far [m] a body may be led aside so that it gets up where its feet stand; a sole stands all over to this [m]."""
-STUBS, HANGING, APART, MOVES, EARLY = 1.0, 0.05, 0.5, 0.3, 0.05
+STUBS, HANGING, APART, MOVES, EARLY = 1.0, 0.15, 0.5, 0.3, 0.05
 """What it costs there [m] that a heel or tip is in what is higher than its ball, or a foot in the air; hangs over an edge; that feet are not on one level; that they move by 1 m/s; and
 to have got up 1 s sooner."""
+RESTS = 0.35
+"""Nobody has got up whose feet move faster than this [m/s]."""
+CARRIES = 0.025
+"""Of a foot that is so much over the ground at most [m] with what is nearest to it, that stands and whatever else is no farther by as much."""
 BEGINS = 1e3
 """How firmly it begins as it was."""
 LEVEL = 1e-3
@@ -60,26 +64,36 @@ def uneven(points: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) 
     return bool(np.abs(rests - thick - floor).max() > LEVEL)
 
 
-def footing(soles: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) -> tuple[int, np.ndarray, float]:
-    """At which of M moments a body has got up, whither (2,) x, z [m] it is led so that its feet stand on treads then, and how high [m] the lower one stands. soles: (M, 6, 3) heel, ball and tip
+def footing(soles: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) -> tuple[int, np.ndarray]:
+    """At which of M moments a body has got up, and whither (2,) x, z [m] it is led so that its feet stand on treads then. soles: (M, 6, 3) heel, ball and tip
     of either foot on a level floor [m], 1/RATE apart; thick: (6,) [m]."""
     x, z = (part.ravel() for part in np.meshgrid(LED, LED))
     pace = np.linalg.norm(np.gradient(soles, 1.0 / RATE, axis=0), axis=-1).max(1)
     lifted = (soles[..., 1] - thick - floor).max(1) > 2.0 * LIFTED
-    best, least = (len(soles) - 1, np.zeros(2), floor), np.inf
-    for n in range(len(soles) - 1, -1, -EVERY):
+    best, least = (len(soles) - 1, np.zeros(2)), np.inf
+    for n in np.flatnonzero(pace <= max(RESTS, float(pace.min())))[::-3]:
         places = np.repeat(soles[n][None], len(x), 0)
         places[..., [0, 2]] += np.stack([x, z], -1)[:, None]
         rests = np.empty(places.shape[:2])
         rest_kernel(ground.things, ground.corner, ground.caps, places, thick, False, rests, np.empty((*rests.shape, 2)))
         heights = (rests - thick).reshape(-1, 2, FEET // 2)
-        balls, apart = heights[..., 1], np.ptp(heights[..., 1], 1)
+        balls, apart = heights[..., 1], np.ptp(heights.max(2), 1)
         stubs, hangs = (heights > balls[..., None] + LIFTED).sum((1, 2)), (heights < balls[..., None] - LIFTED).sum((1, 2))
         cost = np.hypot(x, z) + STUBS * (stubs + lifted[n]) + HANGING * hangs + APART * (apart > LIFTED) + MOVES * pace[n] + EARLY * (len(soles) - 1 - n) / RATE
         if cost.min() < least:
             k = int(cost.argmin())
-            best, least = (n, np.array([x[k], z[k]]), float(balls[k].min())), float(cost[k])
+            best, least = (int(n), np.array([x[k], z[k]])), float(cost[k])
     return best
+
+
+def stands(soles: np.ndarray, thick: np.ndarray, ground: Ground) -> tuple[float, np.ndarray]:
+    """How high [m] the ground lies that carries the lower foot of a body, and which of its heels and balls (4,) stand. soles: (6, 3) heel, ball and tip of either foot; thick: (6,) [m]."""
+    rests = np.empty((1, len(soles)))
+    rest_kernel(ground.things, ground.corner, ground.caps, soles[None], thick, False, rests, np.empty((*rests.shape, 2)))
+    over = (soles[:, 1] - rests[0]).reshape(2, -1)
+    lies, near = (rests[0] - thick).reshape(2, -1), over < over.min(1, keepdims=True) + CARRIES
+    held = near & (over < 2.0 * CARRIES)
+    return float(np.where(near, lies, -np.inf).max(1).min()), np.stack([held[:, 0], held[:, 1:].any(1)], 1).ravel()
 
 
 @lru_cache(maxsize=16)
@@ -109,7 +123,7 @@ def settled(physique: Physique, roots: np.ndarray, local: np.ndarray, floor: flo
     from scipy.interpolate import CubicSpline  # no game waits for it at its start
 
     bends, skeleton = _bends(physique), physique.skeleton
-    keys = np.unique(np.append(np.arange(0, len(roots), EVERY), len(roots) - 1))
+    keys = np.linspace(0, len(roots) - 1, max(len(roots) // EVERY, 4)).round().astype(int)
     root, turns = roots[keys].copy(), local[keys]
     points, thick = flesh(physique, *forward_kinematics(skeleton, root, turns))
     clear = points[..., 1] - thick - floor

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ..body import centre_of_mass, forward_kinematics, yaw
+from ..body import centre_of_mass, exp, forward_kinematics, log, yaw
 from ..jump.body import Physique, Start, turns, vectors
 from ..jump.motion import FEET, TOUCHES, faded, grounded_poses, places
 from .capture import FALLS
@@ -17,7 +17,7 @@ from .stepwise_ground import ground_about, level_kernel, rest_kernel
 from .held_falls import chosen, flesh, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
-from .settled import footing, settled, uneven
+from .settled import footing, settled, stands, uneven
 from .surroundings import NOTHING
 
 PACES = 0.9, 1.35
@@ -29,6 +29,8 @@ SLIDES = 0.3
 """A heel or ball that is faster along the floor [m/s] does not stand on it."""
 UP = 0.93
 """Hips this high, as a share of where they are at the end, have got up."""
+HALTS = 18
+"""Who gets up on stairs comes to rest over the last so many moments, lest he walk on where he stands on two treads."""
 WHY = "struck too hard to be caught by a step: it falls, and gets up"
 
 
@@ -51,30 +53,44 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
     roots, centres = roots + slip, centres + slip
     positions, turned = forward_kinematics(physique.skeleton, roots, local)
-    over, floors, supported = over[:, -FEET:], np.full(len(times), floor), True
+    over, floors, supported, carried = over[:, -FEET:], np.full(len(times), floor), True, None
     if ground is not None:
         roots = roots + held(*flesh(physique, positions, turned), floor, ground)
         points, thick = flesh(physique, positions, turned)
         points = points + (roots - positions[:, 0])[:, None]
-        stands = floor
-        if uneven(points, thick, floor, ground):
+        if bent := uneven(points, thick, floor, ground):
             up = max(len(times) - int(np.argmax(roots[::-1, 1] < floor + UP * (roots[-1, 1] - floor))), 2)
-            last, led, stands = footing(points[up - 2:, -FEET:], thick[-FEET:], floor, ground)
-            times, roots, local, facing, floors = (rows[:up - 1 + last] for rows in (times, roots, local, facing, floors))
+            last, led = footing(points[up - 2:, -FEET:], thick[-FEET:], floor, ground)
+            times, roots, local, facing = (rows[:up - 1 + last] for rows in (times, roots, local, facing))
             roots, local = settled(physique, roots + _evenly(times / toppled)[:, None] * [led[0], 0.0, led[1]], local, floor, float(start.root[1]), ground)
+            (roots, local, facing), times = _halted(roots, local, facing), np.arange(len(times) + HALTS) / RATE
         positions, turned = forward_kinematics(physique.skeleton, roots, local)
         centres = centre_of_mass(physique.anatomy, positions, turned)
+        floors = np.empty(len(times))
         level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
         supported = not np.isnan(floors).any()
-        floors = np.where(times > toppled, stands, floor)
         soles, rests = flesh(physique, positions, turned)[0][:, -FEET:], np.empty((len(times), FEET))
+        high, carried = stands(soles[-1], thick[-FEET:], ground) if bent else (floor, None)
+        floors = np.where(times > toppled, high, floor)
         rest_kernel(ground.things, ground.corner, ground.caps, soles, thick[-FEET:], False, rests, np.empty((len(times), FEET, 2)))
         over = soles[..., 1] - rests
     feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
     slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
     contacts = slow & (over.reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
+    if carried is not None:
+        contacts[-1] = carried
     return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors, supported)
+
+
+def _halted(roots: np.ndarray, local: np.ndarray, facing: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Roots (N, 3), rotations (N, J, 3, 3) and headings (N,) [rad] of a body that comes to rest in the last of them: HALTS moments are shown in twice as many, (N + HALTS, ...)."""
+    share = np.arange(1, 2 * HALTS + 1) / (2.0 * HALTS)
+    shown = np.append(np.arange(len(roots) - HALTS), len(roots) - 1.0 - HALTS * (1.0 - share) ** 2)
+    n = np.minimum(shown.astype(int), len(roots) - 2)
+    part = shown - n
+    led = local[n] @ exp(part[:, None, None] * log(np.swapaxes(local[n], -1, -2) @ local[n + 1]))
+    return roots[n] + part[:, None] * (roots[n + 1] - roots[n]), led, facing[n] + part * (facing[n + 1] - facing[n])
 
 
 def _evenly(share: np.ndarray) -> np.ndarray:

@@ -18,9 +18,9 @@ Previews = tuple[Preview | None, ...]
 
 def previews(moment: SessionState, before: Previews = (), crew: Executor = AT_ONCE) -> Previews:
     """The jumps that players aim at. before: those of a picture earlier; crew: who finds out what takes long."""
-    return tuple(preview(character, player.aim, moment.after.props, old, crew)
-                 for player, character, old in zip_longest(moment.players, moment.after.characters[:len(moment.players)],
-                                                           before[:len(moment.players)]))
+    return tuple(preview(character, player.aim, moment.after.about(i), old, crew)
+                 for i, (player, character, old) in enumerate(zip_longest(moment.players, moment.after.characters[:len(moment.players)],
+                                                           before[:len(moment.players)])))
 
 
 def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], overlays: Overlays,

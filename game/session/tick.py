@@ -132,9 +132,9 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
     """Why jumps that players had asked for were given up in the last step: a line for each."""
     lines = []
-    for old, new, was, now in zip(before.players, after.players, before.after.characters, after.after.characters):
+    for i, (old, new, was, now) in enumerate(zip(before.players, after.players, before.after.characters, after.after.characters)):
         if old.aim.waiting > 0.0 and new.aim == Aim() and not leaving(now.state) and now is not was:
-            seen = preview(was, old.aim, before.after.props, sweeps=False)
+            seen = preview(was, old.aim, before.after.about(i), sweeps=False)
             why = seen.why if seen is not None else ""
             lines.append(f"no jump: {why or was.state.refused or 'no foot stood ready'}")
     return tuple(lines)

@@ -15,10 +15,10 @@ import numpy as np
 
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import HARDEST, Intent, Strike, but
-from gambol.controllers.navigation import in_world
+from gambol.controllers.navigation import in_frame, in_world
 from gambol.controllers.supervisor import both
 
-from ..scene import Box
+from ..scene import Box, Pillar, Prop
 from .centre_of_mass import physique_of
 
 TRUNK = 0.19
@@ -38,6 +38,8 @@ LIES, THICK = ("Hips", "Spine2", "Head", "LeftLeg", "RightLeg", "LeftFoot", "Rig
 """Joints of who is down that others walk past, and how thick he is about them [m], at standard height."""
 TALL = 0.5
 """As high [m] others take who is down for, lest they step on him."""
+GRID = 0.1
+"""Whoever plans ahead is told to this where somebody lies [m]."""
 HIGH = 0.35
 """A pelvis that is lower over its floor than this share of the body's height belongs to who is down; one that is farther above another's stands over him."""
 
@@ -107,8 +109,7 @@ def kept_apart(characters: Sequence[Any], intents: Sequence[Intent], number: int
             if into > 0.0:
                 velocity, slower = velocity + into * out, True
         if slower:
-            c, s = np.cos(state.ground[2]), np.sin(state.ground[2])
-            found[i] = but(intent, velocity=np.array([s * velocity[0] + c * velocity[1], intent.velocity[1], c * velocity[0] - s * velocity[1]]))
+            found[i] = but(intent, velocity=in_frame(state.ground, velocity, intent.velocity[1]))
     return found
 
 
@@ -128,6 +129,20 @@ def lying(characters: Sequence[Any], number: int) -> tuple[Box, ...]:
             wide, deep = high - low + 2.0 * THICK * size
             found.append(Box((float(x), float(one.state.floor) + TALL / 2.0, float(z)), (float(wide), TALL, float(deep)), heading))
     return tuple(found)
+
+
+def in_the_way(characters: Sequence[Any], number: int, props: tuple[Prop, ...], who: int) -> tuple[Prop, ...]:
+    """What stands about for one of the characters who plans ahead, a way or a leap: the props, and who is down, as low pillars at his joints. Where these stand is told by a grid, so that
+    nobody plans anew as a chest heaves; the very same props where nobody is down."""
+    found = []
+    for i, one in enumerate(characters):
+        if i != who and one.there(number) and is_down(one):
+            skeleton = one.controller.skeleton
+            joints = forward_kinematics(skeleton, np.asarray(one.state.pose.root, float), np.asarray(one.state.pose.rotations, float))[0]
+            places = GRID * np.round(joints[[skeleton.index(name) for name in LIES]][:, [0, 2]] / GRID)
+            radius = THICK * physique_of(one.controller).size + 0.5 * GRID
+            found += [Pillar((float(x), float(one.state.floor), float(z)), radius, TALL) for x, z in np.unique(places, axis=0)]
+    return (*props, *found) if found else props
 
 
 def is_down(one: Any) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, but
-from gambol.controllers.navigation import in_world
+from gambol.controllers.navigation import in_frame, in_world
 from gambol.controllers.navigation.passing import NEAR, slow_kernel, walls_of, way_kernel
 
 SPARE = 0.02
@@ -66,9 +66,8 @@ def _ahead(walls: np.ndarray, state: CharacterState, intent: Intent, ahead: np.n
 
 def _told(intent: Intent, heading: float, velocity: np.ndarray, halt: np.ndarray | None) -> Intent:
     """The intent with another velocity (2,) in the world and another place to come to rest."""
-    c, s = math.cos(heading), math.sin(heading)
     towards = intent.towards if intent.towards is None else np.array([intent.towards[0], min(float(intent.towards[1]), float(np.hypot(*velocity)))])
-    return but(intent, velocity=np.array([s * velocity[0] + c * velocity[1], intent.velocity[1], c * velocity[0] - s * velocity[1]]), halt=halt, towards=towards)
+    return but(intent, velocity=in_frame((0.0, 0.0, heading), velocity, intent.velocity[1]), halt=halt, towards=towards)
 
 
 def _aside(intent: Intent, wished: np.ndarray, velocity: np.ndarray) -> Intent:

@@ -1,10 +1,12 @@
 """Characters who run into each other strike each other; who brushes past does not, and two strikes in one step are one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gambol.controllers.body import forward_kinematics
-from gambol.controllers.contract import Intent, Strike
+from gambol.controllers.contract import Goal, Intent, Leap, Strike
 from gambol.controllers.person import person
 from gambol.game.input import Script
 from gambol.game.world import Character, World
@@ -88,6 +90,39 @@ def test_who_lies_is_in_the_way(somebody):
             joints = forward_kinematics(somebody.skeleton, fallen.state.pose.root, fallen.state.pose.rotations)[0][:, [0, 2]]
             assert np.linalg.norm(joints - world.characters[0].state.ground[:2], axis=1).min() > 0.15
     assert went
+
+
+@pytest.fixture(scope="module")
+def lies(somebody):
+    """Somebody who lies on the floor, and goes on lying there."""
+    world = World((Character("lies", somebody, somebody.start((0.0, 0.0, 0.5 * np.pi))),))
+    for n in range(100):
+        world = world.step([Intent(strike=Strike((2.5 * somebody.parts["struck"].physique.mass, 0.0)) if n == 0 else None)])
+    assert is_down(world.characters[0])
+    return world.characters[0]
+
+
+def test_who_goes_to_a_goal_goes_round_who_lies(somebody, lies):
+    """Whose joints he never comes near, and he gets there."""
+    joints = lies.joints[0]
+    middle = joints[somebody.skeleton.index("Spine2")][[0, 2]]
+    world = World((Character("goes", somebody, somebody.start((middle[0], middle[1] - 2.0, 0.0))), lies))
+    goal, nearest = Goal((middle[0], middle[1] + 2.0)), np.inf
+    for _ in range(660):
+        world = world.step([Intent(goal=goal), Intent()])
+        world = replace(world, characters=(world.characters[0], lies))
+        nearest = min(nearest, float(np.linalg.norm(joints[:, [0, 2]] - world.characters[0].state.ground[:2], axis=1).min()))
+    assert nearest > 0.3
+    assert np.hypot(*(world.characters[0].state.ground[:2] - goal.place)) < 0.1
+
+
+def test_nobody_leaps_onto_who_lies(somebody, lies):
+    """And is told why; beside him he may."""
+    chest = lies.joints[0][somebody.skeleton.index("Spine2")]
+    for aside, words in ((0.0, "inside something solid"), (3.0, "")):
+        world = World((Character("leaps", somebody, somebody.start((chest[0] + aside, chest[2] - 1.2, 0.0))), lies))
+        world = world.step([Intent(leap=Leap(np.array([chest[0] + aside, 0.0, chest[2]]))), Intent()])
+        assert words in world.characters[0].state.refused and bool(words) == bool(world.characters[0].state.refused)
 
 
 def test_two_strikes_in_one_step_of_a_script_are_one(somebody):
