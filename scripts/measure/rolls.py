@@ -1,4 +1,4 @@
-"""How rolls go that end drops of 2.2 … 3.5 m: the floor's force, what is near the floor, how fast joints turn, by phase.
+"""How rolls go that end drops of 2.2 … 3.4 m: the floor's force, what is near the floor, how fast joints turn, by phase.
 
     python scripts/measure/rolls.py
 
@@ -21,7 +21,7 @@ from gambol.controllers.locomotion import Locomotion
 from gambol.game.scene import Box
 from gambol.game.world import DT
 
-DROPS = 2.2, 2.5, 2.8, 3.1, 3.5
+DROPS = 2.2, 2.5, 2.8, 3.1, 3.4
 """From so high [m]."""
 FAR, STANDS = 2.0, 0.7
 """So far ahead [m] of who stands so far [m] from the middle of a platform, whose edge is 1 m from there."""
@@ -57,6 +57,7 @@ def told(jump: Jump, made: Plan, high: float) -> str:
     turning, middle = rates(made), 0.5 * (times[1:] + times[:-1])
     vectors, limits = log(made.local), joint_limits(skeleton)
     beyond = np.degrees(np.maximum(vectors - limits.upper, limits.lower - vectors).clip(0.0).max(-1))
+    knees = [skeleton.index(side + "Leg") for side in ("Left", "Right")]
     lines = [f"down from {high:.1f} m: {float(made.velocities[np.searchsorted(times, made.touch_down), 1]):.1f} m/s at touch-down, lowest after {made.lowest - made.touch_down:.2f} s, "
              f"up {made.rolls - made.touch_down:.2f} s after it"]
     tips = made.lowest + TIPPING
@@ -66,10 +67,12 @@ def told(jump: Jump, made: Plan, high: float) -> str:
         here = (times >= first) & (times <= last)
         legs = [turning[within][:, [skeleton.index(side + part) for side in ("Left", "Right")]].max() for part in LEGS]
         worst = int(turning[within].max(0).argmax())
+        most, least = (times[1:-1][on][pick(force[on])] - made.touch_down for pick in (np.argmax, np.argmin))
+        knee = int(np.flatnonzero(within)[turning[within][:, knees].max(1).argmax()])
         out = int(beyond[here].max(0).argmax())
-        floor = "" if name == "in the air" else (f"force {force[on].max():.1f} BW at most, {force[on].min():.1f} at least; lowest of the body {100 * over[here].min():.1f} cm, of the head "
+        floor = "" if name == "in the air" else (f"force {force[on].max():.1f} BW at most ({1e3 * most:.0f} ms after touch-down), {force[on].min():.1f} at least ({1e3 * least:.0f} ms); lowest of the body {100 * over[here].min():.1f} cm, of the head "
                                                  f"{100 * over[here][:, HEAD].min():.0f} cm over the floor; ")
-        lines.append(f"  {name:11} {floor}hip, knee, ankle {legs[0]:.0f}, {legs[1]:.0f}, {legs[2]:.0f} rad/s; fastest {skeleton.names[worst]} {turning[within].max():.0f} rad/s; beyond its limits "
+        lines.append(f"  {name:11} {floor}hip, knee, ankle {legs[0]:.0f}, {legs[1]:.0f}, {legs[2]:.0f} rad/s, the knee {1e3 * (middle[knee] - made.touch_down):.0f} ms after touch-down, bent by {np.degrees(np.linalg.norm(vectors[knee, knees], axis=-1).max()):.0f}°; fastest {skeleton.names[worst]} {turning[within].max():.0f} rad/s; beyond its limits "
                      f"{beyond[here].max():.0f}° ({skeleton.names[out]})")
     return "\n".join(lines)
 
@@ -84,7 +87,7 @@ def main() -> None:
         except Unable as reason:
             print(f"down from {high:.1f} m: {reason}")
             continue
-        print(told(jump, made, high) if made.rolls else f"down from {high:.1f} m: stays on its feet")
+        print(told(jump, made, high) if made.rolls else f"down from {high:.1f} m: stays on its feet", flush=True)
 
 
 if __name__ == "__main__":
