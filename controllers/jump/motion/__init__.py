@@ -2,11 +2,12 @@
 the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
 """
 
-from .airborne import FADE, FREE, GROUND_RATE, HEEL, PLANT, SAME, Airborne, ground_kernel
+from .airborne import FADE, GROUND_RATE, HEEL, PLANT, SAME, Airborne
 from .descent import sinking
 from .fall import fall, over_nothing, struck
 from .footing import RUNNERS_HEEL, faded, heels_rise, settling
 from .flight import flight_kernel
+from .ground_kernels import FREE, ground_kernel
 from .grounded import grounded
 from .lying import BONES, FEET, TOUCHES, grounded_poses, places, sole_places
 from .path_estimate import SPINS, Course, Path, path

@@ -7,23 +7,21 @@ from functools import partial
 
 import numpy as np
 
-from ...body import exp_kernel, product_kernel, sole_corners, yaw
-from ...compiled import kernel
-from ..body import (FLEX, TOES_DOWN, Physique, Start, hermite, measures, monotone, parts_kernel, place_kernel, soles, stand_kernel,
-                    carriage, turns, vectors)
+from ...body import yaw
+from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, turns, vectors
 from ..prior import BETWEEN, EACH, LEGS
 from .footing import faded
+from .ground_kernels import FREE, carry_on_kernel, ground_kernel
 from .landing import TIME, absorb
 from .looking import Look
 from .path_estimate import Path
 from .rolling import rolls
+from .swinging import free_leg, passing
 
 GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
 SHORT = 0.5
 """Flights that last longer [s] are slower, and need fewer poses a second."""
-FREE = -1.0
-"""A foot's freedom (see `planted_pose.leg_kernel`) if its leg is posed by joints: the swing leg of a run."""
 RUNS_ON = 0.06, 0.14
 """Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
 WAITS = 0.06
@@ -48,9 +46,6 @@ LEANS, LEANT = (1.8, 0.2), np.array([0.2, 0.5, 0.8, 1.0, 1.0, 0.8, 0.55, 0.3, 0.
 """Who sinks deeper than the second [m] leans farther forward by the first [rad/m], lest the heels rise; and which share of that, from row to row."""
 UP = 0.98
 """Trunk and arms are as in standing once the body has come up so much of the way."""
-CLEARS, LIFT, LIFTS, BENT = 0.015, 0.35, 4, 2.3
-"""A leg that swings on as its body lands on the other clears the floor by so much [m]; a knee that is bent by 1 rad more lifts its foot by so much [m], at standard
-height; tried so often, and bent no farther than this [rad] for it."""
 SAME = 1e-3
 """The legs reach for a body turned to within this of how it lands [rad]."""
 
@@ -80,8 +75,7 @@ class Airborne:
         self.stands = self.lowest + DOWN if way.hops and way.lands is not None and not self.absorbs.passes else math.inf
         self.swings = slice(0, 0)  # joints of the leg that goes on swinging
         if way.lands is not None:
-            free = self.legs[4 - 4 * way.lands:8 - 4 * way.lands]
-            self.swings = slice(int(free[0]), int(free[-1]) + 1)
+            self.swings = free_leg(self.body, way.lands)
         self.look = None if start.turn is None else Look.of(start, way, self.support.mean(0), physique.skeleton)
         rows = way.keys[3 * BETWEEN + 1:, :LEGS].copy()  # whoever comes down otherwise carried comes to them by and by
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
@@ -90,37 +84,12 @@ class Airborne:
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]))
         if way.lands is not None:
-            self.swung = self._passing(way.lands, np.concatenate([[0.0], landed, [TIME]]), way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH])
-
-    def _passing(self, lands: int, times: np.ndarray, rows: np.ndarray):
-        """The leg that goes on swinging of who lands on the other, `lands`: as recorded in rows (K, EACH) [rad] at times (K,) [s] after touch-down, its knee bent by as much more as keeps its foot off the floor
-        until the lowest point: recorded bodies sink less over it."""
-        swung, knee = keyed_leg(times, rows), np.zeros(len(times))
-        until = times[:BETWEEN + 1]
-        centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[self.way.land], self.sunk[0]]).T], 1)
-        angles, feet = self.carriage(self.down + until), np.ones((len(until), 2, 6))
-        feet[..., :5] = self.landing
-        self._free(feet)
-        roots, local = np.empty((len(until), 3)), np.tile(np.eye(3), (len(until), self.count, 1, 1))
-        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
-        for _ in range(LIFTS):
-            local[:, self.swings] = swung(until)
-            ground_kernel(self.body, self.flex, angles, self.joints, np.zeros((len(until), self.count, 3)), self._upright(angles[:, 0], np.inf), centres, feet,
-                          centres[0] - [0.0, 0.05, 0.0], roots, local)
-            low = np.empty(len(until))
-            for n in range(len(until)):
-                place_kernel(self.body, roots[n], local[n], positions, turned)
-                corners = sole_corners(self.physique.skeleton, positions[None], turned[None])[0]
-                low[n] = corners.reshape(2, -1, 3)[1 - lands, :, 1].min() - (self.landing[0, 1] - self.body.sole)
-            missing = np.maximum(CLEARS * self.physique.size - low, 0.0) / (LIFT * self.physique.size)
-            if missing.max() < 1e-3:
-                break
-            knee[:BETWEEN + 1] += missing
-            knee[BETWEEN + 1:] = 0.5 * np.maximum(knee[BETWEEN + 1:], knee[BETWEEN])
-            bent = rows.copy()
-            bent[:, 1] = np.minimum(rows[:, 1] + knee[:len(rows)], np.maximum(rows[:, 1], BENT))
-            swung = keyed_leg(times, bent)
-        return swung
+            times = np.concatenate([[0.0], landed, [TIME]])
+            until = times[:BETWEEN + 1]
+            centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[way.land], self.sunk[0]]).T], 1)
+            angles = self.carriage(self.down + until)
+            self.swung = passing(physique, landing, way.lands, times, way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH], centres, angles,
+                                 self._upright(angles[:, 0], np.inf))
 
     def _landing_times(self, stand: float) -> np.ndarray:
         """When [s] after touch-down the rows of the prior are due: until the lowest point evenly, then as the body comes up to how
@@ -254,49 +223,3 @@ class Airborne:
     def _toes_down(self, time) -> np.ndarray:
         """How far feet point down (...) [rad] so long after they touched [s]: toes first, but for strides, which are flat."""
         return (self.way.lands is None or self.way.hops) * TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
-
-
-def keyed_leg(times: np.ndarray, rows: np.ndarray):
-    """A leg's local rotations (N, 4, 3, 3) at any times (N,) [s], that bends by rows (K, EACH) [rad] at times (K,) [s]; after the last
-    row, as in it."""
-    bent = np.zeros((len(times), 4, 3))
-    bent[:, :EACH, 0] = np.concatenate([rows, rows[-1:]])
-    slopes = monotone(times, bent)
-    return lambda at: turns(hermite(times, bent, slopes, at))
-
-
-@kernel
-def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
-    """Poses over planted feet: angles (N, 11), what is left of the start (N, J, 3), the pelvis' turns
-    (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), whose pitch is written.
-
-    root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
-    """
-    count = local.shape[1]
-    positions, orientations = np.empty((count, 3)), np.empty((count, 3, 3))
-    for n in range(len(centres)):
-        carry_on_kernel(angles[n], joints, offsets[n], local[n])
-        local[n, 0] = turns[n]
-        for i in range(3):  # the pelvis goes on as it went, seen from the centre of mass
-            if n > 1:
-                root[i] = centres[n, i] + 2.0 * (roots[n - 1, i] - centres[n - 1, i]) - (roots[n - 2, i] - centres[n - 2, i])
-            elif n == 1:
-                root[i] += centres[1, i] - centres[0, i]
-        stand_kernel(body, centres[n], feet[n], flex, root, local[n], positions, orientations)
-        roots[n] = root
-
-
-@kernel
-def carry_on_kernel(angles, joints, offsets, local):
-    """Write the local rotations (J, 3, 3) of a body carried by `angles` (11,), what is left of the start (J, 3)
-    added; neither the pelvis nor, where nothing is left, joints that are not carried are touched."""
-    turn, carried = np.empty((3, 3)), np.empty((3, 3))
-    for j in range(1, len(local)):  # poses are made anew, whatever an earlier round left
-        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
-            exp_kernel(0.0, 0.0, 0.0, local[j])
-    carriage.carry_kernel(angles, joints, local)
-    for j in range(1, len(local)):
-        if offsets[j, 0] != 0.0 or offsets[j, 1] != 0.0 or offsets[j, 2] != 0.0:
-            exp_kernel(offsets[j, 0], offsets[j, 1], offsets[j, 2], turn)
-            carried[:] = local[j]
-            product_kernel(turn, carried, local[j])

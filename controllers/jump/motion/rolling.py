@@ -44,6 +44,8 @@ WEARS = 0.2, 0.6
 """And at its own from the first to the second of these [s] on."""
 SMOOTH = 0.03
 """The body goes up and down over what lies on the floor as smoothly as means of so long are [s]."""
+LIFTS = 0.06
+"""And where it is lifted off what would be below the floor it is as smoothly as means of so long [s]: sooner, it would be thrown up and pulled down."""
 STANDS = 0.025, 0.6
 """Soles that are lower over the floor than the first [m], at standard height, and slower along it than the second [m/s] are held where they stand."""
 SLIDES = 0.3
@@ -149,8 +151,10 @@ def _lifts(sunk: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far roots and centres (N, 3), and all places (N, 1), are lifted smoothly [m] where something is (N,) below the floor [m]."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d  # no game waits for it at its start
 
-    wide = round(SMOOTH * RATE)
+    wide = round(LIFTS * RATE)
     lift = gaussian_filter1d(maximum_filter1d(sunk, 2 * wide + 1, mode="nearest"), 0.5 * wide, mode="nearest")
+    comes = np.minimum(np.arange(len(lift)) / (2.0 * wide), 1.0)  # whoever still stands is where the landing left him
+    lift *= comes**2 * (3.0 - 2.0 * comes)
     up = lift[:, None] * [0.0, 1.0, 0.0]
     return up, up, lift[:, None]
 
