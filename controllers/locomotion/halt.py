@@ -54,10 +54,10 @@ def heed_halt(m, wish, settings, table, dt):
 
 @kernel
 def _step_there(m, wish):
-    """Let somebody who sets off to what is a step away wish to be there in a step's time, whatever else he wishes."""
+    """Let somebody who sets off to what is a step away wish to be there in a step's time, whatever else he wishes; who wishes nothing stays."""
     x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
     far = math.hypot(x, z)
-    if THERE < far < STEP:
+    if THERE < far < STEP and wish[0] ** 2 + wish[1] ** 2 + wish[2] ** 2 > 0.0:
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         wish[0], wish[2] = (s * x + c * z) / IN, (c * x - s * z) / IN
 
