@@ -41,5 +41,7 @@ def test_a_heel_rises_until_its_leg_reaches_and_no_farther(behind, high, share):
     sweep = np.array([far(a) for a in np.linspace(0.0, short_leg.HEEL_RISE, 400)])
     if angle == 0.0:
         assert share >= 1.0 - 1e-9 or sweep[1] >= sweep[0] - 1e-6
-    elif angle < short_leg.HEEL_RISE and sweep.min() < reach:
-        assert far(angle) == pytest.approx(reach, abs=1e-6)
+    elif angle < short_leg.HEEL_RISE:  # the square of the distance goes as a cosine, of which it comes not quite to the end
+        round_it = np.array([far(a) for a in np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)]) ** 2
+        nearest = round_it.mean() - short_leg.NEAREST * 0.5 * np.ptp(round_it)
+        assert far(angle) == pytest.approx(max(reach, np.sqrt(nearest)), abs=2e-5)
