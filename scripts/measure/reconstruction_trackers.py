@@ -160,13 +160,19 @@ def opened(options: argparse.Namespace) -> tuple[Network, Database, trials.Split
     return network, large, trials.split(small.only([take for take in small.takes if not take.interpolated]))
 
 
-def main() -> None:
-    """Print the tables, and write them down if asked."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def asked(about: str | None) -> argparse.ArgumentParser:
+    """What a script that measures trackers on the large database is told."""
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("large", type=Path, metavar="LARGE")
     parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
     parser.add_argument("--network", type=Path, default=SHIPPED)
     parser.add_argument("--tuned", action="store_true", help="the takes that settings are chosen on, instead of the test's")
+    return parser
+
+
+def main() -> None:
+    """Print the tables, and write them down if asked."""
+    parser = asked(__doc__)
     parser.add_argument("--only", type=int, nargs="+", default=list(range(len(COURSES))), help="numbers of courses, from 0 on: " + "; ".join(COURSES))
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()

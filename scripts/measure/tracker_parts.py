@@ -11,10 +11,8 @@ also some that tell only how they are turned.
 
 from __future__ import annotations
 
-import argparse
 import os
 from dataclasses import replace
-from pathlib import Path
 
 for library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
@@ -25,9 +23,9 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import forward_kinematics, yaw
 from gambol.controllers.reconstruction import JOINTS, SKELETON
-from gambol.controllers.reconstruction.trackers import SHIPPED, Network
+from gambol.controllers.reconstruction.trackers import Network
 from reconstruction_figures import table
-from reconstruction_trackers import FPS, Performance, opened, played, recorded
+from reconstruction_trackers import FPS, Performance, asked, opened, played, recorded
 
 WORN = {"head and hands": ("", ""), "and the waist's turn alone": ("root", "Hips"), "and the waist": ("root", ""),
         "and the shins' turns alone": ("lknee,rknee", "LeftLeg,RightLeg"), "and both turns alone": ("root,lknee,rknee", "Hips,LeftLeg,RightLeg"),
@@ -125,12 +123,7 @@ def both_sides(name: str) -> np.ndarray:
 
 def main() -> None:
     """Print the four tables."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("large", type=Path, metavar="LARGE")
-    parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
-    parser.add_argument("--network", type=Path, default=SHIPPED)
-    parser.add_argument("--tuned", action="store_true", help="the takes that settings are chosen on, instead of the test's")
-    options = parser.parse_args()
+    options = asked(__doc__).parse_args()
     network, large, core = opened(options)
     those = [recorded(large, take) for take in (core.validation if options.tuned else core.test)]
     sets = {}
