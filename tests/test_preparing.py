@@ -2,6 +2,9 @@
 
 import inspect
 import io
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -24,7 +27,7 @@ def told(monkeypatch, folder):
 
     def noted(name):
         return lambda *about, **more: order.append((name, {path.stem.partition("-")[0] for path in folder.glob("*.ready")}))
-    for name in ("feet", "strength", "rest", "place", "measures", "rehearse"):
+    for name in ("feet", "strength", "rest", "place", "things", "measures", "rehearse"):
         monkeypatch.setattr(preparing, name, noted(name))
     return order
 
@@ -57,14 +60,14 @@ def test_what_is_compiled_ahead_is_what_a_step_calls(monkeypatch):
 def test_walking_is_ready_before_jumping(told, monkeypatch, folder):
     monkeypatch.setattr(preparing.sys, "stdin", io.StringIO("feet\nstrength\n"))
     preparing.main("person")
-    assert told == [("rest", set()), ("place", set()), ("measures", {"walk"}), ("rehearse", {"walk"})]
+    assert told == [("rest", set()), ("place", set()), ("things", {"walk"}), ("measures", {"walk"}), ("rehearse", {"walk"})]
     assert all(preparing.ready(part, Locomotion.load()) for part in preparing.PARTS)
 
 
 def test_nobody_waits_for_a_program_that_has_ended(told, monkeypatch):
     monkeypatch.setattr(preparing.sys, "stdin", io.StringIO(""))
     preparing.main("person")
-    assert [name for name, _ in told] == ["rest", "place", "measures", "rehearse"]
+    assert [name for name, _ in told] == ["rest", "place", "things", "measures", "rehearse"]
 
 
 def test_what_comes_ahead_is_said_and_claims_nothing(told, capsys, folder):
@@ -105,3 +108,50 @@ def test_a_program_runs_in_a_process_of_its_own_wherever_one_is(tmp_path, monkey
     (tmp_path / "gambol.py").write_text("raise RuntimeError('not ours')")
     assert preparing._program("ahead", ("there is no such library",), None, None).wait() == 1
     assert "LibraryError: there is no such library" in capfd.readouterr().err
+
+
+PLAYED = '''
+import sys
+from types import SimpleNamespace
+import numpy as np
+from gambol.controllers.contract import Goal, Intent, Leap, Strike, but
+from gambol.controllers.person import person, preparing, rehearse
+from gambol.game.scenario import film, load
+
+def compiled():
+    return {f"{name}.{key}": len(value.signatures) for name, module in list(sys.modules.items()) if name.startswith("gambol")
+            for key, value in list(vars(module).items()) if hasattr(value, "signatures")}
+
+def played(intent, steps, state=None):
+    state = somebody.start() if state is None else state
+    for k in range(steps):
+        state, _ = somebody.step(state, intent(k, state), 1 / 60)
+    return state
+
+somebody = person()
+preparing.place(somebody.parts["locomotion"])
+preparing.things(somebody.parts["locomotion"])
+rehearse(somebody)
+preparing.goals()
+box = SimpleNamespace(centre=(0.0, 0.15, 3.0), size=(3.0, 0.3, 3.0), heading=0.0)
+wall = SimpleNamespace(centre=(0.6, 1.0, 1.0), size=(0.2, 2.0, 3.0), heading=0.0)
+before = compiled()
+run = played(lambda k, s: Intent(np.array([3.2, 0.0, 0.0])), 150)
+place = np.array([run.ground[0], 0.0, run.ground[1] + 2.0])
+played(lambda k, s: Intent(np.array([3.2, 0.0, 0.0]), leap=Leap(place) if k < 40 and s.active != "jump" else None), 100, run)
+played(lambda k, s: Intent(np.array([1.2, 0.3, 0.0]), around=(box, wall)), 150)
+played(lambda k, s: Intent(leap=Leap(np.array([0.0, 0.0, 0.9])) if k < 20 else None), 90)
+played(lambda k, s: Intent(strike=Strike((250.0, 0.0)) if k == 5 else None), 200)
+played(lambda k, s: Intent(goal=Goal((1.0, 3.0), 1.0), around=(box,)), 200)
+for act, _ in zip(film.acts(load("together"), somebody), range(60)):
+    pass
+after = compiled()
+print(*sorted(name for name in after if after[name] != before.get(name, 0)))
+'''
+
+
+@pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled here")
+def test_nothing_that_was_prepared_halts_a_game():
+    """A program that has rehearsed compiles, or loads, nothing more as somebody walks past things, runs, leaps, lands at a run, is struck and goes somewhere among others."""
+    told = subprocess.run([sys.executable, "-c", PLAYED], capture_output=True, text=True, timeout=600)
+    assert (told.returncode, told.stdout.split()) == (0, []), told.stderr[-600:] + told.stdout

@@ -10,17 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, contact_height, contact_points, exp, forward_kinematics, log, yaw
+from ..body import Pose, contact_height, contact_points, exp, forward_kinematics, log, settle, yaw
 from ..contract import CharacterState
 from . import fourier
-from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel
+from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel, time_kernel
 from .library import DURATION, HIPS, LABELS
 from .memory import RUN, WALK
+from .step import HEAVY
 
 WALKS_ON = 0.35
 """A body that moves faster than this [m/s] walks on; a slower one stands."""
-FADE = 0.22
-"""Half-life with which the pose that was taken over gives way to the walker's own [s]."""
+FADES = 0.22, 0.16, 0.12, 0.09, 0.07
+"""Half-lives with which the pose that was taken over gives way to the walker's own [s]: the slowest with which the foot that swings comes down."""
+DOWN = 0.02
+"""A foot has come down if it is no higher than this over where it stands [m]."""
 ABOUT_TO_STEP = 0.95
 """The phase in which both feet stand and the left one is about to leave."""
 AHEAD = 0.01
@@ -52,13 +55,15 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     memory["blend"][:LABELS_AT] = shown - memory["row"][:LABELS_AT]
     own = _rate(locomotion, memory)  # the gait moves by itself, and what is left of what was taken over by the rest
     memory["row"][:LABELS_AT] = shown
-    memory["fade"] = FADE
+    memory["fade"] = FADES[0]
     if state.previous is not None and state.elapsed > 0.0:
         before = _row(locomotion, state.previous, ground, state.floor)
         rate = (shown - before) / state.elapsed
         rate[[HIPS_AT, HIPS_AT + 2]] = 0.0  # the ground frame moves along the floor, not the hips in it
         memory["row_rate"][:LABELS_AT] = np.clip(rate, -12.0, 12.0)
         memory["blend_rate"][:LABELS_AT] = np.clip(rate - own, -12.0, 12.0)
+        if speed > WALKS_ON and on.sum() == 1:
+            memory["fade"] = _fade(locomotion, memory, int(on.argmin()))
     points = contact_points(locomotion.skeleton, *forward_kinematics(
         locomotion.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
     points[:, 1] -= state.floor
@@ -100,6 +105,33 @@ def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: 
         apart += np.square(LEAD * (moves - (ours - before) / state.elapsed)).sum((1, 2))
     stands = rows[:, LABELS:DURATION].reshape(PHASES, 2, 2).max(-1)
     return float(np.argmin(np.where((stands[:, side] > 0.5) & (stands[:, 1 - side] < 0.5), apart, np.inf))) / PHASES
+
+
+def _fade(locomotion: Any, memory: np.ndarray, foot: int) -> float:
+    """The half-life [s] with which what was taken over fades, so that foot 0 or 1, in the air, comes down when the gait sets it down: a leg that is on its way
+    elsewhere would else pass that strike, and its stance, in the air."""
+    library, phase, weights = locomotion.library, float(memory["phase"]), memory["weights"]
+    rows = fourier.evaluate(np.tensordot(weights[:len(library.coefficients)].astype(float), library.coefficients, 1), phase + np.arange(PHASES) / PHASES)
+    down = rows[:, LABELS:DURATION].reshape(PHASES, 2, 2)[:, foot].max(-1) > 0.5
+    ahead = int(down.argmax())
+    later = time_kernel(locomotion.tables.series, weights, phase, ahead / PHASES)
+    row = np.empty(COLUMNS, np.float32)
+    series_kernel(locomotion.tables.series, weights, np.float32((phase + ahead / PHASES) % 1.0), row)
+    for half in FADES:
+        left = row.astype(float)
+        for part, slower in ((slice(HIPS_AT), 1.0), (slice(HIPS_AT, LABELS_AT), HEAVY)):
+            left[part] += settle(memory["blend"][part], memory["blend_rate"][part], slower * half, later)[0]
+        if _height(locomotion, left, foot) < DOWN:
+            break
+    return half
+
+
+def _height(locomotion: Any, row: np.ndarray, foot: int) -> float:
+    """How high heel or ball of foot 0 or 1 is over where it stands in a row of a gait, the lower one [m]."""
+    library = locomotion.library
+    chart = np.stack([row[axis * LANES:axis * LANES + len(library.reference)] for axis in range(3)], -1)
+    points = contact_points(library.skeleton, *forward_kinematics(library.skeleton, row[HIPS_AT:LABELS_AT], library.reference @ exp(chart)))
+    return float(points[2 * foot:2 * foot + 2, 1].min()) - contact_height(library.skeleton)
 
 
 def _about_the_hips(locomotion: Any, pose: Pose, turn: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiled import kernel
 from .foot_points import foot_points
-from .kernel import DURATION_AT, HIPS_AT, LABELS_AT, time_kernel
+from .kernel import DURATION_AT, HIPS_AT, LABELS_AT, query_kernel, time_kernel
 
 DRIFT_HALFLIFE = 0.03
 """Of the standing foot's say where a blend's velocity is measured [s]."""
@@ -48,6 +48,14 @@ def tempo_kernel(m):
 def briskness(m):
     """How many times as often somebody takes his steps where they must be short, as on stairs: the gait of a slower walk, played faster."""
     return min(1.0 / max(m.pace, 0.1), BRISKEST)
+
+
+@kernel
+def locate(m, space, command, settings, b, p, q):
+    """The simplex of the control space whose blend, played as briskly, goes at a command (3,), which becomes the blend's own velocity; b: its barycentric weights."""
+    for i in range(3):
+        command[i] /= briskness(m)
+    return query_kernel(space, command, m.simplex[m.family], settings.correct, b, p, q)
 
 
 @kernel

@@ -19,10 +19,9 @@ from .halt import heed_halt
 from .idle import add_idle, idle_kernel
 from .last_stride import until_together
 from .foot_points import foot_points, on_floor
-from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel,
-                     query_kernel, series_kernel)
+from .kernel import ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, series_kernel
 from .memory import RUN, WALK
-from .root_motion import SHORTEST, briskness, cadence_kernel, follow_command, tempo_kernel, to_world_kernel
+from .root_motion import SHORTEST, cadence_kernel, follow_command, locate, tempo_kernel, to_world_kernel
 from .turning_back import turn_back
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
@@ -115,9 +114,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     c[0] = reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
     stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
-    for i in range(3):
-        c[i] /= briskness(m)
-    simplex = query_kernel(space, c, m.simplex[m.family], settings.correct, b, p, q)
+    simplex = locate(m, space, c, settings, b, p, q)
     vertices = space.vertices[simplex]
     m.simplex[m.family] = simplex
     if switch:

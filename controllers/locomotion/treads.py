@@ -11,9 +11,9 @@ import math
 import numpy as np
 
 from ..compiled import kernel
+from ..navigation.passing import STEP
 from .memory import RUN, WALK
 from .root_motion import cadence_kernel
-from ..navigation.passing import STEP
 from .tops import SAME, ground_kernel
 
 FOOT, TOE = 0.175, 0.095

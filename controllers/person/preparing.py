@@ -11,26 +11,32 @@ import gc
 import os
 import subprocess
 import sys
-from pathlib import Path
+from dataclasses import replace
+from pathlib import Path as File
+from types import SimpleNamespace
 from typing import Any
 
 import numba
 import numpy as np
 
-from ..body import forward_kinematics
+from ..body import anatomy, centre_in_pose, forward_kinematics
 from ..compiled import cache_folder, cache_home
+from ..contract import Intent
 from ..jump import Jump, rehearse
 from ..jump.body import measures
 from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
+from ..navigation import Path, follow, gap
+from ..navigation.crowd import avoid
+from ..navigation.passing import NEAR, drawn_in, slow_kernel, walls_of, way_kernel
 from ..struck import Struck, rehearse as rehearse_strike
 
 PARTS = ("walk", "jump")
-KERNELS = 208
+KERNELS = 334
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 
-def begun(walker: Locomotion, library: Path | None = None) -> tuple[subprocess.Popen, ...]:
+def begun(walker: Locomotion, library: File | None = None) -> tuple[subprocess.Popen, ...]:
     """The programs that compile a person, begun: the one to wait for first; none where everything was compiled before.
 
     library: the walker's file, None for the shipped one.
@@ -109,6 +115,23 @@ def place(walker: Locomotion) -> None:
             forward_kinematics(walker.skeleton, root, turns)
 
 
+def things(walker: Locomotion) -> None:
+    """Compile, or load, what keeps somebody who walks from what stands about and from others, what weighs him, and what sets him down at a run."""
+    box, post = SimpleNamespace(centre=(0.0, 1.0, 0.6), size=(2.0, 2.0, 0.2), heading=0.0), SimpleNamespace(foot=(0.2, 0.0, 0.3), radius=0.1, height=2.0)
+    gap(np.zeros((1, 3)), box), gap(np.zeros((1, 3)), post)
+    walls = walls_of((box, post))
+    slow_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 0.0, 1.0, 0.0)
+    way_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 1.0, np.empty(3))
+    follow(Path(np.array([[0.0, 0.0], [0.0, 1.0]])), np.zeros(3), np.float64(0.0), 1.0)
+    grounds = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    avoid(grounds[:, :2], np.zeros((2, 2)), np.ones((2, 2)), 0.3, (box, post), grounds[:, 2])
+    intent = Intent(np.array([1.0, 0.0, 0.0]), around=(box, post))
+    state, pose = walker.step(walker.start(), intent, 1.0 / 60.0)
+    centre_in_pose(anatomy(walker.skeleton), walker.skeleton, pose)
+    drawn_in(walker.skeleton, pose, state.ground, (box, post))
+    walker.enter(replace(state, memory=None, contacts=np.arange(4) < 2, velocity=np.array([2.0, 0.0, 0.0]), previous=pose, elapsed=1.0 / 60.0), intent)
+
+
 def goals() -> None:
     """Compile, or load, what plans a way to a goal."""
     from ..navigation import planning  # loads what a game starts without
@@ -145,6 +168,7 @@ def main(part: str, library: str = "") -> None:
     sys.stdin.readline()  # the other program has the feet, or has ended
     place(walker)
     _note("walk", walker)
+    things(walker)
     measures(jump.physique)
     sys.stdin.readline()  # and the strength
     rehearse(jump)

@@ -45,8 +45,12 @@ class HeldPoints:
     def asked(self, action: str, now: SessionState) -> tuple[str, str]:
         """What a key asks of the session, as an action; or why nothing, or not yet, in words."""
         open_ = now.comparison
-        if self.wanted is not None:
-            return "", "one thing after the other: it is still learning"
+        if self.wanted is not None and action in ("study", "study_points", "study_ghosts"):
+            given_up, waits = self._meanwhile, self.reading is not None
+            if waits or action != "study":
+                return "", f"one thing after the other: still {given_up}"
+            self._give_up()
+            return "", f"no longer {given_up}"
         if action == "study":
             return self.open(self.usual) if open_ is None else ("study=", "")
         if open_ is None:
@@ -75,6 +79,12 @@ class HeldPoints:
             return wanted.action, ""
         self.wanted, self.learning = wanted, Learning(missing, self.methods.file)
         return "", ""
+
+    def _give_up(self) -> None:
+        """Want nothing any more; what was learnt or compiled so far is kept."""
+        if self.learning is not None:
+            self.learning.stop()
+        self.wanted = self.learning = None
 
     @property
     def _meanwhile(self) -> str:

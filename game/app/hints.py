@@ -76,7 +76,7 @@ def doing(moment: SessionState) -> frozenset[str]:
     if jumping(state) is not None:
         found.add("jump")
     elif speed > SLOWEST:
-        found.add("run" if speed > FASTER * pace.walk else "walk")
+        found |= {"walk", "run"} if speed > FASTER * pace.walk else {"walk"}  # who runs can walk
     way = course(moment)
     if way is None or math.hypot(*way) < NEAR:
         found.add("course")  # nothing to find, or found

@@ -46,7 +46,7 @@ class Preparing:
     def tend(self, controller: Any) -> None:
         """Load the jump beside the game once it is compiled. controller: who jumps, if it can."""
         if self.loading is None and self._over("jump"):
-            self.loading = threading.Thread(target=_load, args=(jump_of(controller),), daemon=True)
+            self.loading = threading.Thread(target=_load, args=(jump_of(controller), self.walker), daemon=True)
             self.loading.start()
 
     def close(self) -> None:
@@ -61,7 +61,9 @@ class Preparing:
         return not self.programs or preparing.ready(part, self.walker) or self.programs[0].poll() is not None
 
 
-def _load(jump: Any) -> None:
+def _load(jump: Any, walker: Any) -> None:
+    if walker is not None:
+        preparing.things(walker)
     if jump is not None:
         rehearse(jump)
     preparing.goals()

@@ -32,8 +32,8 @@ class Recordings:
         self._notices: list[tuple[float, str]] = []
 
     def say(self, text: str) -> None:
-        """Say something in the picture for a few seconds."""
-        self._notices.append((NOTICE, text))
+        """Say something in the picture for a few seconds; what is said there already stays for as long again."""
+        self._notices = [(left, said) for left, said in self._notices if said != text] + [(NOTICE, text)]
 
     @property
     def notices(self) -> tuple[str, ...]:

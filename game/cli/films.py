@@ -84,7 +84,7 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
     log, controller = replayed(file, controller)
     first, last = start or 0.0, log.duration if end is None else min(end, log.duration)
     if not first < last:
-        raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {first:g} to {last:g} s")
+        raise Mistake(f"{file} has {log.duration:.1f} s: nothing lies from {first:g} s" + ("" if end is None else f" to {end:g} s"))
     shown = overlays(overlays_of(overlay or "mesh"))
 
     def stray() -> None:

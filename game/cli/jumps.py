@@ -29,7 +29,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of motion captur
     try:
         prior = fit(found)
     except ValueError as error:
-        raise Mistake(f"{folder}: {error}; {'; '.join(notes[:3])}") from None
+        raise Mistake("; ".join([f"{folder}: {error}", *notes[:3]])) from None
     with named(out):
         save(prior, out)
     for line in notes:

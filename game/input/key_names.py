@@ -29,7 +29,7 @@ KINDS = {"keys": KEYS, "buttons": BUTTONS}
 _ARROWS = {"UP": "↑", "DOWN": "↓", "LEFT": "←", "RIGHT": "→"}
 _KEYS = _ARROWS | {
     "LEFT_SHIFT": "Shift", "RIGHT_SHIFT": "Shift", "LEFT_CONTROL": "Ctrl", "RIGHT_CONTROL": "Ctrl", "LEFT_ALT": "Alt",
-    "ESCAPE": "Esc", "PERIOD": ".", "COMMA": ",", "SLASH": "/", "SEMICOLON": ";", "APOSTROPHE": "'", "MINUS": "-",
+    "ESCAPE": "Esc", "PERIOD": "Period", "COMMA": ",", "SLASH": "/", "SEMICOLON": ";", "APOSTROPHE": "'", "MINUS": "-",
     "EQUAL": "=", "BACKSLASH": "\\", "GRAVE_ACCENT": "`", "LEFT_BRACKET": "[", "RIGHT_BRACKET": "]",
     "LEFT_BUTTON": "drag", "RIGHT_BUTTON": "drag", "MIDDLE_BUTTON": "drag with wheel"}
 _BUTTONS = {name: f"cross {arrow}" for name, arrow in _ARROWS.items()} | {

@@ -28,7 +28,8 @@ PLACES = 40
 """After so many places they begin again with the first."""
 RESTS = 0.0, 2.5
 """For so long they stand at each [s]."""
-TINTS = ((0.75, 0.42, 0.22), (0.35, 0.58, 0.38), (0.22, 0.42, 0.68), (0.55, 0.40, 0.60), (0.62, 0.58, 0.36))
+TINTS = ((0.50, 0.46, 0.42), (0.35, 0.58, 0.38), (0.42, 0.50, 0.54), (0.55, 0.40, 0.60), (0.62, 0.58, 0.36))
+"""Of clothes that no player wears."""
 
 
 def peopled(moment: SessionState, action: str) -> SessionState:

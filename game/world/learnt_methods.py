@@ -153,13 +153,17 @@ def _silent(what: str, done: int, total: int) -> None:
 
 
 def rehearse(method: Any, controls: ControlPoints) -> None:
-    """Two frames of nobody, so that what they compile or load halts no game."""
+    """Some frames, of nobody and of who stands in the floor, so that what they compile or load halts no game."""
+    from gambol.controllers.body import forward_kinematics
     from gambol.controllers.reconstruction import SKELETON, encode
+    from gambol.controllers.reconstruction.following import above
 
     still = np.broadcast_to(np.eye(3), (1, len(SKELETON), 3, 3))
-    memory = method.begin(*encode(SKELETON.offsets[:1], still, 1 / 60))
-    for _ in range(2):
-        memory, _ = method.step(memory, np.full((len(controls), 3), np.nan))
+    memory, pose = method.begin(*encode(SKELETON.offsets[:1], still, 1 / 60)), None
+    nobody, there = np.full((len(controls), 3), np.nan), controls.on(*forward_kinematics(SKELETON, SKELETON.offsets[0], still[0]))
+    for points in (nobody, nobody, there, there):
+        memory, pose = method.step(memory, points)
+    above(SKELETON, pose, *forward_kinematics(SKELETON, pose.root, pose.rotations), floor=float(np.nanmean(there[:, 1])))
 
 
 class Learning:

@@ -219,6 +219,36 @@ def test_keys_open_hold_and_leave(walker):
     assert play.done
 
 
+def test_who_waits_for_it_may_take_it_back_and_meanwhile_holds_what_is_there(walker, monkeypatch):
+    """X once more ends what gets ready; nothing of it comes later."""
+    class Endless:
+        done, said, fault, stopped = False, "", "", 0
+
+        def __init__(self, *_):
+            pass
+
+        def stop(self):
+            Endless.stopped += 1
+    monkeypatch.setattr("gambol.game.app.held_points.Learning", Endless)
+    play = Play(walker)
+    play.held_points.methods("trackers", "6")
+    play.do("study")
+    ticks(play, 2)
+    play.do("study_points")  # two points, which nobody has learnt yet
+    play.do("study_hands")
+    ticks(play, 2)
+    assert play.held_points.wanted is not None and play.now.comparison.pins is not None
+    for _ in range(3):
+        play.do("study_ghosts")
+    assert play.kept.notices == ("one thing after the other: still getting ready for 2 points",), "said once"
+    play.do("study")
+    ticks(play, 2)
+    assert play.held_points.wanted is None and Endless.stopped == 1 and play.now.comparison.points == "6"
+    play.do("study")
+    ticks(play, 2)
+    assert play.now.comparison is None
+
+
 def test_a_stream_holds_the_points(walker):
     class Somebody:
         worn = None

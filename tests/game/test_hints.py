@@ -68,6 +68,13 @@ def test_what_can_not_be_done_yet_is_not_taught():
     assert after(Hints(frozenset(["walk", "run"])), 2.0).name == "jump"
 
 
+def test_who_runs_need_not_be_taught_to_walk():
+    play = Play(Glide())
+    press(play, "LEFT_SHIFT", "W")
+    wait(play, 1.5)
+    assert {"walk", "run"} <= doing(play.now)
+
+
 def test_keys_are_called_as_they_are_bound():
     assert worded("walk", DEFAULT, False) == (("W", True), ("A", True), ("S", True), ("D", True), ("to walk", False))
     assert worded("walk", DEFAULT, True)[0] == ("left stick", True)

@@ -79,6 +79,13 @@ def test_a_log_has_them(walker, tmp_path):
         assert one.state.pose.root.tobytes() == other.state.pose.root.tobytes()
 
 
+def test_nobody_wears_what_players_wear(walker):
+    line = Timeline(opening(walker, 2))
+    line.advance([Wish(pressed=("crowd=12",)), Wish()])
+    players, passers = line.now.after.characters[:2], line.now.after.characters[2:]
+    assert min(np.abs(np.subtract(one.tint, other.tint)).max() for one in players for other in passers) > 0.12
+
+
 def test_only_who_is_played_shows_his_plan(walker):
     """Passers-by have plans, too, which would cover the floor."""
     line = Timeline(opening(walker))

@@ -114,3 +114,18 @@ def test_the_leg_that_swings_on_clears_the_floor_as_it_lands(person, runner, hig
     landing = (made.times >= made.touch_down) & (made.times <= made.through)
     soles = sole_corners(jump.skeleton, *forward_kinematics(jump.skeleton, made.roots[landing], made.local[landing])).reshape(-1, 2, 6, 3)
     assert (soles[:, 1 - made.path.lands, :, 1] - high).min() > 0.0
+
+
+def test_no_stance_is_passed_in_the_air_after_a_leap(person):
+    """At 3.4 m/s the leg that swings is slow to come ahead: its foot comes down for its stance, all the same."""
+    wish, state, leap, off = np.array([3.4, 0.0, 0.0]), person.start(), None, []
+    for _ in range(110):
+        state, _ = person.step(state, Intent(wish), 1 / FPS)
+    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + 2.2]))
+    for _ in range(100):
+        state, _ = person.step(state, Intent(wish, leap if state.active != "jump" and not off else None), 1 / FPS)
+        if state.active == "jump":
+            off = [0]
+        elif off:  # for how many steps no foot has stood
+            off.append(0 if state.contacts.any() else off[-1] + 1)
+    assert len(off) > 40 and max(off) < 13

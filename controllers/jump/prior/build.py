@@ -35,7 +35,7 @@ def recorded_jumps(folder: str | PathLike[str], skeleton: Skeleton, anatomy: Ana
             source = load(Path(folder) / take)
             clip = replace(retarget(source, calibration=calibrate([source])), name=Path(take).stem)
         except (OSError, ValueError) as error:
-            notes.append(f"{take}: {error}")
+            notes.append(str(error) if str(folder) in str(error) else f"{take}: {error}")
             continue
         found += jumps(skeleton, anatomy, clip)
     return found, notes

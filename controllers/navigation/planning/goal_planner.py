@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..goal import wish
 from ..obstacles import DEPTH, SHOULDER
 from ..routes import distance, grid_way, shapes_of
 from ..steering import in_world
@@ -112,9 +113,12 @@ class _Post(NamedTuple):
 
 
 def rehearse() -> None:
-    """A plan that nobody needs, past a post, and a search on a grid, so that what they compile or load does not halt a game."""
-    plan(np.zeros(3), (1.0, 1.0, 1.0), limits=np.array([[1.0, 0.0, 0.0, -2.0]]), around=(_Post(),))
-    grid_way((0.0, 0.0), (1.0, 1.0), shapes_of((_Post(),)), SHOULDER)
+    """A plan that nobody needs, past a post, what walks it, and a search on a grid, so that what they compile or load does not halt a game."""
+    made = plan(np.zeros(3), (1.0, 1.0, 1.0), limits=np.array([[1.0, 0.0, 0.0, -2.0]]), around=(_Post(),))
+    wish(made, 0.0, *made.at(0.0))
+    shapes = shapes_of((_Post(),))
+    grid_way((0.0, 0.0), (1.0, 1.0), shapes, SHOULDER)
+    narrow(np.zeros((1, 2)), shapes, SHOULDER)
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:
