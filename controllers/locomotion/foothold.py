@@ -20,6 +20,7 @@ from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, query_kernel, series_kernel
 from .last_stride import bring_together
 from .root_motion import advance, briskness, short_way, time_ahead
+from .turning_back import pivots
 from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
@@ -105,6 +106,7 @@ def _foresee(m, foot, later, settings, space, table, body, legs, ahead):
     command[0] = reached(space, command[0] / SCALE[0], m.family) * SCALE[0]
     for i in range(3):
         command[i] /= briskness(m)
+    command[1] /= pivots(m)
     simplex = query_kernel(space, command, m.simplex[m.family], settings.correct, ahead.barycentric, target, moved)
     stays = 2.0 ** (-later / settings.weight_halflife)
     for i in range(m.weights.shape[0]):

@@ -23,7 +23,7 @@ from .kernel import (ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SC
                      query_kernel, series_kernel)
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, briskness, cadence_kernel, follow_command, tempo_kernel, to_world_kernel
-from .turning_back import turn_back
+from .turning_back import pivots, turn_back, turn_corner
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
 
@@ -62,6 +62,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings, table, dt)
         begin_turn(m, turns, wish[n], fresh)
+        turn_corner(m, wish[n])
         turn_back(m, turns, wish[n], settings, fresh)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)
@@ -117,6 +118,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
     for i in range(3):
         c[i] /= briskness(m)
+    c[1] /= pivots(m)
     simplex = query_kernel(space, c, m.simplex[m.family], settings.correct, b, p, q)
     vertices = space.vertices[simplex]
     m.simplex[m.family] = simplex

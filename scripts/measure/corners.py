@@ -24,6 +24,8 @@ from gambol.controllers.navigation import steer
 SPEEDS, DEGREES, SECONDS, NEAR = (0.7, 1.0, 1.3), (60, 90, 120, 150, 180), 4.0, 0.1
 BEGINS, HALF = 0.15, 0.5
 """A recorded corner begins with this share of heading [rad] or speed; what it leads from and to is told over so long [s]."""
+GRAZE = 0.2
+"""What comes down so soon [s] after another foot is a recorded one that its marker let stand in between."""
 CORNERS = "woody2/walk_*_90degree*", "woody2/wd2_*_turn.bvh", "cmu/16/16_17.amc", "cmu/16/16_18.amc", "cmu/16/16_19.amc", "cmu/16/16_2[0789].amc", "cmu/16/16_30.amc", "cmu_30fps/69/69_2[0-9].bvh", "cmu_30fps/69/69_3[0-3].bvh"
 
 
@@ -85,6 +87,7 @@ def recorded(folder: Path, library: Library) -> None:
         begin = a + int(np.flatnonzero(goes)[-1]) if goes.any() else a
         feet = motion.standing[:, 0].reshape(-1, 2, 2).any(-1).astype(int)
         strikes = np.flatnonzero((np.diff(feet, axis=0) > 0).any(-1))
+        strikes = strikes[np.diff(strikes, prepend=-rate) > GRAZE * rate]
         turned = np.array([[np.cos(before), np.sin(before)], [-np.sin(before), np.cos(before)]])
         until = b + half
         way = (motion.com[begin:until, 0][:, [0, 2]] - motion.com[begin, 0][[0, 2]]) @ turned
