@@ -60,7 +60,7 @@ def sent(someone, points, speed) -> tuple[float, int, float]:
 def beside(someone, place) -> tuple[float, int, float]:
     """The same, and how many feet come down at all in place of those on the spot, of somebody who stands beside a place (2,) [m] and steps there."""
     state, states, place = someone.start(), [], np.array(place)
-    for k in range(5 * FPS):
+    for _ in range(5 * FPS):
         x, z = 0.3 * place / np.hypot(*place)
         state, _ = someone.step(state, Intent(np.array([z, 0.0, x]), halt=np.array([*place, math.nan])), 1 / FPS)
         states.append(state)
