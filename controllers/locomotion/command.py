@@ -14,6 +14,7 @@ from .last_stride import come_over, plan_stop, quickness, time_to_stop
 from .memory import RUN, WALK
 from .root_motion import advance, briskness, cadence_kernel
 from .swing import smooth
+from .turning_back import pivots
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
@@ -45,7 +46,10 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     m.wanted = RUN if share * wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
     for i in range(3):
         p[i] = (wish[i] if i == 1 else share * wish[i]) / SCALE[i]
+    faster = pivots(m) if m.wanted == WALK else 1.0
+    p[1] /= faster
     _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
+    p[1] *= faster
     for i in range(3):
         p[i] *= SCALE[i]
     pace = m.pace * briskness(m)  # steps that are as short, and as brisk as they may be

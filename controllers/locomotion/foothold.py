@@ -20,6 +20,7 @@ from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, series_kernel
 from .last_stride import bring_together
 from .root_motion import advance, locate, short_way, time_ahead
+from .turning_back import pivots
 from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
 
@@ -103,6 +104,7 @@ def _foresee(m, foot, later, settings, space, table, body, legs, ahead):
     ground, command, target, moved = ahead.vectors[0], ahead.vectors[1], ahead.vectors[2], ahead.vectors[3]
     look_ahead(m, settings, table, later, ground, command)
     command[0] = reached(space, command[0] / SCALE[0], m.family) * SCALE[0]
+    command[1] /= pivots(m)
     simplex = locate(m, space, command, settings, ahead.barycentric, target, moved)
     stays = 2.0 ** (-later / settings.weight_halflife)
     for i in range(m.weights.shape[0]):

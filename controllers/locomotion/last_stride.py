@@ -56,6 +56,8 @@ BRAKES = 0.15, 1.5
 """A runner lets go so many seconds of his way before he is as near as braking by this share of his push, twice, would take him."""
 ROUND = 0.35
 """Who turned on the spot turns so far [rad] over his feet to the end."""
+SPEEDS_UP = 1.25
+"""Who is asked for so many times his speed still speeds up."""
 NO_WISH = 0.02
 """Wishes smaller than this are none [m/s, rad/s]."""
 
@@ -131,7 +133,8 @@ def _ends(m, settings, table, left, speed, far, place):
 
 @kernel
 def lets_go(m, settings, table):
-    """Whether somebody who walks is so near to where he is to come to rest that he stops now: by the soonest strike by which an even stop leads there."""
+    """Whether somebody who walks is so near to where he is to come to rest that he stops now: by the soonest strike by which an even stop leads there. Who still
+    speeds up goes on until that is the first one by which he can stop at all, or he would creep there."""
     speed, far = math.hypot(m.command[0], m.command[2]), to_halt(m)
     if far <= 0.0:  # he turns to it, or is past it
         return math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) < PAST
@@ -139,10 +142,13 @@ def lets_go(m, settings, table):
     if m.family != WALK:
         return far <= speed * BRAKES[0] + speed * speed / (BRAKES[1] * most)
     left, soonest = (STRIKE - m.phase) % 0.5, max(_time_until(m, settings, table, AT_PLACE) + GLIDE, speed / (HARD * most))
+    speeds_up = math.hypot(m.asked[0], m.asked[2]) > SPEEDS_UP * speed
     for _ in range(8):
         time = _time_until(m, settings, table, left) + GLIDE
         if left >= AT_PLACE and 0.5 * speed * time >= far:
             return time < soonest + _time_until(m, settings, table, 1.0)
+        if left >= AT_PLACE and speeds_up:
+            return False
         left += 0.5
     return False
 

@@ -22,7 +22,7 @@ from .foot_points import foot_points, on_floor
 from .kernel import ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, series_kernel
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, cadence_kernel, follow_command, locate, tempo_kernel, to_world_kernel
-from .turning_back import turn_back
+from .turning_back import pivots, turn_back, turn_corner
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
 
@@ -61,6 +61,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings, table, dt)
         begin_turn(m, turns, wish[n], fresh)
+        turn_corner(m, wish[n])
         turn_back(m, turns, wish[n], settings, fresh)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)
@@ -114,6 +115,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     c[0] = reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
     stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
+    c[1] /= pivots(m)
     simplex = locate(m, space, c, settings, b, p, q)
     vertices = space.vertices[simplex]
     m.simplex[m.family] = simplex

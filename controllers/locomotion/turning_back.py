@@ -1,7 +1,8 @@
-"""The way back: who is told in his walk or run to go where he came from brakes with a step, turns over it as from rest, and goes.
+"""Corners, and the way back: who is told in his walk or run to go where he came from brakes with a step, turns over it as from rest, and goes.
 
 So do recorded people: the foot ahead takes the speed, both feet stand for a moment, and the one behind is set down turned. Which
-way round they turn is up to the foot that is ahead when they are slow.
+way round they turn is up to the foot that is ahead when they are slow. Who walks and is to go aside turns in a step or two, slower meanwhile,
+over the foot that stands: faster than anybody turns who walks round in circles, by as much as recorded people do at corners.
 """
 
 from __future__ import annotations
@@ -9,8 +10,10 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel
+from .first_stride import shift_left
 from .memory import WALK
 from .root_motion import cadence_kernel, short_way
+from .swing import smooth
 from .turning_step import BEFORE, GOES, enter_turn
 
 BACK = 2.75
@@ -25,6 +28,42 @@ TAKES_UP, LAST = 0.1, 0.06
 """Braking takes so much longer [s] than at legs' hardest push; a turn that begins nearer to its toe-off than this, in phase, is too late."""
 BEYOND = 0.6
 """He goes on to that side as long as it is no more than so much [rad] farther round."""
+CORNER, WHOLE = 0.3, 0.8
+"""Who walks and is to face another way by more than the first [rad] turns as at a corner, from the second on altogether: …"""
+TURNS, HURRIES, GAIN = 1.5, 1.3, 4.0
+"""… by so much [rad/s], and more by his speed [m/s], no more than the second, at most, and by so many times what is left; …"""
+SLOWS = 0.5
+"""… slower by this power of how far he looks that way already; …"""
+PIVOTS = 0.5
+"""… and his pose is that of somebody who turns slower by up to this share, while his body turns so much farther over the foot that stands."""
+
+
+@kernel
+def pivots(m):
+    """How many times as fast as his pose somebody turns."""
+    return 1.0 + PIVOTS * _corner(m)
+
+
+@kernel
+def _corner(m):
+    """How far (0 … 1) somebody who walks, and is told which way he will go, turns as at a corner."""
+    if not m.heads or m.family != WALK or m.backs != 0 or m.turn != 0.0 or m.settled or m.waits or shift_left(m) > 0.0 or m.towards[1] <= GOES:
+        return 0.0
+    return smooth((abs(short_way(m.towards[0] - m.ground[2])) - CORNER) / (WHOLE - CORNER))
+
+
+@kernel
+def turn_corner(m, wish):
+    """Make a wish (3,) straight on and turning that of somebody who takes a corner."""
+    share = _corner(m)
+    if share <= 0.0 or wish[2] != 0.0 or wish[0] <= 0.0:
+        return
+    left = short_way(m.towards[0] - m.ground[2])
+    most = TURNS + min(m.towards[1], HURRIES)
+    turn = most * math.tanh(GAIN * left / most)
+    if turn * wish[1] > 0.0 and abs(turn) > abs(wish[1]):
+        wish[1] += share * (turn - wish[1])
+    wish[0] *= 1.0 - share + share * max(0.5 + 0.5 * math.cos(left), 0.0) ** SLOWS
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Measure how somebody who walks or runs goes back: the stick thrown back, at every phase, or less far round, and recorded people's U-turns.
+"""Measure how somebody who walks or runs goes back: the stick thrown back, at every phase, and recorded people's U-turns.
 
     python scripts/measure/turns_back.py [--recordings DIR]
 
@@ -21,15 +21,12 @@ from gambol.controllers.locomotion import Library, Locomotion
 from gambol.controllers.navigation import steer
 
 SPEEDS, SECONDS, NEAR = (0.7, 1.0, 1.3, 2.5, 3.0, 3.5), 5.0, 0.1
-OTHERS = 90.0, 120.0, 150.0
-"""Smaller turns of a walk [degrees]."""
 BEGINS = 0.15
 
 
-def ours(bench: Bench, speed: float, degrees: float = 180.0) -> None:
-    """Print the figures of one speed [m/s] and turn."""
-    angle = np.radians(degrees)
-    new = np.array([np.sin(angle), np.cos(angle)])
+def ours(bench: Bench, speed: float) -> None:
+    """Print the figures of one speed [m/s]."""
+    angle, new = np.pi, np.array([0.0, -1.0])
     state, states = bench.at_all_phases((speed, 0, 0)), []
     for _ in range(round(SECONDS * FPS)):
         state, _ = bench.locomotion.step(state, steer(state.ground, speed * new, None, state.velocity[:, 1]), 1 / FPS)
@@ -44,7 +41,7 @@ def ours(bench: Bench, speed: float, degrees: float = 180.0) -> None:
         way = motion.com[:, n] - motion.com[0, n]
         rows.append((faces / FPS, slow / FPS, strikes[:faces, n].sum(), way[:, 2].max(), np.abs(way[:faces, 0]).max()))
     lowest = np.linalg.norm(motion.com_velocity[..., [0, 2]], axis=-1).min(0)
-    say(f"{speed:.1f} m/s" + (f", {degrees:.0f}°" if degrees != 180.0 else ""), rows, lowest.mean())
+    say(f"{speed:.1f} m/s", rows, lowest.mean())
     print("    " + told([figures(motion)]))
 
 
@@ -102,8 +99,6 @@ def main() -> None:
         recorded(asked.recordings, bench.locomotion.library)
     for speed in SPEEDS:
         ours(bench, speed)
-    for degrees in OTHERS:
-        ours(bench, 1.3, degrees)
 
 
 if __name__ == "__main__":

@@ -110,3 +110,16 @@ def test_who_stands_beside_his_place_steps_to_it(locomotion):
         stood.append(state.memory["settled"])
     assert (np.abs(np.diff(stood, axis=0)).sum(0) <= 4).all()
     assert np.linalg.norm(state.ground[:, :2] - wish.halt[:, :2], axis=-1).max() < 0.03
+
+
+def test_who_stands_a_step_from_his_place_is_there_in_two_steps(locomotion):
+    """He lets go once that leads him there by the first strike that it may be, and doesn't creep."""
+    far = np.array([0.04, 0.08, 0.15])
+    places = np.concatenate([far[:, None] * way for way in ([1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0])])
+    halts = np.column_stack([places, np.full(len(places), np.nan)])
+    wish = np.column_stack([places[:, 1], np.zeros(len(places)), places[:, 0]]) * 0.3 / np.hypot(*places.T)[:, None]
+    states = gone(locomotion, wish, halts, 4.0)
+    feet = np.array([s.contacts.reshape(-1, 2, 2).any(-1) for s in states]).astype(int)
+    assert (np.diff(feet, axis=0) > 0).any(-1).sum(0).mean() < 2.3
+    assert np.array([s.memory["settled"] for s in states])[round(1.9 * FPS):].mean() > 0.9
+    assert np.hypot(*(states[-1].ground - halts)[:, :2].T).max() < 0.01

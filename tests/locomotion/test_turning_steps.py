@@ -1,4 +1,4 @@
-"""Turns are made in as few steps as people take: from rest two into a walk, two or four on the spot, which end where they began; back in a walk three, in a run five."""
+"""Turns are made in as few steps as people take: from rest two into a walk, two or four on the spot, which end where they began; back in a walk three, in a run five; and corners of a walk in two."""
 
 import numpy as np
 import pytest
@@ -43,6 +43,27 @@ def test_who_goes_another_way_turns_there_in_two_steps(locomotion):
     assert all(strikes(states[:facing[n]])[:, n].sum() <= 2 for n in range(len(degrees)))
     assert (off(states, degrees)[-1] < 0.05).all()
     assert np.allclose([np.hypot(*state.velocity[:, [0, 2]].T) for state in states[-6:]], 1.3, atol=0.05)
+
+
+@pytest.mark.parametrize("degrees, soon, beyond", [(90.0, 0.95, 0.6), (-120.0, 1.12, 0.63), (150.0, 1.35, 0.56)])
+def test_who_walks_takes_a_corner_in_a_step_or_two(locomotion, degrees, soon, beyond):
+    """At any phase of a walk, no farther beyond the new way than recorded people, and goes on as fast."""
+    state = locomotion.start(np.zeros((8, 3)))
+    for k in range(5 * FPS):
+        state, _ = locomotion.step(state, Intent(np.stack([np.where(k < 8 * np.arange(8), 0.0, 1.3), np.zeros(8), np.zeros(8)], -1)), 1 / FPS)
+    angle, states, begins = np.radians(degrees), [], state.ground
+    new = np.array([np.sin(angle), np.cos(angle)])
+    for _ in range(3 * FPS):
+        state, _ = locomotion.step(state, steer(state.ground, 1.3 * new, None, state.velocity[:, 1]), 1 / FPS)
+        states.append(state)
+    away = off(states, np.full(8, degrees))
+    facing = len(away) - (away > 0.1)[::-1].argmax(0)
+    assert facing.max() < soon * FPS, facing
+    assert np.mean([strikes(states[:facing[n]])[:, n].sum() for n in range(8)]) < 2.5
+    way = np.array([s.ground for s in states])[..., :2] - begins[:, :2]
+    assert (-np.sign(angle) * way @ np.array([new[1], -new[0]])).max() < beyond
+    assert np.allclose(states[-1].velocity[:, 0], 1.3, atol=0.05) and away[-1].max() < 0.05
+    assert feet_apart(locomotion.skeleton, *motion_of(locomotion, states)).min() > 0.06
 
 
 def test_who_walks_and_is_to_go_back_steps_turns_over_it_and_goes(locomotion):
