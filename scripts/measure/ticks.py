@@ -1,4 +1,4 @@
-"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import.
+"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls.
 
     python scripts/measure/ticks.py [--clicks 40]
 
@@ -12,11 +12,14 @@ import argparse
 import os
 import time
 from collections.abc import Iterator
+from itertools import chain
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
-from gambol.controllers.contract import Goal, Intent
+from _struck_rooms import room
+
+from gambol.controllers.contract import Goal, Intent, Strike
 from gambol.controllers.person import person
 from gambol.game.input import Wish
 from gambol.game.scenario import film, load
@@ -71,17 +74,30 @@ def imported(count: int, seed: int) -> Iterator[None]:
             yield
 
 
+def strikes(count: int, seed: int) -> Iterator[None]:
+    """The steps of somebody who is struck on stairs, over and over."""
+    rng, someone = np.random.default_rng(seed), person()
+    for number in range(count):
+        things, start, floor = room("stairs", rng)
+        state, angle = someone.start(start, floor), rng.uniform(-np.pi, np.pi)
+        kick = Strike(tuple(rng.uniform(1.5, 3.0) * someone.parts["struck"].physique.mass * np.array([np.sin(angle), np.cos(angle)])))
+        for tick in range(RATE):
+            state, _ = someone.step(state, Intent(around=things, strike=kick if tick == 10 else None), 1 / RATE)
+            yield
+
+
 def main() -> None:
     """Print all figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clicks", type=int, default=20)
     asked = parser.parse_args()
-    for _ in clicks(3, 9):  # compiled, loaded
+    for _ in chain(clicks(3, 9), strikes(4, 9)):  # compiled, loaded
         pass
     time.sleep(4.0)  # the last of them is still thought of
     told("go_across", scenario("go_across"))
     told("clicks on the course", clicks(asked.clicks, 0))
     told("goals among twelve boxes", imported(asked.clicks, 0))
+    told("struck on stairs", strikes(asked.clicks, 0))
 
 
 if __name__ == "__main__":
