@@ -12,6 +12,7 @@ import numpy as np
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Leap, Status, level, seconds
 from ..navigation import floor_at
+from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
 from .motion import Plan, fall, over_nothing, struck
@@ -172,6 +173,9 @@ class Jump(Reach, Controller):
                         memory=replace(jumping, time=time), floor=floor)
         if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
             after = self._hit(after, intent.around, dt)
+        if jumping.fault and intent.around:  # a leap's sweep saw to its arms
+            pose = drawn_in(self.skeleton, pose, after.ground, intent.around)
+            after = replace(after, pose=pose)
         return after, pose
 
     def _released(self, state: CharacterState, intent: Intent) -> CharacterState:
