@@ -134,7 +134,7 @@ class Settling:
         local = turned(bends, self.local[keys], self.bent[:, 3:])
         positions, world = forward_kinematics(self.physique.skeleton, self.roots[keys] + self.bent[:, :3], local)
         points, thick = flesh(self.physique, positions, world)
-        aside = self.rounds >= ROUNDS // 2  # what is beside a tread may go out of it that way
+        aside = self.rounds > ROUNDS // 2  # what is beside a tread may go out of it that way
         band, right = np.empty((self.bent.size, 2 * self.bent.shape[1] + 1)), np.empty(self.bent.size)
         equations_kernel(bends, ground.things, ground.corner, ground.caps, thick, aside, self.firm, positions, world, points, local, self.clear, self.near, self.lies, self.bent, band, right)
         band_kernel(band, right)
@@ -152,7 +152,7 @@ def settling(physique: Physique, roots: np.ndarray, local: np.ndarray, facing: n
     near = np.exp(-((clear / (NEAR * physique.size)) ** 2))
     bent = np.zeros((len(keys), 3 + len(bends_of(physique).joints)))
     fall = Settling(physique, ground, roots + [0.0, begins - roots[0, 1], 0.0], local, facing, floor, toppled, keys, 1, bent, clear, near, lies)
-    soon = replace(fall, keys=keys[:SOON], bent=bent[:SOON], clear=clear[:SOON], near=near[:SOON], lies=lies[:SOON], rounds=ROUNDS // 2).after(FIRST)
+    soon = replace(fall, keys=keys[:SOON], bent=bent[:SOON], clear=clear[:SOON], near=near[:SOON], lies=lies[:SOON], rounds=ROUNDS // 2 + 1).after(FIRST)
     firm = int(np.searchsorted(keys, (FIRST + LATE) * RATE)) + 2
     bent[:firm] = soon.bent[:firm]
     return replace(fall, firm=firm, bent=bent)

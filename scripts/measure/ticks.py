@@ -79,7 +79,7 @@ def imported(count: int, seed: int) -> Iterator[None]:
 def strikes(count: int, seed: int) -> Iterator[None]:
     """The steps of somebody who is struck on stairs, over and over."""
     rng, someone = np.random.default_rng(seed), person()
-    for number in range(count):
+    for _ in range(count):
         things, start, floor = room("stairs", rng)
         state, angle = someone.start(start, floor), rng.uniform(-np.pi, np.pi)
         kick = Strike(tuple(rng.uniform(1.5, 3.0) * someone.parts["struck"].physique.mass * np.array([np.sin(angle), np.cos(angle)])))
