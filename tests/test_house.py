@@ -112,7 +112,7 @@ PLAN = {
         "supervisor": "body contract navigation navigation.passing",
         "jump.muscles": "compiled jump.body",
         "jump.prior": "files body jump.body mocap",
-        "jump": "body contract navigation",
+        "jump": "body contract navigation navigation.passing",
         "tracking": "body contract driven files",
         "tracking.twists": "compiled body",
         "tracking.cameras": "compiled files body",

@@ -12,9 +12,10 @@ import numpy as np
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Leap, Status, level, seconds
 from ..navigation import floor_at
+from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Plan, fall, over_nothing, struck
+from .motion import Plan, between_kernel, fall, over_nothing, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
@@ -33,6 +34,8 @@ SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
+DRAWN = 0.52
+"""Who falls draws his arms in beside what he falls past, in so long [s]."""
 MOST_HITS = 3
 """A body that still touches something after so many hits slips by."""
 
@@ -172,6 +175,12 @@ class Jump(Reach, Controller):
                         memory=replace(jumping, time=time), floor=floor)
         if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
             after = self._hit(after, intent.around, dt)
+        if jumping.fault and intent.around:  # a leap's sweep saw to its arms
+            near, share = drawn_in(self.skeleton, pose, after.ground, intent.around), min(time / DRAWN, 1.0)
+            root, local = np.empty(3), np.empty_like(pose.rotations)
+            between_kernel(pose.root, near.root, pose.rotations, near.rotations, share**2 * (3.0 - 2.0 * share), root, local)
+            pose = Pose(root, local)
+            after = replace(after, pose=pose)
         return after, pose
 
     def _released(self, state: CharacterState, intent: Intent) -> CharacterState:

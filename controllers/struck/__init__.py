@@ -2,7 +2,7 @@
 
 from .capture import DROPS, FALLS, STEPS, SWAYS
 from .controller import Recovering, Struck, rehearse
-from .held_falls import flesh
+from .flesh import flesh
 from .recorded_falls import SPACED
 from .recorded_pushes import TAKES, fit
 from .recovery import Recovery

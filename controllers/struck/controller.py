@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
@@ -15,10 +16,11 @@ from ..navigation.passing import drawn_in
 from .capture import FALLS, Way, way
 from .recorded_pushes import response
 from .recovery import Recovery
+from .settled import LATE
 from .stepping import walks_kernel
 from .stumble import CHEST, stumble
 from .surroundings import about
-from .toppling import topple
+from .toppling import settles, topple
 
 STRUCK, HOLDS, OVER = 3.0, 1.4, 0.3
 """How well it bids for somebody who is struck, above all others; how firmly it holds on, less than who loses the floor; once one can walk on."""
@@ -87,12 +89,16 @@ class Struck(Controller):
         """The state of who has just been struck. Unable where nothing strikes."""
         if intent.strike is None:
             raise Unable("nothing strikes it")
-        made = self.recovery(state, intent, intent.strike)
+        made = self._planned(state, intent, intent.strike)
         shift = np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.headings[0]]
         return replace(state, memory=Recovering(made, 0.0, shift))
 
     def recovery(self, state: CharacterState, intent: Intent, strike: Strike) -> Recovery:
         """What becomes of a state that is struck: its mass centre's velocity is what it was and the impulse over the mass."""
+        return settles(self._planned(state, intent, strike), math.inf)
+
+    def _planned(self, state: CharacterState, intent: Intent, strike: Strike) -> Recovery:
+        """The same; a fall on uneven ground is still to settle."""
         start, floor, size = start_of(self.physique, state), float(level(state.floor)), self.physique.size
         x, z = self.gain(strike)
         start = replace(start, velocity=start.velocity + np.array([x, 0.0, z]))
@@ -125,7 +131,8 @@ class Struck(Controller):
         if intent.strike is not None and state.memory.time > 0.0:  # struck again
             state = self.enter(state, intent)
         memory: Recovering = state.memory
-        made, time = memory.made, min(memory.time + dt, memory.made.duration)
+        made = settles(memory.made, memory.time + dt - min(dt, LATE))
+        time = min(memory.time + dt, made.duration)
         pose, (centre, velocity, heading) = made.at(time), made.moving(time)
         ground = np.array([centre[0], centre[2], heading]) + memory.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
         c, s = np.cos(ground[2]), np.sin(ground[2])
@@ -133,7 +140,7 @@ class Struck(Controller):
         if made.fate < FALLS and len(intent.around):
             pose = drawn_in(self.skeleton, pose, ground, intent.around)
         n, part = made.between(time)
-        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, time=time),
+        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, made=made, time=time),
                         floor=float(made.floors[n]))
         if np.abs(intent.velocity).max() > WISHES and self._walks_on(after) and not made.stands(time):
             after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
@@ -164,11 +171,12 @@ def _slides(skeleton: Skeleton, made: Recovery) -> float:
 
 
 def rehearse(struck: Struck) -> None:
-    """Strike somebody in a T-pose who stands before a wall, so that what that compiles or loads does not halt a game: he is held by it, and falls."""
+    """Strike somebody in a T-pose who stands before a wall, so that what that compiles or loads does not halt a game: he is held by it, and falls, on the floor and on a step."""
     skeleton = struck.skeleton
     pose = Pose(skeleton.offsets[0].copy(), np.tile(np.eye(3), (len(skeleton), 1, 1)))
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
-    wall = SimpleNamespace(centre=(0.0, 1.0, 2.5), size=(4.0, 2.0, 0.2), heading=0.0)
-    for speed in (0.5, 4.0):
-        intent = Intent(strike=Strike((0.0, speed * struck.physique.mass)), around=(wall,))
+    wall, step = (SimpleNamespace(centre=centre, size=size, heading=0.0) for centre, size in (((0.0, 1.0, 2.5), (4.0, 2.0, 0.2)), ((0.0, 0.05, 1.0), (4.0, 0.1, 1.0))))
+    for speed, around in ((0.5, (wall,)), (4.0, (wall,)), (4.0, (wall, step))):
+        intent = Intent(strike=Strike((0.0, speed * struck.physique.mass)), around=around)
+        struck.recovery(state, intent, intent.strike)
         struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)

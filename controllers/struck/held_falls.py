@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
-from ..body import centre_of_mass, end_positions, forward_kinematics, yaw
+from ..body import centre_of_mass, forward_kinematics, yaw
 from ..compiled import kernel
 from ..jump.body import Physique
-from ..jump.motion import BONES, grounded_poses, sole_places
-from .stepwise_ground import Ground, cell_kernel
+from ..jump.motion import grounded_poses
+from .flesh import flesh
 from .recorded_falls import RATE, Fall
+from .stepwise_ground import Ground, cell_kernel
 from .surroundings import STEP, aside_kernel
 
 ASIDE = np.radians([0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0, 65.0, -65.0, 90.0, -90.0, 125.0, -125.0, 180.0])
@@ -25,26 +27,10 @@ COSTS = 1.0, 8.0, 3.0
 """What it costs to be turned while one falls [1/rad], to go into a wall [1/m], and to lie with one's middle over an abyss."""
 LOOKED = 6
 """Every so many moments of a recorded fall are looked at where a way is chosen."""
-SPACED = 3
-"""So many places of a bone are told of."""
 GRAZE = 0.01
 """So much of its flesh a body may graze a wall with [m]."""
 EARLY, SMOOTH = 0.10, 0.05
 """A wall is felt so long before it is met [s], and the body held as smoothly as means of so long are [s]."""
-
-
-def flesh(physique: Physique, positions: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Places (N, P, 3) [m] on a placed body's bones and soles, and how thick (P,) it is there [m]."""
-    skeleton, at = physique.skeleton, physique.skeleton.index
-    ends, places, thick = end_positions(skeleton, positions, turned), [], []
-    for first, last, radius in BONES:
-        for side in ("",) if first in skeleton.names else ("Left", "Right"):
-            begin = positions[:, at(side + first)]
-            stop = ends[:, skeleton.end_index[side + first]] if not last else positions[:, at(last if last in skeleton.names else side + last)]
-            places += [begin + share * (stop - begin) for share in np.linspace(0.0, 1.0, SPACED)]
-            thick += [radius * physique.size] * SPACED
-    soles = [place for place, _ in sole_places(physique, positions, turned)]
-    return np.stack([*places, *soles], 1), np.array(thick + [0.02 * physique.size] * len(soles))
 
 
 def chosen(physique: Physique, every: Sequence[Fall], place: np.ndarray, way: float, heading: float, floor: float, ground: Ground | None) -> tuple[Fall, float]:
@@ -65,6 +51,7 @@ def chosen(physique: Physique, every: Sequence[Fall], place: np.ndarray, way: fl
     return best
 
 
+@lru_cache(maxsize=64)
 def _sampled(physique: Physique, fall: Fall) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A fall's flesh (N, P, 3) over a floor at 0, as it begins over the middle, facing ahead; how thick (P,) that is; and where (M, 3) its mass centre is from when it strikes the floor on."""
     times = np.arange(fall.begins, fall.lasts, LOOKED / RATE)
@@ -99,8 +86,9 @@ def held(points: np.ndarray, thick: np.ndarray, floor: float, ground: Ground) ->
     """How far (N, 3) [m] a body is led off along the floor in every moment, whose flesh is (P,) thick at places (N, P, 3): away from walls, where it stays."""
     from scipy.ndimage import gaussian_filter1d  # no game waits for it at its start
 
-    off = np.zeros((len(points), 3))
-    held_kernel(ground.things, ground.corner, ground.caps, points, thick, floor, off)
+    off = np.zeros((len(points[::2]), 3))
+    held_kernel(ground.things, ground.corner, ground.caps, points[::2], thick, floor, off)
+    off = np.repeat(off, 2, 0)[:len(points)]  # smoothed below
     early = min(round(EARLY * RATE), len(off) - 1)
     off = np.concatenate([off[early:], np.repeat(off[-1:], early, 0)])
     if len(off) > 1:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..body import Pose
 from ..jump.motion import between_kernel
+from .settled import Settling
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,7 +16,7 @@ class Recovery:
     """A motion of N samples. times: (N,) [s]. roots: (N, 3), local: (N, J, 3, 3) poses. centres, velocities: (N, 3) of the mass centre [m, m/s]. contacts: (N, 4) bool of heels
     and balls. headings: (N,) [rad] where it faces. fate: of `capture`; caught: the steps that caught it. landings: (L, 2) which foot lands, and when [s]. rests: when [s] it
     stands, but for trunk and arms. why: what is to be said of it. floors: (N,) how high it stands [m].
-    supported: whether the ground carries it in every moment, and it does not lie over an abyss."""
+    supported: whether the ground carries it in every moment, and it does not lie over an abyss. settling: what of it is still to be bent to the ground; None where nothing is."""
 
     times: np.ndarray
     roots: np.ndarray
@@ -31,6 +32,7 @@ class Recovery:
     why: str
     floors: np.ndarray
     supported: bool = True
+    settling: Settling | None = None
 
     @property
     def duration(self) -> float:

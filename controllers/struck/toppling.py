@@ -6,18 +6,20 @@ The fall that goes most nearly the same way is turned the rest of the way round 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from ..body import centre_of_mass, exp, forward_kinematics, log, yaw
+from ..body import centre_of_mass, contact_height, forward_kinematics, yaw
 from ..jump.body import Physique, Start, turns, vectors
-from ..jump.motion import FEET, TOUCHES, faded, grounded_poses, places
+from ..jump.motion import FEET, TOUCHES, between_kernel, faded, grounded_poses
 from .capture import FALLS
-from .stepwise_ground import ground_about, level_kernel, rest_kernel
-from .held_falls import chosen, flesh, held
+from .flesh import flesh, flesh_of
+from .held_falls import chosen, held
 from .recorded_falls import RATE, Fall, falls
 from .recovery import Recovery
-from .settled import footing, settled, stands, uneven
+from .settled import Settling, footing, settling, stands, uneven
+from .stepwise_ground import Ground, ground_about, level_kernel, rest_kernel
 from .surroundings import NOTHING
 
 PACES = 0.9, 1.35
@@ -36,7 +38,7 @@ WHY = "struck too hard to be caught by a step: it falls, and gets up"
 
 def topple(physique: Physique, start: Start, floor: float, rate: float, things: np.ndarray = NOTHING) -> Recovery:
     """The fall, lying and getting up of a body whose mass centre has start.velocity [m/s] as it begins. floor: [m]. rate: ω [1/s] of the pendulum. things: (K, 9) what stands about, as
-    of `about`."""
+    of `about`. On uneven ground it lies as on a level floor until it `settles`."""
     flat = start.velocity[[0, 2]]
     pace = float(np.hypot(*flat))
     ground = ground_about(things, start.centre[[0, 2]], floor) if len(things) else None
@@ -47,37 +49,57 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
     local[:, 0] = yaw(facing) @ local[:, 0]
     left = faded(vectors(start.rotations @ np.swapaxes(local[0], -1, -2)), start.rates, FADE, times)
     local = turns(left) @ local
-    roots, over = grounded_poses(physique, local, np.asarray(start.root, float), floor)
-    centres = centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, roots, local))
+    roots, _ = grounded_poses(physique, local, np.asarray(start.root, float), floor)
+    centres = centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, roots[:2], local[:2]))
     lacks = start.velocity - (centres[1] - centres[0]) * RATE
-    slip = SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
-    roots, centres = roots + slip, centres + slip
+    roots = roots + SPENT * (1.0 - np.exp(-times / SPENT))[:, None] * lacks * [1.0, 0.0, 1.0]
+    if ground is None:
+        return _recovery(physique, times, roots, local, facing, floor, toppled, None)
     positions, turned = forward_kinematics(physique.skeleton, roots, local)
-    over, floors, supported, carried = over[:, -FEET:], np.full(len(times), floor), True, None
+    points, thick = flesh(physique, positions, turned)
+    led = held(points, thick, floor, ground)
+    roots, points = roots + led, points + led[:, None]
+    if not uneven(points, thick, floor, ground):
+        return _recovery(physique, times, roots, local, facing, floor, toppled, ground)
+    up = max(len(times) - int(np.argmax(roots[::-1, 1] < floor + UP * (roots[-1, 1] - floor))), 2)
+    last, aside = footing(points[up - 2:, -FEET:], thick[-FEET:], floor, ground)
+    times, roots, local, facing = (rows[:up - 1 + last] for rows in (times, roots, local, facing))
+    roots = roots + _evenly(times / toppled)[:, None] * [aside[0], 0.0, aside[1]]
+    return _settled(settling(physique, roots, local, facing, floor, toppled, float(start.root[1]), ground))
+
+
+def settles(made: Recovery, seconds: float) -> Recovery:
+    """A fall so long [s] after it began, bent to the ground as well as it is by then: what is shown until then stays."""
+    if made.settling is None:
+        return made
+    now = made.settling.after(seconds)
+    return _settled(now) if now.done else replace(made, settling=now)
+
+
+def _settled(now: Settling) -> Recovery:
+    """A fall that comes to rest on uneven ground, bent as well as it is by now."""
+    roots, local, facing = _halted(*now.motion(), now.facing)
+    made = _recovery(now.physique, np.arange(len(roots)) / RATE, roots, local, facing, now.floor, now.toppled, now.ground, True)
+    return made if now.done else replace(made, settling=now)
+
+
+def _recovery(physique: Physique, times: np.ndarray, roots: np.ndarray, local: np.ndarray, facing: np.ndarray, floor: float, toppled: float, ground: Ground | None,
+              rests: bool = False) -> Recovery:
+    """A fall and getting up as it is played: roots (N, 3), rotations (N, J, 3, 3) and headings (N,) [rad] at times (N,) [s]. rests: whether it comes to rest on uneven ground."""
+    positions, turned = forward_kinematics(physique.skeleton, roots, local)
+    centres, soles = centre_of_mass(physique.anatomy, positions, turned), flesh(physique, positions, turned)[0][:, -FEET:]
+    floors, carried, lies = np.full(len(times), floor), None, np.full((len(times), FEET), floor + contact_height(physique.skeleton))
+    supported = True
     if ground is not None:
-        roots = roots + held(*flesh(physique, positions, turned), floor, ground)
-        points, thick = flesh(physique, positions, turned)
-        points = points + (roots - positions[:, 0])[:, None]
-        if bent := uneven(points, thick, floor, ground):
-            up = max(len(times) - int(np.argmax(roots[::-1, 1] < floor + UP * (roots[-1, 1] - floor))), 2)
-            last, led = footing(points[up - 2:, -FEET:], thick[-FEET:], floor, ground)
-            times, roots, local, facing = (rows[:up - 1 + last] for rows in (times, roots, local, facing))
-            roots, local = settled(physique, roots + _evenly(times / toppled)[:, None] * [led[0], 0.0, led[1]], local, floor, float(start.root[1]), ground)
-            (roots, local, facing), times = _halted(roots, local, facing), np.arange(len(times) + HALTS) / RATE
-        positions, turned = forward_kinematics(physique.skeleton, roots, local)
-        centres = centre_of_mass(physique.anatomy, positions, turned)
-        floors = np.empty(len(times))
+        thick = flesh_of(physique).thick[-FEET:]
         level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
         supported = not np.isnan(floors).any()
-        soles, rests = flesh(physique, positions, turned)[0][:, -FEET:], np.empty((len(times), FEET))
-        high, carried = stands(soles[-1], thick[-FEET:], ground) if bent else (floor, None)
+        high, carried = stands(soles[-1], thick, ground) if rests else (floor, None)
         floors = np.where(times > toppled, high, floor)
-        rest_kernel(ground.things, ground.corner, ground.caps, soles, thick[-FEET:], False, rests, np.empty((len(times), FEET, 2)))
-        over = soles[..., 1] - rests
-    feet = places(physique, positions, turned)[0][:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
+        rest_kernel(ground.things, ground.corner, ground.caps, soles, thick, False, lies, np.empty((len(times), FEET, 2)))
+    feet, over = (rows.reshape(-1, 2, 3, *rows.shape[2:])[:, :, :2].reshape(-1, 4, *rows.shape[2:]) for rows in (soles, soles[..., 1] - lies))
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
-    slow = np.hypot(flows[..., 0], flows[..., 2]) < SLIDES
-    contacts = slow & (over.reshape(-1, 2, 3)[..., :2].reshape(-1, 4) < TOUCHES * physique.size)
+    contacts = (np.hypot(flows[..., 0], flows[..., 2]) < SLIDES) & (over < TOUCHES * physique.size)
     if carried is not None:
         contacts[-1] = carried
     return Recovery(times, roots, local, centres, np.gradient(centres, 1.0 / RATE, axis=0), contacts, facing, FALLS, 0, np.zeros((0, 2)), float(times[-1]), WHY, floors, supported)
@@ -85,12 +107,16 @@ def topple(physique: Physique, start: Start, floor: float, rate: float, things: 
 
 def _halted(roots: np.ndarray, local: np.ndarray, facing: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Roots (N, 3), rotations (N, J, 3, 3) and headings (N,) [rad] of a body that comes to rest in the last of them: HALTS moments are shown in twice as many, (N + HALTS, ...)."""
+    begin = len(roots) - HALTS
     share = np.arange(1, 2 * HALTS + 1) / (2.0 * HALTS)
-    shown = np.append(np.arange(len(roots) - HALTS), len(roots) - 1.0 - HALTS * (1.0 - share) ** 2)
+    shown = begin - 1.0 + HALTS * (1.0 - (1.0 - share) ** 2)
     n = np.minimum(shown.astype(int), len(roots) - 2)
     part = shown - n
-    led = local[n] @ exp(part[:, None, None] * log(np.swapaxes(local[n], -1, -2) @ local[n + 1]))
-    return roots[n] + part[:, None] * (roots[n + 1] - roots[n]), led, facing[n] + part * (facing[n + 1] - facing[n])
+    slow, turned = np.empty((2 * HALTS, 3)), np.empty((2 * HALTS, *local.shape[1:]))
+    for k in range(2 * HALTS):
+        between_kernel(roots[n[k]], roots[n[k] + 1], local[n[k]], local[n[k] + 1], part[k], slow[k], turned[k])
+    late = facing[n] + part * (facing[n + 1] - facing[n])
+    return np.concatenate([roots[:begin], slow]), np.concatenate([local[:begin], turned]), np.concatenate([facing[:begin], late])
 
 
 def _evenly(share: np.ndarray) -> np.ndarray:

@@ -15,13 +15,13 @@ from .making import aloft, jumping, landing, leaving
 from .moves import Jump, Move
 from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, user_file
-from .run_up import RUNS, RunUp, agility, before, last_chance, leaps, rises
+from .run_up import RUNS, THINKS, WAITED, RunUp, agility, before, last_chance, leaps, ring, rises
 from .script import Script
 from .wish import STEPS, Wish, push
 
 __all__ = [
-    "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "Aim", "Binding",
+    "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
     "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
     "before", "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
-    "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "rises", "user_file", "wheel_wish", "wishes",
+    "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "user_file", "wheel_wish", "wishes",
 ]

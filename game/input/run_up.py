@@ -1,20 +1,21 @@
 """Run-ups: who wants to leap goes on at what he can't walk over as long as he could still stop before it, and farther only if his leap goes off.
 
 He plays ahead what he is about to do: controllers are pure functions. Hands that hold a leap at a run over what can't be run over go on to the last
-footfall from which it can be leapt, and it goes off there by itself.
+footfall from which it can be leapt, and it goes off there by itself. What hands can leap is thought of beside the steps.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, but
 from gambol.controllers.navigation import STEP, floor_at, gap, in_world, room
+from gambol.controllers.navigation.thinking import Thought
 from gambol.controllers.supervisor import Asked
 
 LOOK, EVERY = 2.0, 0.15
@@ -45,6 +46,8 @@ UP = 0.95
 """It lands no higher than this over the feet [m], and no lower than a step."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
+THINKS, WAITED, AT_LAST = 0.5, 0.5, 1 << 30
+"""He thinks of his leap so much sooner than he would brake [s]; nearer to what is ahead than this share of how far he looks for that he goes no farther without knowing: it is used at last."""
 LATE, TURNED = 6, 0.35
 """It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
 
@@ -55,12 +58,14 @@ Asks = Callable[[CharacterState], Intent]
 @dataclass(frozen=True)
 class RunUp:
     """What somebody knows of his run-up. free: for so many steps he goes on as he does, −1 where his leap was found not to go off; halt: x, z [m] where he is to come to rest, as he can't leap.
-    leap: what goes off by itself after these steps, of a run of `velocity` [m/s] along x and z."""
+    leap: what goes off by itself after these steps, of a run of `velocity` [m/s] along x and z. thought: what he thinks of it, and for how many steps he has thought."""
 
     free: int = 0
     halt: tuple[float, float] | None = None
     leap: Leap | None = None
     velocity: tuple[float, float] = (0.0, 0.0)
+    thought: Thought[RunUp] | None = None
+    thinks: int = 0
 
     @property
     def off(self) -> Leap | None:
@@ -76,6 +81,15 @@ class RunUp:
     def onward(self, velocity: tuple[float, float]) -> RunUp | None:
         """The same a step later of somebody whose hands ask for a velocity (2,) [m/s]. None where no leap was found that goes off by itself, it did not, or he turned."""
         return None if self.leap is None or self.free <= -LATE or self.turned(velocity) else replace(self, free=self.free - 1)
+
+    def known(self, at_once: bool, halt: tuple[float, float] | None) -> RunUp:
+        """What he has thought of by now; the same a step later as long as he thinks, which he does no longer `at_once`. halt: where he is to come to rest if there is no leap."""
+        assert self.thought is not None
+        found = self.thought.after(AT_LAST if at_once else self.thinks)
+        if found is None:
+            return replace(self, thinks=self.thinks + 1)
+        free = found.free - self.thinks
+        return RunUp(-1, halt, velocity=self.velocity) if free < 0 or free == 0 and found.leap is None else replace(found, free=free)
 
     def step(self, controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float) -> RunUp:
         """The same `dt` seconds later. asks: what is asked of him from here on."""
@@ -93,15 +107,15 @@ class RunUp:
         return but(intent, halt=np.array([*self.halt, np.nan]), towards=None)
 
 
-def before(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
+def before(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> tuple[float, float] | None:
     """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
-    where that is far away."""
+    where that is far away: farther than he looks, of which `share` counts, and so much `more` [m]."""
     speed, floor, here = math.hypot(*velocity), float(state.floor), np.asarray(state.ground[:2], float)
     if speed < 1e-6 or not len(around):
         return None
     pace = float(np.hypot(state.velocity[0], state.velocity[2]))
     ahead = np.asarray(velocity, float) / speed
-    for far in np.arange(1, 2 + int((STOPS[0] + STOPS[1] * max(pace, speed)**2 / agility(controller)) / PACE)) * PACE:
+    for far in np.arange(1, 2 + int((share * (STOPS[0] + STOPS[1] * max(pace, speed)**2 / agility(controller)) + more) / PACE)) * PACE:
         if room(here + far * ahead, floor, around) <= 0.0:
             low, high = far - PACE, far
             while high - low > FINE:
@@ -114,10 +128,11 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     return None
 
 
-def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> bool:
+def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> bool:
     """Whether the floor rises by more than a runner takes in stride where somebody goes with a velocity (2,) [m/s] in the world, no farther away than `before` looks."""
     floor, ahead, speed = float(state.floor), np.asarray(velocity, float), math.hypot(*velocity)
-    places = np.asarray(state.ground[:2], float) + np.arange(1, 2 + int((STOPS[0] + STOPS[1] * speed**2 / agility(controller)) / PACE))[:, None] * PACE * ahead / speed
+    count = 2 + int((share * (STOPS[0] + STOPS[1] * speed**2 / agility(controller)) + more) / PACE)
+    places = np.asarray(state.ground[:2], float) + np.arange(1, count)[:, None] * PACE * ahead / speed
     return any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in places)
 
 
@@ -143,12 +158,17 @@ def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], ar
     return RunUp(max(round(EVERY / dt), 1))
 
 
-def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float, most: int) -> int:
-    """After how many steps, at most so many, he can leap who goes on; 0 where he never can. Asked as often as a supervisor does."""
+def _silent() -> None:
+    """Nobody counts the questions."""
+
+
+def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float, most: int, ask: Callable[[], None] = _silent) -> int:
+    """After how many steps, at most so many, he can leap who goes on; 0 where he never can. Asked as often as a supervisor does. ask: is called before each question."""
     refused = None
     for number in range(most):
         intent = but(asks(state), around=around)
         if intent.leap is not None and not (refused is not None and refused.still(state, intent)) and controller.precondition(state, intent) >= READY:
+            ask()
             if controller.refusal(state, intent) == "":
                 return number + 1
             refused = Asked("", intent, state)
@@ -156,36 +176,64 @@ def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[A
     return 0
 
 
-def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, float], asks: Asks, around: Sequence[Any], dt: float) -> RunUp | None:
+class Footfall(NamedTuple):
+    """A moment from which a runner could leap: after how many steps, his state then, the way (2,) that he goes, and what he is asked, with a leap onto the ring ahead of him."""
+
+    number: int
+    state: CharacterState
+    ahead: np.ndarray
+    intent: Intent
+
+
+def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, float], asks: Asks, around: Sequence[Any], dt: float,
+                ask: Callable[[], None] = _silent) -> RunUp | None:
     """The run-up of somebody who goes on with a velocity (2,) [m/s] to the last footfall from which he can leap over what he can't run over, or onto it; None
-    where there is none."""
-    footfalls, stood, now, floor, blocked = [], True, state, float(state.floor), None
-    for number in range(round(LOOK / agility(controller) / dt)):
-        pace = np.array(in_world(now.ground, now.velocity))
-        speed = max(float(np.hypot(*pace)), 1e-6)
-        ring = np.array(now.ground[:2]) + (AHEAD[0] + AHEAD[1] * speed) * pace / speed
-        intent = but(asks(now), leap=Leap(np.array([ring[0], floor_at(ring[0], ring[1], around, floor + UP), ring[1]])), around=around)
+    where there is none. ask: is called before each question."""
+    footfalls, blocked = _footfalls(controller, state, asks, around, dt)
+    for footfall in reversed(footfalls) if blocked is not None else ():
+        for leap in _beyond(footfall, blocked, float(state.floor), around):
+            ask()
+            if controller.refusal(footfall.state, but(footfall.intent, leap=leap)) == "":
+                return RunUp(footfall.number, None, leap, velocity)
+    return None
+
+
+def ring(state: CharacterState, around: Sequence[Any]) -> Leap:
+    """The leap of a runner onto the ring ahead of him: with it in mind he does not brake before what he would else step onto."""
+    pace = np.array(in_world(state.ground, state.velocity))
+    speed = max(float(np.hypot(*pace)), 1e-6)
+    x, z = np.array(state.ground[:2]) + (AHEAD[0] + AHEAD[1] * speed) * pace / speed
+    return Leap(np.array([x, floor_at(x, z, around, float(state.floor) + UP), z]))
+
+
+def _footfalls(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float) -> tuple[list[Footfall], np.ndarray | None]:
+    """All footfalls of somebody who goes on until he can go no farther, and where (2,) [m] the first place is that he can't run over; None where there is none."""
+    footfalls: list[Footfall] = []
+    stood, now, floor, blocked = True, state, float(state.floor), None
+    for number in range(round((LOOK / agility(controller) + THINKS) / dt)):
+        leap = ring(now, around)
+        intent = but(asks(now), leap=leap, around=around)
         stands = controller.precondition(now, intent) >= READY
         if stands and not stood:
-            footfalls.append((number, now, pace / speed, intent))
+            way = leap.place[[0, 2]] - now.ground[:2]
+            footfalls.append(Footfall(number, now, way / np.hypot(*way), intent))
         stood = stands
         now, _ = controller.step(now, but(intent, leap=None, aim=intent.leap), dt)
-        if blocked is None and (room(now.ground[:2], floor, around) <= 0.0 or floor_at(now.ground[0], now.ground[1], around, floor + UP) > floor + RISES):
-            blocked = np.array(now.ground[:2])
-        if now.active == "jump" or _touches(now.ground[:2], floor, around) or blocked is not None and _edge(now.ground[:2], floor, around):
+        here = np.array(now.ground[:2])
+        if blocked is None and (room(here, floor, around) <= 0.0 or floor_at(here[0], here[1], around, floor + UP) > floor + RISES):
+            blocked = here
+        if now.active == "jump" or _touches(here, floor, around) or blocked is not None and _edge(here, floor, around):
             break
-    if blocked is None:
-        return None
-    for number, at, ahead, intent in reversed(footfalls):
-        for nearer in NEARER:
-            x, z = intent.leap.place[[0, 2]] - nearer * ahead
-            high = floor_at(x, z, around, floor + UP)
-            if float((np.array([x, z]) - blocked) @ ahead) <= 0.0 or high < floor - STEP:
-                continue
-            leap = Leap(np.array([x, high, z]))
-            if controller.refusal(at, but(intent, leap=leap)) == "":
-                return RunUp(number, None, leap, velocity)
-    return None
+    return footfalls, blocked
+
+
+def _beyond(footfall: Footfall, blocked: np.ndarray, floor: float, around: Sequence[Any]) -> Iterator[Leap]:
+    """Leaps onto the ring, and a little nearer or farther, that lead beyond a place (2,) [m] which can't be run over."""
+    for nearer in NEARER:
+        x, z = footfall.intent.leap.place[[0, 2]] - nearer * footfall.ahead
+        high = floor_at(x, z, around, floor + UP)
+        if float((np.array([x, z]) - blocked) @ footfall.ahead) > 0.0 and high >= floor - STEP:
+            yield Leap(np.array([x, high, z]))
 
 
 def _edge(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:

@@ -9,16 +9,17 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent
 from gambol.controllers.navigation import in_world, slide
+from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import preview
-from ..input import PATIENCE, RUNS, Aim, Command, RunUp, Wish, agility, aloft, before, landing, last_chance, leaps, leaving, push, rises
+from ..input import PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, landing, last_chance, leaps, leaving, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -87,7 +88,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         players[-1] = replace(players[-1], run_up=known)
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
         command = command if known.leap is None else replace(command, velocity=known.velocity)
-        intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, aim=known.leap or ready, goal=goal,
+        intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,
+                         aim=known.leap or (ready if known.thought is None else ring(state, props)),
                          strike=push(player.camera.yaw, wish) if player.pushed else None)
         intents.append(intent if aim.moving or run_up is not None else stopped(state, intent, props))  # a run-up may go at what it leaps onto
     passers, theirs = asked(moment)
@@ -109,24 +111,32 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
         return onward
     if known.free > 1:
         return RunUp(known.free - 1)
-    halt = before(controller, state, command.velocity, props)
-    runs = math.hypot(*command.velocity) > RUNS
-    if jump is None or halt is None and not (runs and rises(controller, state, command.velocity, props)):
-        return RunUp(0, halt)
-    if aim.aiming and not runs:
-        return RunUp(0, halt)
-    if known.free != 0 and not known.turned(command.velocity) and aim.waiting != PATIENCE:
-        return replace(known, free=-1, halt=halt, leap=None)
-    # what comes of it is found out once, and only where something is ahead
-    if not aim.aiming:
-        gravity, longest = -float(jump.gravity[1]), jump.longest
+    velocity, halt = command.velocity, before(controller, state, command.velocity, props)
+    released, runs = not aim.aiming, math.hypot(*velocity) > RUNS
+    same = not known.turned(velocity) and aim.waiting != PATIENCE
 
-        def asks(now: CharacterState) -> Intent:
-            return replace(command.intent(now, player.steering), leap=aim.asked(now, props, gravity, longest))
-        if number := leaps(controller, state, asks, props, DT, round(aim.waiting / DT)):
+    def near(share: float, more: float) -> bool:
+        return before(controller, state, velocity, props, share, more) is not None or runs and rises(controller, state, velocity, props, share, more)
+    if known.thought is not None and same:
+        return known.known(near(WAITED, 0.0), halt)
+    if jump is None or halt is None and not (runs and near(1.0, THINKS * math.hypot(*velocity))):
+        return RunUp(0, halt)
+    if not released and not runs:
+        return RunUp(0, halt)
+    if known.free != 0 and same:
+        return replace(known, free=-1, halt=halt, leap=None)
+    # what comes of it is thought of once, and only where something is ahead
+    gravity, longest, most = -float(jump.gravity[1]), jump.longest, round(aim.waiting / DT)
+
+    def asks(now: CharacterState) -> Intent:
+        return replace(command.intent(now, player.steering), leap=aim.asked(now, props, gravity, longest) if released else None)
+
+    def think(ask: Callable[[], None]) -> RunUp:
+        if released and (number := leaps(controller, state, asks, props, DT, most, ask)):
             return RunUp(number)
-    found = last_chance(controller, state, command.velocity, lambda now: command.intent(now, player.steering), props, DT) if runs else None
-    return found or RunUp(-1, halt, velocity=command.velocity)
+        found = last_chance(controller, state, velocity, asks, props, DT, ask) if runs else None
+        return found or RunUp(-1)
+    return RunUp(-1, velocity=velocity, thought=Thought(think, DT)).known(near(WAITED, 0.0), halt)
 
 
 def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:

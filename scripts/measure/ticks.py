@@ -1,4 +1,5 @@
-"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import.
+"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls; hands that hold a leap
+as they run at gaps, boxes and hurdles.
 
     python scripts/measure/ticks.py [--clicks 40]
 
@@ -12,17 +13,21 @@ import argparse
 import os
 import time
 from collections.abc import Iterator
+from itertools import chain
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
-from gambol.controllers.contract import Goal, Intent
+from _struck_rooms import room
+from run_ups import RUNNING, running_stage
+
+from gambol.controllers.contract import Goal, Intent, Strike
 from gambol.controllers.person import person
 from gambol.game.input import Wish
 from gambol.game.scenario import film, load
 from gambol.game.scene import Box
-from gambol.game.session import Timeline, opening
-from gambol.game.world import RATE
+from gambol.game.session import Timeline, begin, opening
+from gambol.game.world import RATE, Character, World
 
 AMONG = tuple(Box((float(x), 0.6, float(z)), (0.5, 1.2, 0.5), 0.3 * x) for x in (-2.4, -0.8, 0.8, 2.4) for z in (2.0, 4.0, 6.0))
 
@@ -71,17 +76,49 @@ def imported(count: int, seed: int) -> Iterator[None]:
             yield
 
 
+def strikes(count: int, seed: int) -> Iterator[None]:
+    """The steps of somebody who is struck on stairs, over and over."""
+    rng, someone = np.random.default_rng(seed), person()
+    for _ in range(count):
+        things, start, floor = room("stairs", rng)
+        state, angle = someone.start(start, floor), rng.uniform(-np.pi, np.pi)
+        kick = Strike(tuple(rng.uniform(1.5, 3.0) * someone.parts["struck"].physique.mass * np.array([np.sin(angle), np.cos(angle)])))
+        for tick in range(RATE):
+            state, _ = someone.step(state, Intent(around=things, strike=kick if tick == 10 else None), 1 / RATE)
+            yield
+
+
+def held(kind: str, count: int, seed: int) -> Iterator[None]:
+    """The ticks of a game in which hands run at a gap, a box or a hurdle and hold a leap from so far ahead until it goes off."""
+    who = person()
+    for number in range(count):
+        rng = np.random.default_rng([seed, RUNNING.index(kind), number])
+        things, floor, far, _, _ = running_stage(kind, rng)
+        pace, ahead = rng.uniform(2.0, 3.0), rng.uniform(0.2, 2.0)
+        line, leapt = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), 1)), False
+        for _ in range(6 * RATE):
+            state = line.now.after.characters[0].state
+            leapt = leapt or state.active == "jump"
+            if leapt and state.active != "jump":
+                break
+            line.advance((Wish(move=(0.0, 1.0), run=(pace - 1.3) / 1.7, jump=not leapt and float(state.ground[1]) > far - ahead * pace).rounded(),))
+            yield
+
+
 def main() -> None:
     """Print all figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clicks", type=int, default=20)
     asked = parser.parse_args()
-    for _ in clicks(3, 9):  # compiled, loaded
+    for _ in chain(clicks(3, 9), strikes(4, 9), *(held(kind, 2, 9) for kind in RUNNING)):  # compiled, loaded
         pass
     time.sleep(4.0)  # the last of them is still thought of
     told("go_across", scenario("go_across"))
     told("clicks on the course", clicks(asked.clicks, 0))
     told("goals among twelve boxes", imported(asked.clicks, 0))
+    told("struck on stairs", strikes(asked.clicks, 0))
+    for kind in RUNNING:
+        told(f"a leap held at a run, {kind}", held(kind, max(asked.clicks // 2, 1), 0))
 
 
 if __name__ == "__main__":

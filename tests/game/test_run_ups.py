@@ -8,6 +8,7 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.jump import Jumping
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.navigation import gap
+from gambol.controllers.navigation.thinking import steps_of
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, RunUp, Script, Wish
 from gambol.game.input.run_up import before
@@ -139,3 +140,44 @@ def test_nobody_whose_hands_run_at_an_edge_goes_over_it(library, agility):
     who = person(library.tuned(Settings(idle=0.0, agility=agility)))
     states = running(who, (box(-3.0, 1.0, 8.0), box(6.3, 1.0)), 1.0, 5.0, held=False)
     assert all(s.active == "locomotion" and s.ground[1] < 5.0 for s in states) and np.hypot(*states[-1].velocity[[0, 2]]) < 0.2
+
+
+def test_what_a_runner_can_leap_is_thought_of_beside_his_steps(library):
+    """He runs on meanwhile, the leap goes off at the step that was thought of, and all is the same again, however fast the machine is."""
+    who, things = person(library.tuned(Settings(idle=0.0))), (box(-3.0, 1.0, 8.0), box(6.1, 1.0))
+    twice = []
+    for _ in range(2):
+        line, known, states = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0), 1.0)),), things), 1)), [], []
+        while not states or states[-1].active != "jump":
+            line.advance((Wish(move=(0.0, 1.0), run=0.9, jump=bool(states) and states[-1].ground[1] > 1.0).rounded(),))
+            states.append(line.now.after.characters[0].state)
+            known.append(line.now.players[0].run_up)
+        thinks = [n for n, one in enumerate(known) if one.thought is not None]
+        found = next(n for n, one in enumerate(known) if one.leap is not None)
+        assert len(thinks) >= steps_of(1, DT) and found == thinks[-1] + 1 and all(one.halt is None for one in known[thinks[0]:])
+        assert known[found].free > 0 and len(states) - 1 == found + known[found].free
+        assert min(s.velocity[0] for s in states[thinks[0]:]) > 2.2
+        twice.append(np.array([s.ground for s in states]))
+    assert np.array_equal(*twice)
+
+
+class Known:
+    """A thought that is used after so many steps."""
+
+    def __init__(self, found, due):
+        self.found, self.due = found, due
+
+    def after(self, steps):
+        return self.found if steps >= self.due else None
+
+
+@pytest.mark.parametrize("due", [0, 3, 20])
+@pytest.mark.parametrize("number", [0, 3, 12])
+def test_a_leap_that_was_thought_of_goes_off_as_many_steps_sooner_as_he_thought(number, due):
+    leap = Jump((0.0, 0.0, 1.0))
+    known, steps = RunUp(-1, thought=Known(RunUp(number, leap=leap), due)), 0
+    while known.thought is not None:
+        known, steps = known.known(False, (0.0, 2.0)), steps + 1
+    assert steps == due + 1
+    assert (known.leap, known.free, known.halt) == ((leap, number - due, None) if number >= due else (None, -1, (0.0, 2.0)))
+    assert RunUp(-1, thought=Known(RunUp(number, leap=leap), due)).known(True, None).leap is leap, "who is near waits for it"

@@ -82,3 +82,15 @@ def test_feet_cross_over_who_is_pushed_aside(somebody):
     assert made.landings[0, 0] == 1 and right[0] > left[0] + 0.1 and right[2] > left[2]
     apart = np.linalg.norm(points[:, 0, :, None] - points[:, 1, None], axis=-1).min((1, 2))
     assert apart.min() > 0.06  # and never touches it
+
+
+def test_legs_that_lose_the_floor_do_not_flail(somebody):
+    """Struck hard near an edge he goes over it as his feet leave in haste; they go on no faster than legs swing, and not back through the platform."""
+    wide, high, long = 1.391, 1.049, 1.571
+    box = (Box((0.0, 0.5 * high, 0.0), (wide, high, long)),)
+    start = (-0.194, -0.284, 0.978)
+    for gained in ((-0.318, -2.346), (-0.2, -2.3), (0.0, -2.2)):
+        states = [s for s in played(somebody, box, gained, start, high, 1.5) if s.active == "jump"]
+        placed = forward_kinematics(BODY.skeleton, np.stack([np.asarray(s.pose.root, float) for s in states]), np.stack([np.asarray(s.pose.rotations, float) for s in states]))
+        feet = contact_points(BODY.skeleton, *placed) - placed[0][:, :1]
+        assert len(states) > 5 and np.linalg.norm(np.diff(feet, axis=0), axis=-1).max() / DT < 14.0

@@ -9,6 +9,9 @@ from gambol.controllers.jump import Physique
 from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.person import person
 from gambol.controllers.struck import DROPS, FALLS, flesh
+from gambol.controllers.struck.bending import band_kernel
+from gambol.controllers.struck.settled import FIRST, ROUNDS
+from gambol.controllers.struck.toppling import settles
 from gambol.game.scene import Box
 
 DT, BODY = 1 / 60, Physique()
@@ -24,12 +27,14 @@ def somebody():
 
 def struck(somebody, gained, aside=0.0, on=4, heading=0.0, seconds=0.0):
     """What becomes of somebody who stands on a tread and is struck, by so much velocity (2,) [m/s], and all his states from then on."""
-    state, states = somebody.start((aside, GOING * on - 0.02, heading), RISE * (on + 1)), []
-    for n in range(11 + round(seconds / DT)):
-        state, _ = somebody.step(state, Intent(around=STAIRS, strike=Strike(tuple(BODY.mass * np.array(gained))) if n == 10 else None), DT)
-        if n >= 10:
-            states.append(state)
-    return states[0].memory.memory.made, states
+    state, states, strike = somebody.start((aside, GOING * on - 0.02, heading), RISE * (on + 1)), [], Strike(tuple(BODY.mass * np.array(gained)))
+    for _ in range(10):
+        state, _ = somebody.step(state, Intent(around=STAIRS), DT)
+    made = somebody.parts["struck"].recovery(somebody.active(state)[1], Intent(around=STAIRS), strike)
+    for n in range(1 + round(seconds / DT)):
+        state, _ = somebody.step(state, Intent(around=STAIRS, strike=None if n else strike), DT)
+        states.append(state)
+    return made, states
 
 
 def over(roots, local):
@@ -85,3 +90,35 @@ def test_lying_bends_and_begins_as_he_was_struck(somebody):
     strike = Strike((0.0, 2.6 * BODY.mass))
     one, other = (somebody.parts["struck"].recovery(own, Intent(around=things), strike) for things in (level, ()))
     assert one.fate == FALLS and np.array_equal(one.local, other.local) and np.allclose(one.roots, other.roots)
+
+
+@pytest.mark.parametrize("dt", [1 / 240, 1 / 60, 1 / 30, 0.09, 0.1])
+def test_a_fall_is_bent_in_a_few_rounds_a_step_and_what_was_shown_stays(somebody, dt):
+    """No step does more than its share of the rounds, and every state is that of the fall as it is in the end."""
+    made, states = struck(somebody, (0.4, 2.4), heading=np.pi)
+    state, shares = somebody.step(states[0], Intent(around=STAIRS, strike=Strike((0.0, 2.0 * BODY.mass))), dt)[0], []
+    whole = settles(state.memory.memory.made, np.inf)
+    while state.memory.memory.time < 0.3:
+        before = state.memory.memory.made.settling
+        state, pose = somebody.step(state, Intent(around=STAIRS), dt)
+        memory = state.memory.memory
+        after, shown = memory.made.settling, whole.at(memory.time)
+        shares.append((ROUNDS if after is None else after.rounds) - before.rounds if before else 0)
+        assert np.array_equal(pose.root, shown.root) and np.array_equal(pose.rotations, shown.rotations)
+    assert max(shares) <= np.ceil(ROUNDS * dt / FIRST) + 1 and memory.made.settling is None
+    assert np.abs(whole.local[12:] - state.memory.memory.made.local[12:]).max() == 0.0 and made.settling is None
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_band_is_solved_as_the_whole_matrix_would_be(seed):
+    rng = np.random.default_rng(seed)
+    count, wide = 9, 4
+    half = rng.normal(size=(count * wide, count * wide))
+    whole = half @ half.T + 5.0 * np.eye(count * wide)
+    whole[np.abs(np.subtract.outer(np.arange(count * wide), np.arange(count * wide))) > 2 * wide] = 0.0
+    whole += np.eye(count * wide) * np.abs(whole).sum(1)  # positive definite
+    band = np.array([[whole[i, i - k] if i >= k else 0.0 for k in range(2 * wide, -1, -1)] for i in range(count * wide)])
+    right = rng.normal(size=count * wide)
+    found = right.copy()
+    band_kernel(band, found)
+    assert np.allclose(whole @ found, right, atol=1e-9)

@@ -33,6 +33,8 @@ LEAST, LOW = 0.14, 0.5
 """Legs need so long to come down [s]; a body lands no lower than this share of how high it touches down."""
 TURNS = 5.0
 """Nobody turns faster to get upright [rad/s]."""
+FASTEST = 12.0
+"""Legs go on no faster than this [rad/s] as they lose the floor: the way to where they land leads no farther round."""
 REACHES = 0.30
 """So long after the hit the legs are where they land [s]."""
 GATHERS = 0.6
@@ -226,8 +228,10 @@ class _Fall(Airborne):
         step = self.flying[1]
         before = vectors(turns(-step * self.start.rates[ids]) @ now)
         now = vectors(now)
+        rates = (now - before) / step
+        rates = rates * np.minimum(1.0, FASTEST / np.maximum(np.linalg.norm(rates, axis=-1, keepdims=True), 1e-9))
         times = np.array([0.0, min(airtime, REACHES), airtime + 1e-6])
-        values, slopes = [now, end, end], [(now - before) / step, 0 * end, 0 * end]
+        values, slopes = [now, end, end], [rates, 0 * end, 0 * end]
         if self.tucks.any():
             half = 0.5 * (now + end)
             half[:3, 0] += TUCKED * self.tucks[0]
