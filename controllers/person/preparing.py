@@ -118,7 +118,8 @@ def place(walker: Locomotion) -> None:
 def things(walker: Locomotion) -> None:
     """Compile, or load, what keeps somebody who walks from what stands about and from others, what weighs him, and what sets him down at a run."""
     box, post = SimpleNamespace(centre=(0.0, 1.0, 0.6), size=(2.0, 2.0, 0.2), heading=0.0), SimpleNamespace(foot=(0.2, 0.0, 0.3), radius=0.1, height=2.0)
-    gap(np.zeros((1, 3)), box), gap(np.zeros((1, 3)), post)
+    for thing in (box, post):
+        gap(np.zeros((1, 3)), thing)
     walls = walls_of((box, post))
     slow_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 0.0, 1.0, 0.0)
     way_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 1.0, np.empty(3))

@@ -177,6 +177,7 @@ def rehearse(struck: Struck) -> None:
     state = CharacterState(np.zeros(3), np.zeros(3), pose, np.ones(4, bool), None, 0.0, pose, 1.0 / 60.0)
     wall, step = (SimpleNamespace(centre=centre, size=size, heading=0.0) for centre, size in (((0.0, 1.0, 2.5), (4.0, 2.0, 0.2)), ((0.0, 0.05, 1.0), (4.0, 0.1, 1.0))))
     for speed, around in ((0.5, (wall,)), (4.0, (wall,)), (4.0, (wall, step))):
-        intent = Intent(strike=Strike((0.0, speed * struck.physique.mass)), around=around)
-        struck.recovery(state, intent, intent.strike)
+        strike = Strike((0.0, speed * struck.physique.mass))
+        intent = Intent(strike=strike, around=around)
+        struck.recovery(state, intent, strike)
         struck.step(struck.enter(state, intent), intent, 1.0 / 60.0)

@@ -177,12 +177,13 @@ def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[A
 
 
 class Footfall(NamedTuple):
-    """A moment from which a runner could leap: after how many steps, his state then, the way (2,) that he goes, and what he is asked, with a leap onto the ring ahead of him."""
+    """A moment from which a runner could leap: after how many steps, his state then, the way (2,) that he goes, what he is asked, and where (3,) the ring is ahead of him."""
 
     number: int
     state: CharacterState
     ahead: np.ndarray
     intent: Intent
+    ring: np.ndarray
 
 
 def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, float], asks: Asks, around: Sequence[Any], dt: float,
@@ -190,7 +191,9 @@ def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, f
     """The run-up of somebody who goes on with a velocity (2,) [m/s] to the last footfall from which he can leap over what he can't run over, or onto it; None
     where there is none. ask: is called before each question."""
     footfalls, blocked = _footfalls(controller, state, asks, around, dt)
-    for footfall in reversed(footfalls) if blocked is not None else ():
+    if blocked is None:
+        return None
+    for footfall in reversed(footfalls):
         for leap in _beyond(footfall, blocked, float(state.floor), around):
             ask()
             if controller.refusal(footfall.state, but(footfall.intent, leap=leap)) == "":
@@ -198,12 +201,12 @@ def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, f
     return None
 
 
-def ring(state: CharacterState, around: Sequence[Any]) -> Leap:
-    """The leap of a runner onto the ring ahead of him: with it in mind he does not brake before what he would else step onto."""
+def ring(state: CharacterState, around: Sequence[Any]) -> np.ndarray:
+    """Where (3,) [m] the ring is ahead of a runner: with a leap there in mind he does not brake before what he would else step onto."""
     pace = np.array(in_world(state.ground, state.velocity))
     speed = max(float(np.hypot(*pace)), 1e-6)
     x, z = np.array(state.ground[:2]) + (AHEAD[0] + AHEAD[1] * speed) * pace / speed
-    return Leap(np.array([x, floor_at(x, z, around, float(state.floor) + UP), z]))
+    return np.array([x, floor_at(x, z, around, float(state.floor) + UP), z])
 
 
 def _footfalls(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float) -> tuple[list[Footfall], np.ndarray | None]:
@@ -211,12 +214,12 @@ def _footfalls(controller: Any, state: CharacterState, asks: Asks, around: Seque
     footfalls: list[Footfall] = []
     stood, now, floor, blocked = True, state, float(state.floor), None
     for number in range(round((LOOK / agility(controller) + THINKS) / dt)):
-        leap = ring(now, around)
-        intent = but(asks(now), leap=leap, around=around)
+        place = ring(now, around)
+        intent = but(asks(now), leap=Leap(place), around=around)
         stands = controller.precondition(now, intent) >= READY
         if stands and not stood:
-            way = leap.place[[0, 2]] - now.ground[:2]
-            footfalls.append(Footfall(number, now, way / np.hypot(*way), intent))
+            way = place[[0, 2]] - now.ground[:2]
+            footfalls.append(Footfall(number, now, way / np.hypot(*way), intent, place))
         stood = stands
         now, _ = controller.step(now, but(intent, leap=None, aim=intent.leap), dt)
         here = np.array(now.ground[:2])
@@ -230,7 +233,7 @@ def _footfalls(controller: Any, state: CharacterState, asks: Asks, around: Seque
 def _beyond(footfall: Footfall, blocked: np.ndarray, floor: float, around: Sequence[Any]) -> Iterator[Leap]:
     """Leaps onto the ring, and a little nearer or farther, that lead beyond a place (2,) [m] which can't be run over."""
     for nearer in NEARER:
-        x, z = footfall.intent.leap.place[[0, 2]] - nearer * footfall.ahead
+        x, z = footfall.ring[[0, 2]] - nearer * footfall.ahead
         high = floor_at(x, z, around, floor + UP)
         if float((np.array([x, z]) - blocked) @ footfall.ahead) > 0.0 and high >= floor - STEP:
             yield Leap(np.array([x, high, z]))

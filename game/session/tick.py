@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Intent
+from gambol.controllers.contract import CharacterState, Intent, Leap
 from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
@@ -89,7 +89,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
         command = command if known.leap is None else replace(command, velocity=known.velocity)
         intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,
-                         aim=known.leap or (ready if known.thought is None else ring(state, props)),
+                         aim=known.leap or (ready if known.thought is None else Leap(ring(state, props))),
                          strike=push(player.camera.yaw, wish) if player.pushed else None)
         intents.append(intent if aim.moving or run_up is not None else stopped(state, intent, props))  # a run-up may go at what it leaps onto
     passers, theirs = asked(moment)
