@@ -135,5 +135,6 @@ class Game:
             lines.append(f"tracked without the penalty on jitter: {self.hands.key('penalty')} brings it back")
         if self.preparing is not None:
             lines += self.preparing.said
-        told = (*lines, *self.held_points.status(moment, self.hands.key), *self.kept.status(self.now), *self.kept.notices, f"{self.hands.key('help')} help")
-        return ((*own[0], *told), *own[1:])
+        told = (*lines, *self.held_points.status(moment, self.hands.key), *self.kept.status(self.now), *self.kept.notices)
+        what, *where = own[0]
+        return ((what, f"{self.hands.key('help')} help", *where, *told), *own[1:])  # what comes and goes moves neither of the first two

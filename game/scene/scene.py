@@ -93,7 +93,8 @@ class Figure:
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
     body: what it wears (`gambol.game.render.mesh.Body`); None for Gambol's mannequin. sketches: what
     explains its motion, each in a layer of its own. opacity: less than 1 for a ghost, which casts no shadow; 0 for
-    somebody of whom nothing is seen, sketches neither.
+    somebody of whom nothing is seen, sketches neither. cover: less than 1 for a body that stands in a camera's way and
+    is seen through; unlike a ghost it keeps its colours and its shadow.
     """
 
     positions: np.ndarray
@@ -105,6 +106,7 @@ class Figure:
     body: Any = None
     sketches: tuple[Sketch, ...] = ()
     opacity: float = 1.0
+    cover: float = 1.0
 
 
 @dataclass(frozen=True)
