@@ -156,10 +156,12 @@ class Caption:
 
 @dataclass(frozen=True)
 class Hint:
-    """A line in the middle below that teaches. parts: words, and names of keys (True) among them. opacity: 0 … 1."""
+    """A line in the middle below that teaches. parts: words, and names of keys (True) among them. opacity: 0 … 1. room: from where
+    to where there is room for it, in parts of the picture's width."""
 
     parts: tuple[tuple[str, bool], ...]
     opacity: float = 1.0
+    room: tuple[float, float] = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -187,7 +189,7 @@ OVERLAYS = tuple(part.name for part in fields(Overlays))
 class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
-    text: lines for the top-left corner. sheet: the help sheet, in the middle of the whole picture.
+    text: lines for the top-left corner, which keep off what lies over the top-right one: taken, its width and height [px]. sheet: the help sheet, in the middle of the whole picture.
     hint: in the middle below, of the whole picture. ink: panels, over the whole picture.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
@@ -202,3 +204,4 @@ class Scene:
     hint: Hint | None = None
     ink: Ink | None = None
     part: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
+    taken: tuple[float, float] = (0.0, 0.0)
