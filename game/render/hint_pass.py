@@ -68,7 +68,8 @@ def _lines(parts: Parts, letters: int, room: float) -> list[Parts]:
     if sum(_widths(parts, letters)) <= room:
         return [tuple(parts)]
     lines: list[list[tuple[str, bool]]] = [[]]
-    for word, key in ((word, key) for text, key in parts for word in ([text] if key else text.split(" "))):
+    words = [(word, key) for text, key in parts for word in ([text] if key else text.split(" "))]
+    for word, key in words:
         last = lines[-1]
         joins = bool(last) and not (key or last[-1][1])  # words of one kind stand together
         longer = [*last[:-1], (f"{last[-1][0]} {word}", False)] if joins else [*last, (word, key)]

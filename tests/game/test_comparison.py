@@ -259,7 +259,7 @@ def test_where_players_share_the_picture_bodies_stand_within_the_first_ones_part
         timeline.advance((Wish(pressed=("study=ours@6",)), *[Wish()] * (players - 1)))
         performer, *others, body = timeline.now.after.characters
         at = np.array([project(timeline.now.players[0].view(1.0), 8.0 / 9.0, body.state.pose.root + [dx, 0.0, 0.0])[0] for dx in (-0.35, 0.35)])
-        return at, min((math.dist(body.state.ground[:2], one.state.ground[:2]) for one in (performer, *others)))
+        return at, min(math.dist(body.state.ground[:2], one.state.ground[:2]) for one in (performer, *others))
     alone, apart = placed(1)
     assert alone.max() > 8.0 / 9.0 and apart > 1.3, "half of the picture is not enough for this, and need not be"
     shared, apart = placed(2)
