@@ -172,7 +172,9 @@ def _stacked(names: Sequence[str], open: Collection[str], room: float) -> list[t
     """The panels of a column so high that are shown, the most important first: each with how far down it begins and its height."""
     full = {"settings": (0.0, room - QUALITY - MARGIN), "quality": (room - QUALITY, QUALITY),
             "space": (0.0, 0.56 * (room - MARGIN)), "plots": (0.56 * (room - MARGIN) + MARGIN, 0.44 * (room - MARGIN))}
-    if len(names) == 2 and min(full[name][1] for name in names) >= LEAST:  # where each has its place, whichever others are open
+    lowest = min(full[name][1] for name in names)
+    # where each has its place, whichever others are open, and where both are that have just enough room
+    if len(names) == 2 and (lowest >= SHARED or lowest >= LEAST and set(names) <= set(open)):
         return [(name, *full[name]) for name in names if name in open]
     shown = [name for name in names if name in open][:max(int((room + MARGIN) / (SHARED + MARGIN)), int(room >= LEAST))]
     high = (room + MARGIN) / max(len(shown), 1) - MARGIN

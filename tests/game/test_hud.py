@@ -81,7 +81,10 @@ def test_what_has_no_room_is_told(game):
     tap(game, "F2")
     game.tick(1 / 60)
     assert not any("no room" in line for line in game.scene(SIZE).text)
-    assert "no room here for control space, velocities, quality" in game.scene((320, 240)).text
+    assert game.scene((320, 240)).text[1:] == ("no room here for control space, velocities, quality",)
+    for line in ("one", "two"):
+        game.kept.say(line)
+    assert game.scene((320, 240)).text[1:] == ("two",), "more lines would lie under the panels"
 
 
 def test_a_sheet_is_never_written_again(game):
