@@ -22,6 +22,20 @@ from .pointing import CLICKED
 from .watching import Watching
 
 
+PAGES = {"DOWN": 1, "PAGE_DOWN": 1, "UP": -1, "PAGE_UP": -1}
+"""By how many pages these keys leaf through the help where it has several."""
+
+
+def _turns(event: Event) -> int:
+    """By how many pages an event leafs through the help."""
+    match event:
+        case KeyEvent(key, True):
+            return PAGES.get(key, 0)
+        case Scroll(dy=notches) if notches and math.isfinite(notches):
+            return -int(math.copysign(1, notches))
+    return 0
+
+
 class Play(Game):
     """The game as an app: `handle` events, `tick` seconds, draw `scene`, until `done`."""
 
@@ -33,6 +47,8 @@ class Play(Game):
             self.teacher.heard(event)
         if self.showing.panels and self.showing.hud is not None and self.showing.hud.handle(event):
             return
+        if self.helping:
+            self.page += _turns(event)
         rewound = self.past.look is not None
         if not (rewound or self.watching or self.helping) and self._reached(event):
             return
@@ -68,7 +84,7 @@ class Play(Game):
         elif action.startswith("look="):
             self.past.go(int(action.removeprefix("look=")))
         elif action == "help":
-            self.helping = not self.helping
+            self.helping, self.page = not self.helping, 0
         elif action == "full_screen":
             self.full_screen = not self.full_screen
         elif action == "quit" and not self.helping and self.held_points.holds(self.now):

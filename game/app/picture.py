@@ -46,6 +46,7 @@ class Game:
         self.held_points, self.pointing = HeldPoints(self.now.methods, stream), Pointing()
         self.preparing, self.teacher, self.sending, self.refused = preparing, teacher, sending, False
         self.done = self.helping = self.full_screen = self.wants_picture = False
+        self.page = 0  # of the help
         self.clock, self.held = FixedStep(), 0.0
         self.crew = ThreadPoolExecutor(1, "preview")  # no frame waits for what is found out about jumps
         self.previews: Previews = ()  # the jumps that are aimed at, as they were drawn last
@@ -89,7 +90,7 @@ class Game:
             one.look(cameras[0], size[0] / (len(views) * size[1]))
         views = (replace(views[0], figures=self.held_points.marked(views[0].figures, moment)), *views[1:])
         if self.helping:
-            sheet = help_sheet(self.hands.bindings, self.hands.keyboard, self.hands.pads, self.players)
+            sheet = replace(help_sheet(self.hands.bindings, self.hands.keyboard, self.hands.pads, self.players), page=self.page)
             views = tuple(replace(view, text=()) for view in views)
             views = (replace(views[0], sheet=sheet), *views[1:])
         elif self.wants_picture:  # nothing is written on a screenshot
@@ -103,7 +104,9 @@ class Game:
                 self.do(action, who)
             views = (first, *views[1:])
         elif self.showing.overlays.errors and not self.helping and (lines := rows(moment.after)):
-            views = (replace(views[0], ink=self.held_points.legend(lines, size, moment.comparison)), *views[1:])
+            # in the part of whom it is about
+            legend = self.held_points.legend(lines, (round(views[0].part[2] * size[0]), size[1]), moment.comparison)
+            views = (replace(views[0], ink=replace(legend, size=size), taken=legend.corner()), *views[1:])
         if self.showing.overlays.cameras and not self.helping:
             views = (replace(views[0], ink=with_cameras(views[0].ink, moment.after, size)), *views[1:])
         return views[0] if len(views) == 1 else views
@@ -135,5 +138,6 @@ class Game:
             lines.append(f"tracked without the penalty on jitter: {self.hands.key('penalty')} brings it back")
         if self.preparing is not None:
             lines += self.preparing.said
-        told = (*lines, *self.held_points.status(moment, self.hands.key), *self.kept.status(self.now), *self.kept.notices, f"{self.hands.key('help')} help")
-        return ((*own[0], *told), *own[1:])
+        told = (*lines, *self.held_points.status(moment, self.hands.key), *self.kept.status(self.now), *self.kept.notices)
+        what, *where = own[0]
+        return ((what, f"{self.hands.key('help')} help", *where, *told), *own[1:])  # what comes and goes moves neither of the first two

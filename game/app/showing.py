@@ -66,10 +66,12 @@ class Showing:
         moment = history[-1]
         told = rows(moment.after) if self.overlays.errors else ()
         ink, actions = self.hud.frame(self.panels, history, now, behind, past, size, seconds, told)
-        # the strip tells of looking back, pause and slow motion
-        text = (view.text[0], *notices) if view.text else ()
+        # the strip tells of looking back, pause and slow motion; there is room for one line more above the panels
+        small = (f"no room here for {', '.join(self.hud.left_out)}",) if self.hud.left_out else ()
+        text = (view.text[0], *(small + notices)[-1:]) if view.text else ()
         figures = view.figures + self.hud.ghosts(view.figures, moment)
-        return replace(view, ink=ink, text=text, figures=figures), tuple(actions), self.hud.who
+        hint = None if view.hint is None else replace(view.hint, room=self.hud.beside)
+        return replace(view, ink=ink, text=text, figures=figures, hint=hint, taken=self.hud.taken), tuple(actions), self.hud.who
 
     def close(self) -> None:
         """No panel is opened any more."""

@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from itertools import zip_longest
 from typing import Any
 
+from ..camera import seen_past
 from ..explain import AT_ONCE, Preview, broken, explained, ghosts, led, pointed, preview, stepping
 from ..scene import Camera, Overlays, Scene
 from ..session import Log, SessionState, replay, strayed
@@ -28,7 +29,8 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     """One scene for each camera.
 
     fraction: how far from `moment.before` to `moment.after` (0 … 1). text: for each camera, the
-    lines in its corner; why a jump that is aimed at can't be made comes after them. aimed: `previews`.
+    lines in its corner; why a jump that is aimed at can't be made comes after them. aimed: `previews`. Whoever stands between a
+    player and the camera that follows is seen through in that view.
     """
     before, after, width = moment.before, moment.after, 1.0 / len(cameras)
     aimed = previews(moment) if aimed is None else aimed
@@ -38,8 +40,16 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     text = tuple(text) or ((),) * len(cameras)
     text = tuple((*lines, *broken(f"no jump: {seen.why}")) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))
-    return tuple(Scene(camera, people, moment.after.props, overlays, lines, part=(i * width, 0.0, width, 1.0))
-                 for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))
+    held = _held(moment)
+    return tuple(Scene(camera, people if player.camera.flown else seen_past(people, camera, (i, *held)), moment.after.props, overlays, lines,
+                       part=(i * width, 0.0, width, 1.0))
+                 for i, (player, camera, lines) in enumerate(zip(moment.players, cameras, text, strict=True)))
+
+
+def _held(moment: SessionState) -> list[int]:
+    """Whose points hands hold, by number: they are looked at as closely as who is played."""
+    holds = moment.comparison is not None and moment.comparison.pins is not None
+    return [number for number, one in enumerate(moment.after.characters) if one.follows is not None] if holds else []
 
 
 def frames(log: Log, fps: int, start: float, end: float) -> int:

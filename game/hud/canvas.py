@@ -13,6 +13,8 @@ from . import style
 from .toolkit import imgui, implot
 
 NOWHERE = -1e9
+LEGIBLE = 0.75
+"""The smallest scale: letters of 11 px, as of other text."""
 BUTTONS = {"LEFT_BUTTON": 0, "RIGHT_BUTTON": 1, "MIDDLE_BUTTON": 2}
 DIGITS = {str(d): str(d) for d in range(10)} | {f"KP_{d}": str(d) for d in range(10)} | {
     "PERIOD": ".", "COMMA": ".", "KP_DECIMAL": ".", "MINUS": "-", "KP_SUBTRACT": "-"}
@@ -92,7 +94,7 @@ class Canvas:
         moved = size != self.size
         if moved:
             self.size = size
-            self.scale = min(max(min(size[1] / 720.0, size[0] / 1000.0), 0.7), 4.0)
+            self.scale = min(max(min(size[1] / 720.0, size[0] / 1000.0), LEGIBLE), 4.0)
             style.apply(self.scale)
         io = imgui.get_io()
         io.display_size = imgui.ImVec2(*size)

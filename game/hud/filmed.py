@@ -43,8 +43,8 @@ class Filmed:
 
     def _panels(self, panels: Sequence[str], signals: Signals, character: Character, seconds: float) -> None:
         scale = self.canvas.scale
-        places = layout(self.size, scale)
-        for name in panels:
+        places = layout(self.size, scale, panels)
+        for name in (name for name in panels if name in places):
             left, top, width, height = places[name]
             imgui.set_next_window_pos(imgui.ImVec2(left, top), imgui.Cond_.always)
             imgui.set_next_window_size(imgui.ImVec2(width, height), imgui.Cond_.always)

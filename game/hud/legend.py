@@ -43,7 +43,9 @@ class Legend:
 
 
 def window(rows: Sequence[Row], size: tuple[int, int], scale: float, title: str = "", left: bool = False) -> None:
-    """The legend as a window in the top-right corner of a picture of `size` pixels, or in the top-left one."""
+    """The legend as a window in the top-right corner of a picture of `size` pixels, or in the top-left one; none where it has no room."""
+    if size[0] < (WIDTH + MARGIN) * scale:
+        return
     across = MARGIN * scale if left else size[0] - (WIDTH + MARGIN) * scale
     imgui.set_next_window_pos(imgui.ImVec2(across, MARGIN * scale), imgui.Cond_.always)
     imgui.set_next_window_size(imgui.ImVec2(WIDTH * scale, 0.0), imgui.Cond_.always)

@@ -36,16 +36,16 @@ def draw(signals: Signals, scale: float) -> None:
     left = right = imgui.get_cursor_screen_pos().x
     if implot.begin_aligned_plots("velocities"):
         for row, (name, unit, least) in enumerate(ROWS):
-            left, right = _velocity(row, name, unit, least, signals, times, (width, height), scale)
+            left, right = _velocity(row, name, unit, least, signals, times, (width, height), scale) or (left, right)
         implot.end_aligned_plots()
     imgui.pop_style_var()
     _feet(signals, times, left, right, scale)
 
 
 def _velocity(row: int, name: str, unit: str, least: float, signals: Signals, times: np.ndarray,
-              size: tuple[float, float], scale: float) -> tuple[float, float]:
-    """One plot; where it begins and ends [px], as all that share its axis of time must."""
-    left = right = 0.0
+              size: tuple[float, float], scale: float) -> tuple[float, float] | None:
+    """One plot; where it begins and ends [px], as all that share its axis of time must. None where it is scrolled out of sight."""
+    ends = None
     curves = [np.ascontiguousarray(getattr(signals, what)[::-2, row]) for what, _, _ in CURVES]
     halved = np.ascontiguousarray(times[::-2])  # as many points as there are pixels
     known = np.concatenate([c[np.isfinite(c)] for c in curves] + [[0.0]])
@@ -65,9 +65,9 @@ def _velocity(row: int, name: str, unit: str, least: float, signals: Signals, ti
         corner, inset = implot.get_plot_pos(), 5 * scale
         implot.get_plot_draw_list().add_text((corner.x + inset, corner.y + inset), style.packed(style.DIM),
                                              f"{name} [{unit}]")
-        left, right = corner.x, corner.x + implot.get_plot_size().x
+        ends = corner.x, corner.x + implot.get_plot_size().x
         implot.end_plot()
-    return left, right
+    return ends
 
 
 def _feet(signals: Signals, times: np.ndarray, left: float, right: float, scale: float) -> None:

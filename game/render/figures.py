@@ -60,7 +60,8 @@ class Figures:
         self.block = ctx.buffer(reserve=BATCH * (len(skin.NAMES) * 32 + 16), dynamic=True)
         self.wardrobes: dict[Body, Wardrobe] = {}
         self.batches: list[tuple[Body, str, bytes, int]] = []
-        self.ghosts: list[tuple[tuple[Body, str, bytes, int], float]] = []
+        self.covered: list[tuple[Body, str, bytes, int]] = []
+        self.ghosts: list[tuple[tuple[Body, str, bytes, int], float, float, float]] = []
         self._wardrobe(mannequin())
 
     def prepare(self, figures: Sequence[Figure], eye: np.ndarray, origin: np.ndarray, ranges: Sequence[float]) -> None:
@@ -68,16 +69,21 @@ class Figures:
         groups: dict[Body, list[Figure]] = {}
         for figure in figures:
             groups.setdefault(figure.body or mannequin(), []).append(figure)
-        solid = {body: [figure for figure in group if figure.opacity >= 1.0] for body, group in groups.items()}
-        ghosts = [figure for figure in figures if 0.0 < figure.opacity < 1.0]
+        solid = {body: [figure for figure in group if figure.opacity >= 1.0 and figure.cover >= 1.0] for body, group in groups.items()}
+        ghosts = [figure for figure in figures if 0.0 < figure.opacity < 1.0 or figure.cover < 1.0]
         ghosts.sort(key=lambda figure: -np.linalg.norm(figure.positions[0] - eye))
         for body in [body for body in self.wardrobes if body not in groups and body is not mannequin()][KEPT:]:
             self.wardrobes.pop(body).release()
         for body in groups:
             self._wardrobe(body)
         self.batches = [batch for body, group in solid.items() if group for batch in self._posed(body, group, eye, origin, ranges)]
-        self.ghosts = [(batch, figure.opacity) for figure in ghosts
-                       for batch in self._posed(figure.body or mannequin(), [figure], eye, origin, ranges)]
+        self.covered, self.ghosts = [], []
+        for figure in ghosts:
+            batches = self._posed(figure.body or mannequin(), [figure], eye, origin, ranges)
+            self.covered += batches if figure.opacity >= 1.0 else []
+            # nobody's ghost stands just where somebody else is seen through
+            behind = BEHIND * (1 + len(self.ghosts)) if figure.opacity < 1.0 else 0.0
+            self.ghosts += [(batch, figure.opacity, figure.cover, behind) for batch in batches]
 
     def _posed(self, body: Body, figures: list[Figure], eye, origin, ranges) -> list[tuple[Body, str, bytes, int]]:
         positions = np.stack([f.positions for f in figures]).astype(float)
@@ -111,21 +117,23 @@ class Figures:
                                                              "shadow": self.programs["shadow"]})
 
     def draw(self, kind: str) -> None:
-        """Draw the prepared figures but the ghosts: "body", or "shadow" (into the shadow map, always coarse)."""
-        for batch in self.batches:
+        """Draw the prepared figures but the ghosts: "body", or "shadow" (into the shadow map, always coarse), which who is seen
+        through has, too."""
+        for batch in self.batches + (self.covered if kind == "shadow" else []):
             self._draw(batch, kind)
 
     def draw_ghosts(self, target: Callable[[bool], Any]) -> None:
-        """Draw the ghosts over all else, the farthest first. target: told whether colour is to be written.
+        """Draw the ghosts, and who is seen through, over all else, the farthest first. target: told whether colour is to be written.
 
         Of each only the front is seen: its depth comes first, then its colour where nothing of it is nearer.
         """
-        for number, (batch, opacity) in enumerate(self.ghosts):
+        for batch, *look in self.ghosts:
             for colour in (False, True):
                 target(colour)
-                self._draw(batch, "body", opacity, BEHIND * (1 + number))
+                self._draw(batch, "body", *look)
 
-    def _draw(self, batch: tuple[Body, str, bytes, int], kind: str, opacity: float = 1.0, behind: float = 0.0) -> None:
+    def _draw(self, batch: tuple[Body, str, bytes, int], kind: str, opacity: float = 1.0, cover: float = 1.0,
+              behind: float = 0.0) -> None:
         body, level, data, count = batch
         wardrobe = self.wardrobes[body]
         self.block.orphan()
@@ -133,7 +141,7 @@ class Figures:
         self.block.bind_to_uniform_block(gl.FIGURES)
         if kind == "body":
             program = self.programs["painted" if wardrobe.pictures is None else "pictured"]
-            program["opacity"], program["behind"] = opacity, behind
+            program["opacity"], program["cover"], program["behind"] = opacity, cover, behind
             if wardrobe.pictures is not None:
                 wardrobe.pictures.use(gl.PICTURES)
         if body.thin:

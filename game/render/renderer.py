@@ -186,5 +186,5 @@ class Renderer:
         self.goals.draw([prop for prop in scene.props if isinstance(prop, Goal)], origin)
         self.target.masked(viewport=inside)
         ctx.disable(ctx.DEPTH_TEST)
-        self.text.draw(scene.text, scene.caption, inside[2:])
+        self.text.draw(scene.text, scene.caption, inside[2:], scene.taken)
         ctx.disable(ctx.BLEND)

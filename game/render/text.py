@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import unicodedata
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -20,6 +21,8 @@ WORDS = {"–": "-", "—": "-", "−": "-", "²": "2", "³": "3", "×": "x", "�
 ARROWS = {"→": 0, "↑": 90, "←": 180, "↓": 270}
 PLAIN = "".join(map(chr, range(32, 127))) + "°·±…“”’"
 INK = (0.97, 0.97, 0.95, 1.0)
+NARROWEST = 8.0
+"""Lines are not broken for less than so many times their own height."""
 CAPTION_LEFT = 0.06
 """Captions keep this part of the picture's width free on either side."""
 
@@ -97,26 +100,38 @@ def width_of(line: str, font: Atlas) -> float:
     return sum(font.advances[c] for c in line)
 
 
-def wrapped(line: str, font: Atlas, width: float) -> list[str]:
-    """A line, spelled, in parts no wider than `width` [px] where it has spaces; those that do not break hold it together."""
+def wrapped(line: str, font: Atlas, width: float | Callable[[int], float]) -> list[str]:
+    """A line, spelled, in parts no wider than `width` [px] where it has spaces; those that do not break hold it together.
+
+    width: of all parts, or of the one with that number.
+    """
     first, *words = (spelled(word) for word in line.split(" "))
     parts = [first]
     for word in words:
         longer = f"{parts[-1]} {word}"
-        if parts[-1].strip() and width_of(longer, font) > width:
+        if parts[-1].strip() and width_of(longer, font) > (width(len(parts) - 1) if callable(width) else width):
             parts.append(word)
         else:
             parts[-1] = longer
     return parts
 
 
-def corner_rows(text: tuple[str, ...], font: Atlas, width: float = math.inf) -> np.ndarray:
+def corner_rows(text: tuple[str, ...], font: Atlas, width: float = math.inf, taken: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
     """Rows (N, 12) of lines at the top left of a picture so wide [px]: place and cell, left, top, width, height [px], then display RGB
-    and opacity."""
+    and opacity. taken: width and height [px] of what lies over the top-right corner: lines end before it, or begin below it
+    where too little is left."""
     rows: list[tuple] = []
     inset = round(0.8 * font.line)
-    for i, line in enumerate(part for whole in text for part in wrapped(whole, font, width - 2 * inset)):
-        _write(rows, line, inset, inset + i * font.line, font)
+    beside, top = width - taken[0] - 2 * inset, inset
+    if beside < NARROWEST * font.line and taken[1] > 0.0:
+        top += math.ceil(taken[1])
+    number = 0
+    for whole in text:
+        def room(part: int, first: int = number) -> float:
+            return beside if top + (first + part) * font.line < taken[1] else width - 2 * inset
+        for line in wrapped(whole, font, room):
+            _write(rows, line, inset, top + number * font.line, font)
+            number += 1
     return np.array(rows, np.float32).reshape(-1, 12)
 
 
@@ -146,16 +161,16 @@ def _write(rows: list, line: str, x: float, y: float, font: Atlas) -> None:
 
 
 @lru_cache(maxsize=16)
-def layout(text: tuple[str, ...], caption: Caption | None, size: tuple[int, int]
+def layout(text: tuple[str, ...], caption: Caption | None, size: tuple[int, int], taken: tuple[float, float] = (0.0, 0.0)
            ) -> tuple[tuple[int, np.ndarray], ...]:
     """All text of a scene on `size` pixels: letter sizes [px], each with its rows as of `corner_rows`.
 
-    Letters of the corner measure a fortieth of the shorter side or so.
+    Letters of the corner measure a fortieth of the shorter side or so. taken: as of `corner_rows`.
     """
     made = []
     if text:
         letters = int(np.clip(round(min(size) / 40), 11, 96))
-        made.append((letters, corner_rows(text, atlas(letters), size[0])))
+        made.append((letters, corner_rows(text, atlas(letters), size[0], taken)))
     if caption is not None and caption.opacity > 0.0:
         for line, share, base in ((caption.text, 1 / 13, 0.855), (caption.under, 1 / 30, 0.90)):
             line = spelled(line)
@@ -172,9 +187,9 @@ class TextPass:
         self.stream, self.textures = gl.Stream(ctx), {}
         self.array = ctx.vertex_array(self.program, [(self.stream.buffer, "4f 4f 4f/i", "place", "cell", "tint")])
 
-    def draw(self, text: tuple[str, ...], caption: Caption | None, size: tuple[int, int]) -> None:
-        """Draw over a viewport of `size` pixels."""
-        for letters, rows in layout(tuple(text), caption, size):
+    def draw(self, text: tuple[str, ...], caption: Caption | None, size: tuple[int, int], taken: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Draw over a viewport of `size` pixels. taken: as of `corner_rows`."""
+        for letters, rows in layout(tuple(text), caption, size, taken):
             texture = self._texture(letters)
             rows = rows.copy()
             rows[:, 4:8] /= np.tile(texture.size, 2)

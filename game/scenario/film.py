@@ -18,7 +18,7 @@ from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import built
 from gambol.controllers.supervisor import Supervisor
 
-from ..camera import between
+from ..camera import between, seen_past
 from ..explain import broken, explained, led, pointed, rows, stepping, with_cameras
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
@@ -169,13 +169,16 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
         caption, made = _caption(scenario, old.shot, frame.time), []
         places = parts(len(cameras), scenario.size)
         lowest = max(top for _, top, _, _ in places)
-        for table, camera, part in zip(old.shot.cameras, cameras, places):
+        for operator, camera, part in zip(old.crew, cameras, places):
+            table = operator.table
             names = next(o for o in (table.overlays, old.shot.overlays, scenario.overlays) if o is not None)
             corner = part[0] == 0.0 and part[1] == lowest
             title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
             text = ((title,) if title else ()) + (why if not made else ())
             people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
             people = stepping(led(people, after, over), after, over)
+            if table.kind == "follow":
+                people = seen_past(people, camera, operator.watched)
             made.append(Scene(camera, people, after.props, over, text, caption=caption if corner else None, part=part))
         lines = rows(before) if any(scene.overlays.errors for scene in made) else ()
         if lines or old.shot.panels:

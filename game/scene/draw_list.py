@@ -39,3 +39,10 @@ class Ink:
     indices: np.ndarray
     strokes: tuple[Stroke, ...]
     sheets: Mapping[int, np.ndarray] = field(default_factory=dict)
+
+    def corner(self) -> tuple[float, float]:
+        """How far it reaches from the right and from the top of its picture [px]: the width and height of a panel in that corner."""
+        if not len(self.vertices):
+            return 0.0, 0.0
+        places = self.vertices["place"]
+        return float(self.size[0] - places[:, 0].min()), float(places[:, 1].max())

@@ -53,10 +53,11 @@ class Pad:
 class Sheet:
     """A sheet in the middle of the picture. tables: side by side, their columns aligned. pads: under them.
 
-    note: a line under all, such as that there is no pad.
+    note: a line under all, such as that there is no pad. page: which is open where a picture is too small for all, counted round.
     """
 
     title: str
     tables: tuple[tuple[Row, ...], ...]
     pads: tuple[Pad, ...] = ()
     note: str = ""
+    page: int = 0

@@ -93,7 +93,8 @@ class Figure:
     trail, path: (N, 3), (M, 3) [m] where the character was and where it is predicted to go.
     body: what it wears (`gambol.game.render.mesh.Body`); None for Gambol's mannequin. sketches: what
     explains its motion, each in a layer of its own. opacity: less than 1 for a ghost, which casts no shadow; 0 for
-    somebody of whom nothing is seen, sketches neither.
+    somebody of whom nothing is seen, sketches neither. cover: less than 1 for a body that stands in a camera's way and
+    is seen through; unlike a ghost it keeps its colours and its shadow.
     """
 
     positions: np.ndarray
@@ -105,6 +106,7 @@ class Figure:
     body: Any = None
     sketches: tuple[Sketch, ...] = ()
     opacity: float = 1.0
+    cover: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -154,10 +156,12 @@ class Caption:
 
 @dataclass(frozen=True)
 class Hint:
-    """A line in the middle below that teaches. parts: words, and names of keys (True) among them. opacity: 0 … 1."""
+    """A line in the middle below that teaches. parts: words, and names of keys (True) among them. opacity: 0 … 1. room: from where
+    to where there is room for it, in parts of the picture's width."""
 
     parts: tuple[tuple[str, bool], ...]
     opacity: float = 1.0
+    room: tuple[float, float] = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -185,7 +189,7 @@ OVERLAYS = tuple(part.name for part in fields(Overlays))
 class Scene:
     """All of one frame, or of one part of it where several views stand side by side.
 
-    text: lines for the top-left corner. sheet: the help sheet, in the middle of the whole picture.
+    text: lines for the top-left corner, which keep off what lies over the top-right one: taken, its width and height [px]. sheet: the help sheet, in the middle of the whole picture.
     hint: in the middle below, of the whole picture. ink: panels, over the whole picture.
     part: left, top, width, height of where it is shown, in parts of the picture.
     """
@@ -200,3 +204,4 @@ class Scene:
     hint: Hint | None = None
     ink: Ink | None = None
     part: tuple[float, float, float, float] = (0.0, 0.0, 1.0, 1.0)
+    taken: tuple[float, float] = (0.0, 0.0)

@@ -112,7 +112,8 @@ def _comparing(moment: SessionState, wanted: Comparison | None, kept: Mapping[st
     """The moment with another comparison, or none. Followers that were not `kept` begin as the first player stands and moves."""
     followers: tuple[Character, ...] = ()
     if wanted is not None:
-        wanted, followers = comparison.joined(wanted, moment.after.characters[0], moment.methods, kept)
+        first, *others = (one for one in moment.after.characters if one.follows is None)
+        wanted, followers = comparison.joined(wanted, first, moment.methods, kept, others if len(moment.players) > 1 else ())
     def among(world: World) -> World:
         return replace(world, characters=tuple(c for c in world.characters if c.follows is None) + followers)
     return replace(moment, before=among(moment.before), after=among(moment.after), comparison=wanted)

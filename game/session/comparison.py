@@ -9,7 +9,7 @@ a point is turned, too, as trackers are, a unit quaternion follows its place: x/
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -26,6 +26,10 @@ GHOSTS: tuple[tuple[str, ...], ...] = ((), ("ours",), ("lpcr", "lpca"), ("lpcr",
 """The ghosts that one goes through, but for one that has the body itself."""
 ASIDE = 1.4
 """How far to the right of the performer the others are [m]."""
+ABREAST = 0.95
+"""… nearer where players share the picture, so that all of them is in the performer's part of it; on the left where somebody is
+within CROWDED [m] of that."""
+CROWDED = 0.8
 GHOST = 0.34
 """The opacity of a ghost."""
 ACTIONS = frozenset(("study", "pins", "pin"))
@@ -109,18 +113,17 @@ def wanted(ticks: Iterable[Iterable[Wish]]) -> tuple[tuple[str, str], ...]:
     return tuple(found)
 
 
-def joined(comparison: Comparison, performer: Character, methods: Methods, before: Mapping[str, Character]
-           ) -> tuple[Comparison, tuple[Character, ...]]:
+def joined(comparison: Comparison, performer: Character, methods: Methods, before: Mapping[str, Character],
+           sharing: Sequence[Character] = ()) -> tuple[Comparison, tuple[Character, ...]]:
     """The comparison beside a performer, and its followers: those from `before`, by name, that go on, and others as they begin.
 
-    SettingError for points that there are not.
+    sharing: everybody else, where players share the picture. SettingError for points that there are not.
     """
     try:
         learnt = [(name, methods(name, comparison.points)[1]) for name in comparison.methods]
     except ValueError as error:
         raise SettingError(f"{comparison.action}: {error}") from None
-    heading = float(performer.state.ground[2])
-    beside = comparison.beside if any(comparison.beside) else (-ASIDE * math.cos(heading), 0.0, ASIDE * math.sin(heading))
+    beside = comparison.beside if any(comparison.beside) else _aside(performer, sharing)
     made: list[Character] = []
     for number, (name, points) in enumerate(learnt):
         kept = before.get(NAMES[name])
@@ -134,6 +137,20 @@ def joined(comparison: Comparison, performer: Character, methods: Methods, befor
         made.append(Character(NAMES[name], someone, beginning(someone, like.state, aside), TINTS[name],
                               follows=follows, opacity=GHOST if number else 1.0))
     return replace(comparison, beside=beside), tuple(made)
+
+
+def _aside(performer: Character, sharing: Sequence[Character]) -> Place:
+    """Where followers stand, from the performer [m]."""
+    x, z, heading = (float(v) for v in performer.state.ground)
+    right = -math.cos(heading), math.sin(heading)
+    if not sharing:
+        return ASIDE * right[0], 0.0, ASIDE * right[1]
+
+    def room(side: float) -> float:
+        at = x + side * right[0], z + side * right[1]
+        return min(min(math.dist(at, one.state.ground[:2]) for one in sharing), CROWDED)
+    side = max((ABREAST, -ABREAST), key=room)  # the right one where both are free
+    return side * right[0], 0.0, side * right[1]
 
 
 def pinned(comparison: Comparison, action: str, world: World) -> tuple[Comparison, World]:

@@ -281,3 +281,29 @@ def test_what_can_not_be_learnt_is_told_in_one_line(tmp_path):
     other = learning.Learning([("ours", "4")], wrong)
     other.wait()
     assert other.done and other.fault == f"{wrong}: is no motion database; `gambol database build` makes one"
+
+
+def test_where_players_share_the_picture_bodies_stand_within_the_first_ones_part_and_not_in_the_other(walker):
+    def placed(players):
+        timeline = Timeline(opening(walker, players))
+        timeline.advance((Wish(pressed=("study=ours@6",)), *[Wish()] * (players - 1)))
+        performer, *others, body = timeline.now.after.characters
+        at = np.array([project(timeline.now.players[0].view(1.0), 8.0 / 9.0, body.state.pose.root + [dx, 0.0, 0.0])[0] for dx in (-0.35, 0.35)])
+        return at, min(math.dist(body.state.ground[:2], one.state.ground[:2]) for one in (performer, *others))
+    alone, apart = placed(1)
+    assert alone.max() > 8.0 / 9.0 and apart > 1.3, "half of the picture is not enough for this, and need not be"
+    shared, apart = placed(2)
+    assert shared.min() > 0.0 and shared.max() < 8.0 / 9.0 and apart > 0.8
+
+
+def test_the_legend_lies_in_the_first_player_s_part_and_lines_keep_off_it(walker):
+    game = Play(walker, players=2)
+    game.do("study=ours@6")
+    for _ in range(3):
+        game.tick(DT)
+        first, second = game.scene((640, 360))
+    reach = first.ink.vertices["place"][:, 0]
+    assert first.ink.size == (640, 360) and reach.max() <= 320 and first.taken == (320 - reach.min(), first.ink.vertices["place"][:, 1].max())
+    assert second.ink is None and second.taken == (0.0, 0.0)
+    assert not len(game.scene((200, 150))[0].ink.vertices), "none where it has no room"
+    game.close()

@@ -180,6 +180,18 @@ def test_a_hint_fits_every_picture_and_fades():
     longest = max((worded(name, DEFAULT, False, "ahead, to your right") for name in ORDER), key=lambda words: len(str(words)))
     for size in ((1280, 720), (640, 360), (320, 180), (360, 640), (3840, 2160)):
         rows, letters = layout(Hint(longest, 0.5), size)
-        assert letters >= 6 and rows[:, 11].max() <= 0.5
+        assert letters >= 11 and rows[:, 11].max() <= 0.5
         assert rows[0, 0] >= 0 and rows[0, 0] + rows[0, 2] <= size[0] and rows[0, 1] + rows[0, 3] <= size[1]
     assert Scene.hint is None
+
+
+def test_a_hint_keeps_to_the_room_that_panels_leave():
+    from gambol.game.render.hint_pass import layout
+
+    for name in ORDER:
+        for size, room in (((1280, 720), (0.3, 0.66)), ((1280, 720), (0.0, 0.5)), ((640, 360), (0.42, 0.8)), ((320, 240), (0.6, 1.0))):
+            rows, letters = layout(Hint(worded(name, DEFAULT, False, "ahead, to your right"), room=room), size)
+            assert letters >= 11 and len(rows)
+            assert rows[0, 0] >= room[0] * size[0] and rows[0, 0] + rows[0, 2] <= room[1] * size[0] and rows[0, 1] + rows[0, 3] <= size[1]
+            assert (rows[1:, 0] >= rows[0, 0] - 4).all() and (rows[1:, :2] + 0.5 * rows[1:, 2:4] <= rows[0, :2] + rows[0, 2:4]).all()
+        assert not len(layout(Hint(worded(name, DEFAULT, False), room=(0.5, 0.52)), (640, 360))[0]), "none rather than half of one"

@@ -6,13 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.person import person
 from gambol.game.app.app import Play
 from gambol.game.hosts.events import Focus, KeyEvent, MouseMove, Scroll
 from gambol.game.hud import Hud
-from gambol.game.hud.panels import layout
+from gambol.game.hud.canvas import LEGIBLE
+from gambol.game.hud.panels import COLUMN, LEAST, layout
 from gambol.game.scene import PANELS
 from gambol.game.session.settings import SETTINGS
 from panel_hands import NOWHERE, SIZE, button, click, frames, point, tap
@@ -51,10 +54,37 @@ def test_ink_is_whole(game):
         for _ in range(2):
             game.tick(1 / 60)
             ink = game.scene(size).ink
-        assert ink.size == size and len(ink.indices) % 3 == 0 and ink.indices.max() < len(ink.vertices)
+        assert ink.size == size and len(ink.indices) % 3 == 0 and (ink.indices < len(ink.vertices)).all()
+        assert len(ink.indices) or max(size) < 100, "no panel where none could be read"
         assert sum(stroke.count for stroke in ink.strokes) == len(ink.indices)
         assert {stroke.sheet for stroke in ink.strokes} <= set(ink.sheets)
         assert np.isfinite(ink.vertices["place"]).all()
+
+
+@given(st.integers(100, 2000), st.integers(100, 1200), st.sets(st.sampled_from(sorted(PANELS)), min_size=1), st.booleans())
+def test_panels_never_lie_over_each_other_and_what_is_alone_has_room(width, height, open, told):
+    scale = min(max(min(height / 720.0, width / 1000.0), LEGIBLE), 4.0)
+    places = layout((width, height), scale, open, told)
+    for name, (x, y, wide, high) in places.items():
+        assert x >= 0 and y >= 0 and x + wide <= width + 1e-6 and y + high <= height + 1e-6
+        assert name == "strip" or name not in PANELS or wide >= scale * COLUMN - 1e-6 and high >= scale * LEAST - 1e-6
+        for other, (u, v, across, tall) in places.items():
+            assert name == other or x + wide <= u + 1e-6 or u + across <= x + 1e-6 or y + high <= v + 1e-6 or v + tall <= y + 1e-6
+    if width >= 320 and height >= 260:
+        assert "strip" in places and open & set(places)
+        assert next(name for name in ("settings", "quality", "space", "plots") if name in open) in places
+    if width >= 1000 and height >= 560:
+        assert open <= set(places)
+
+
+def test_what_has_no_room_is_told(game):
+    tap(game, "F2")
+    game.tick(1 / 60)
+    assert not any("no room" in line for line in game.scene(SIZE).text)
+    assert game.scene((320, 240)).text[1:] == ("no room here for control space, velocities, quality",)
+    for line in ("one", "two"):
+        game.kept.say(line)
+    assert game.scene((320, 240)).text[1:] == ("two",), "more lines would lie under the panels"
 
 
 def test_a_sheet_is_never_written_again(game):

@@ -224,3 +224,28 @@ def test_a_second_pad_joins_with_start(game):
     game.handle(pad(left=(0.0, -1.0), slot=1))
     wait(game, 1.0)
     assert at(game, 1)[1] > 0.9 and abs(at(game, 0)[1]) < 0.01
+
+
+def test_the_way_to_help_keeps_its_place_whatever_else_is_said(game):
+    def place():
+        return game.scene((640, 360)).text.index("F1 help")
+    before = place()
+    game.kept.say("no jump: it is too far")
+    game.do("slowmo")
+    game.tick(1 / 60)
+    assert len(game.scene((640, 360)).text) > 3 and place() == before == 1
+
+
+def test_the_wheel_and_arrows_leaf_through_the_help_and_move_nothing_else(game):
+    tap(game, "F1")
+    def page():
+        return game.scene((320, 240)).sheet.page
+    before = camera(game).distance
+    tap(game, "DOWN", "PAGE_DOWN")
+    game.handle(Scroll(0.0, -1.0))
+    assert page() == 3
+    tap(game, "UP")
+    game.handle(Scroll(0.0, 0.5))
+    assert page() == 1
+    tap(game, "F1", "F1")
+    assert page() == 0 and camera(game).distance == before and not any(wanted(game))

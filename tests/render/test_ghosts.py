@@ -46,3 +46,16 @@ def _grown(mask):
         for dx in range(-3, 4):
             out |= np.roll(np.roll(mask, dy, 0), dx, 1)
     return out
+
+
+def test_who_is_seen_through_keeps_colours_and_shadow(draw):
+    """Unlike a ghost: at nearly its whole cover nothing can be told from the body itself, and at little the shadow is as before."""
+    solid = figure(options={"tint": (0.1, 0.3, 0.7)}, **STAND)
+    empty, clear, nearly, whole = (draw(Scene(camera(), people, (WALL,))).astype(int) for people in (
+        (), (replace(solid, cover=0.1),), (replace(solid, cover=0.999),), (solid,)))
+    assert np.abs(nearly - whole).max(-1).mean() < 0.3
+    body = _grown(np.abs(clear - whole).max(-1) > 6)
+    inside = (slice(60, 110), slice(150, 170))  # the trunk
+    assert np.abs(clear - empty)[inside].mean() < 0.2 * np.abs(whole - empty)[inside].mean()
+    shadow = (np.abs(whole - empty).max(-1) > 12) & ~body
+    assert shadow.sum() > 300 and np.abs(clear - whole)[shadow].max() <= 6

@@ -37,3 +37,15 @@ def test_lines_too_wide_for_the_picture_go_on_in_the_next_one():
         assert max(text.width_of(part, atlas) for part in parts) <= max(width, text.width_of("looking away 10.6", atlas))
     assert text.wrapped(line, atlas, 1e9) == [text.spelled(line)]
     assert text.corner_rows((line, "c"), atlas, 260)[-1, 1] > text.corner_rows((line, "c"), atlas)[-1, 1]
+
+
+def test_lines_keep_off_what_lies_over_the_corner():
+    """They end before it and go on below it, or begin below it where too little is left beside; nothing is lost."""
+    atlas = text.atlas(12)
+    words = ("tracked without the penalty on jitter: Z brings it back",) * 6
+    for width, taken in ((640, (260, 90)), (640, (260, 40)), (500, (380, 90)), (300, (264, 120)), (300, (0, 0))):
+        rows = text.corner_rows(words, atlas, width, taken)
+        left, top, wide, high = rows[:, :4].T + np.array([[atlas.margin], [atlas.margin], [-2 * atlas.margin], [-2 * atlas.margin]])
+        assert len(rows) == sum(len(line.replace(" ", "")) for line in words) and (left + wide <= width).all()
+        assert not ((left + wide > width - taken[0]) & (top + 0.3 * high < taken[1])).any()
+        assert taken[1] > 0 or top.min() < 2 * atlas.line
