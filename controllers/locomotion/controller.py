@@ -238,7 +238,10 @@ def _halt(memory: np.ndarray, halt: ArrayLike | None, wish: np.ndarray, shape: t
 def _spread(value: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:
     """An array of its own of a shape that values broadcast to, as numpy's own makes it in five times the time."""
     out = np.empty(shape)
-    out[...] = value
+    try:
+        out[...] = value
+    except ValueError:
+        raise ValueError(f"a wish of shape {np.shape(value)} for bodies that take {shape}, or what broadcasts to it") from None
     return out
 
 

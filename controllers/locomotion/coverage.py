@@ -11,6 +11,8 @@ from .velocity_correction import space_of
 
 FORWARD, BACKWARD = np.array([1.4, 2.5, 0.6]), np.array([0.7, 1.5, 0.6])
 """Half-axes of the wishes that a walker should meet: (v_f [m/s], ω [rad/s], v_l [m/s])."""
+LEAST_WISHES, LEAST_SPEED, LEAST_QUALITY = 0.3, 0.7, 0.2
+"""What meets a smaller share of a walker's wishes, goes ahead no faster [m/s], or whose simplices are flatter on the median, hardly walks."""
 PLANES = {"v_l = 0": (0, 1), "ω = 0": (0, 2), "v_f = 0": (1, 2)}
 
 
@@ -62,6 +64,10 @@ def report(library: Library) -> list[str]:
                      f"turning {runs[:, 1].min():.2f} to {runs[:, 1].max():.2f} rad/s")
     worst = max(library.primitives, key=lambda p: p.closure)
     lines.append(f"worst closure {np.degrees(worst.closure):.1f}° ({worst.label}, {worst.clip})")
+    met = float(np.mean(list(coverage(space).values())))
+    if met < LEAST_WISHES or ends["forward"] < LEAST_SPEED or np.median(quality) < LEAST_QUALITY:
+        lines.append(f"this hardly walks: it meets {met:.0%} of a walker's wishes, reaches {ends['forward']:.2f} m/s ahead, and the median quality is "
+                     f"{np.median(quality):.2f}; are these takes of steady walking, straight on, turning and sideways?")
     return lines
 
 

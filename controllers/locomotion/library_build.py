@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..body import CONTACT_HEIGHT, Clip, human, mirror_index, relative, rotations as rot
+from ..body import CONTACT_HEIGHT, Clip, forward_kinematics, human, mirror_index, relative, rotations as rot
 from ..files import reason, tables
 from . import fourier
 from .cycles import EVENTS, RATE, SAMPLES, Cycle, Track, cut, track
@@ -25,6 +25,8 @@ from .velocity_correction import settle
 
 SHORTEST = 0.6
 """What is shorter [s] holds no cycle."""
+OUT = -0.6
+"""The sine of how high an upper arm is raised that does not hang: 37° below level."""
 LONE, STRAIGHT = 4, 0.15
 """Fewer cycles than the first that go straight ahead (turning [rad/s] and going aside [m/s] less than the second) are averaged
 with their mirror images: one stride's limp is nobody's gait."""
@@ -230,7 +232,7 @@ def mirrored(cycle: Cycle, swap: np.ndarray) -> Cycle:
 
 
 def rest_pose(tracks: list[Track], reference: np.ndarray) -> tuple[np.ndarray, str, float]:
-    """How somebody stands: still, flat, upright, and not far from walking (which a T-pose is).
+    """How somebody stands: still, flat, upright, and not far from walking; never with both arms out, as in a T-pose, if there is anything else.
 
     Of all seconds with quiet feet, the best by speed and flatness of the feet, height of the hips
     and distance from the mean walking pose. Returns chart and hips (3 J + 3,) in the ground frame, and the clip
@@ -258,6 +260,15 @@ def rest_pose(tracks: list[Track], reference: np.ndarray) -> tuple[np.ndarray, s
     charts, hips = np.array(charts), np.array(hips)
     cost = (np.array([c[0] for c in candidates]) - hips[:, 1] / 0.01
             + np.sqrt(np.mean(np.sum(charts**2, -1), -1)) / 0.10)
-    best = int(np.argmin(cost))
+    held = arms_out(reference @ rot.exp(charts))
+    best = int(np.argmin(cost + (1e9 * held if not held.all() else 0.0)))
     return (np.concatenate([charts[best].ravel(), hips[best]]), candidates[best][2].clip.name,
             candidates[best][1] / RATE)
+
+
+def arms_out(rotations: np.ndarray) -> np.ndarray:
+    """Whether both upper arms of poses (N, J, 3, 3) are farther up than `OUT`: (N,) bool. A guard's fists are high, its elbows are not."""
+    skeleton = human()
+    places = forward_kinematics(skeleton, np.zeros((len(rotations), 3)), rotations)[0]
+    ways = [places[:, skeleton.index(side + "ForeArm")] - places[:, skeleton.index(side + "Arm")] for side in ("Left", "Right")]
+    return np.all([way[:, 1] > OUT * np.linalg.norm(way, axis=-1) for way in ways], axis=0)

@@ -130,6 +130,8 @@ def _joints(skeleton: Skeleton, pattern: str) -> list[int]:
 
 
 def _unit(leg: float, skeleton: Skeleton) -> float:
+    if not np.any(skeleton.offsets[1:]):
+        raise MotionFileError("all offsets of its joints are zero: its bones have no length")
     if not leg > 0:
         names = ", ".join(skeleton.names[:6]) + ", …" * (len(skeleton) > 6)
         raise MotionFileError(f"no foot or ankle by which to judge the unit among its joints ({names}); wanted are names such as "

@@ -39,6 +39,8 @@ FADE = 0.15
 """Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
 SHORTEST, LONGEST, HURRY = 0.06, 0.16, 2.4
 """What was leapt fades with such a half-life, between these [s], that it moves no joint faster than this [m/s]; farther than 0.75 m it does."""
+GLIDE = 8.0
+"""… and from so far away that even so it would be faster than this [m/s], slower."""
 _SWIFTEST = 2.0 * math.log(2.0) / math.e  # of what settles from rest: its distances a half-life
 
 
@@ -87,16 +89,18 @@ class Reconstruction(Controller):
     method: whose poses. controls: the points, as the method has them. height: of the body [m]; the performer's points
     are taken to be as far apart as on a body of this height. dt: seconds between the method's frames.
     starts: poses to begin from where the body's own is not like the points; without them it begins from its own.
+    far: points farther from the body than this on the average [m] are not taken hold of, and a body that is begun anew farther away is there at
+    once; with math.inf, for a performer who is to be found again wherever he went unseen, it glides there.
     Pre-condition: a point is seen, and those seen are within reach. Post-condition: the body is where the points were
     and moves as it last did. Expected performance: a point is seen every now and then.
     Characters come singly. ValueError unless height is more than 0, and dt no more than 0.1.
     """
 
     def __init__(self, method: Reconstructor, controls: ControlPoints, height: float = STATURE, dt: float = 1 / 60,
-                 starts: Beginning | None = None, skeleton: Skeleton | None = None):
+                 starts: Beginning | None = None, skeleton: Skeleton | None = None, far: float = FAR):
         if not 0.0 < height < math.inf:
             raise ValueError(f"a height of {height!r}: it must be more than 0 m")
-        self.method, self.controls, self.starts, self.dt = method, controls, starts, seconds(dt)
+        self.method, self.controls, self.starts, self.dt, self.far = method, controls, starts, seconds(dt), far
         self.factor, self.skeleton = (height / STATURE, human(height)) if skeleton is None else (1.0, skeleton)
         self.body = SKELETON if skeleton is None else skeleton
 
@@ -120,7 +124,7 @@ class Reconstruction(Controller):
         level = float(sound_level(state.floor))
         seen = self._seen(intent, level)
         pose = self._shrunk(state.pose, level)
-        away = reached(seen, self._points(pose), self.factor)
+        away = reached(seen, self._points(pose), self.factor, self.far)
         past = None if state.previous is None or state.elapsed <= 0.0 else self._shrunk(state.previous, level)
         rate = np.zeros((1 + len(SKELETON), 3)) if past is None else difference(pose, past) / state.elapsed
         if away <= ANEW or self.starts is None:
@@ -130,7 +134,7 @@ class Reconstruction(Controller):
         begun = self._frame(self._begun(frames, tracks, seen, self.dt), seen, self._turns(intent))
         # what the body would do next by itself is where the fading begins
         offset = difference(moved(pose, rate * self.dt), begun.pose)
-        return replace(state, memory=replace(begun, ahead=self.dt, offset=offset, level=level))
+        return replace(state, memory=replace(begun, ahead=self.dt, offset=offset, level=level, fade=max(FADE, _SWIFTEST * away / GLIDE)))
 
     def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0,
               turns: np.ndarray | None = None) -> CharacterState:
@@ -243,13 +247,14 @@ class Reconstruction(Controller):
     def _fading(self, following: Following, shown: Pose) -> Following:
         """With an offset by which a pose is shown for now."""
         away = float(np.linalg.norm(joints_of(shown, self.body)[0] - joints_of(following.pose, self.body)[0], axis=-1).max())
-        return replace(following, offset=difference(shown, following.pose), fade=min(max(SHORTEST, _SWIFTEST * away / HURRY), LONGEST))
+        fade = max(min(max(SHORTEST, _SWIFTEST * away / HURRY), LONGEST), _SWIFTEST * away / GLIDE)
+        return replace(following, offset=difference(shown, following.pose), fade=fade)
 
     def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
-        far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
+        far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
         after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, lost=0.0)
         zero = np.zeros_like(following.offset)
         return replace(after, offset=zero, rate=zero) if far else self._fading(after, ahead)

@@ -40,8 +40,11 @@ def load(path: str | Path) -> Body:
                                  "with its armature")
         joints = {int(n) for entry in skins for n in entry["joints"]}
         found = parts(document, tree, joints)
-        world = bound_world(document, tree)
-        surface = gathered(document, tree, world, joints)
+        try:
+            world = bound_world(document, tree)
+            surface = gathered(document, tree, world, joints)
+        except np.linalg.LinAlgError:
+            raise ValueError(gltf.scaled_to_nothing(tree)) from None
         turn = _upright(document, world, found)
         standing = _complete({name: turn @ world[n, :3, 3] for name, n in found.items()})
         return _body(document, tree, surface, found, turn, standing)
@@ -58,6 +61,9 @@ def _upright(document: Document, world: np.ndarray, found: dict[str, int]) -> np
     x = unit(left)
     y = unit(up - x * (x @ up))
     frame = np.stack([x, y, np.cross(x, y)])
+    toes = [frame @ (at[side + "Toe"] - at[side + "Foot"]) for side in _SIDES if side + "Toe" in at]
+    if toes and all(toe[2] < -0.5 * np.linalg.norm(toe) for toe in toes):
+        raise CharacterError(f"{document.path}: its toes point backward as its joints are named: left and right are exchanged; name them anew")
     near = np.round(frame)  # a spine may lean where the world does not
     return near if np.linalg.det(near) > 0.5 and np.trace(near @ frame.T) > 1 + 2 * np.cos(np.radians(30)) else frame
 

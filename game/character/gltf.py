@@ -17,7 +17,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from gambol.controllers.files import ordinary, reason
+from gambol.controllers.files import ordinary, printable, reason
 
 LARGEST = 256 << 20
 """The largest file that is read [bytes]."""
@@ -189,6 +189,10 @@ def nodes(document: Document) -> Nodes:
     local = np.stack([_local(entry) for entry in entries]) if entries else np.zeros((0, 4, 4))
     if not np.isfinite(local).all():
         raise ValueError("a node's transform is not finite")
+    for number, skin in enumerate(document.list("skins")):
+        none = [joint for joint in skin["joints"] if not 0 <= joint < len(entries)]
+        if none:
+            raise ValueError(f"skin {number} has node {none[0]} for a joint, and there are {len(entries)} nodes")
     world, order = local.copy(), []
     stack = [n for n in reversed(range(len(entries))) if parents[n] < 0]
     while stack:
@@ -200,6 +204,12 @@ def nodes(document: Document) -> Nodes:
     if len(order) != len(entries):
         raise ValueError("its nodes hang on each other in a ring")
     return Nodes(tuple(str(e.get("name", f"node {n}")) for n, e in enumerate(entries)), parents, local, world, tuple(order))
+
+
+def scaled_to_nothing(tree: Nodes) -> str:
+    """Which node leaves nothing of what hangs on it, for where a transform had to be inverted."""
+    flat = np.flatnonzero(np.abs(np.linalg.det(tree.local[:, :3, :3])) < 1e-24)
+    return f"node {flat[0]}, {printable(tree.names[flat[0]])!r}, is scaled to nothing" if len(flat) else "a skin's inverse bind matrix is flat"
 
 
 def _local(entry: dict) -> np.ndarray:

@@ -14,12 +14,16 @@ from .base import Mistake, say
 
 FPS = 60
 SUFFIX = ".packets"
+_BEHIND, _SENDING_BEHIND = 10.0, 0.5  # s by which frames of a take, and frames that are sent on, may come late before some are left out
 _TELL = 3.0  # s between words about what is waited for
+_WAITED = 30.0  # s that are waited at least for somebody to stand still, where the time is limited
 
 
 @contextmanager
-def heard(worn: Mapping[str, str], packets: Path | None, port: int | None, host: str | None, keep: Path | None) -> Iterator[Any]:
-    """The trackers of a file of packets, or those that send now, all of whose packets are kept in another file."""
+def heard(worn: Mapping[str, str], packets: Path | None, port: int | None, host: str | None, keep: Path | None,
+          own_time: bool) -> Iterator[Any]:
+    """The trackers of a file of packets, or those that send now, all of whose packets are kept in another file. own_time: whether they are asked by
+    the system's clock, as `record` does."""
     from gambol.controllers.reconstruction.live import HOST, PORT, PacketLog, Replayed, Stream
 
     if packets is not None:
@@ -27,7 +31,7 @@ def heard(worn: Mapping[str, str], packets: Path | None, port: int | None, host:
         return
     log = None if keep is None else PacketLog(keep)
     try:
-        with Stream(worn, port or PORT, HOST if host is None else host, clock=_clock(), log=log) as source:
+        with Stream(worn, port or PORT, HOST if host is None else host, clock=_clock(), log=log, own_time=own_time) as source:
             yield source
     finally:
         if log is not None:
@@ -73,14 +77,14 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
     reconstruction, walker = controller(None), Locomotion.load()
     someone = Supervisor({"locomotion": walker, "reconstruction": reconstruction})
     someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
-    poses, contacts, lost = [], [], 0
+    poses, contacts, lost, skipped = [], [], 0, []
     with _stoppable():
         try:
-            stand(source, height, calibration, posing)
+            stand(source, height, calibration, posing, wait=None if seconds is None else max(seconds, _WAITED))
             known = None
             say("recording; Ctrl-C ends it" if out is not None else "sending; Ctrl-C ends it")
             state = None
-            for now in _times(source, seconds, sender is not None):
+            for now in _times(source, seconds, sender is not None, skipped):
                 seen = source.at(now)
                 if source.worn is not None and source.worn.known is not known:
                     if known is not None:
@@ -109,19 +113,28 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
         raise Mistake(f"{out}: nothing was recorded")
     if lost:
         say(f"for {lost / FPS:.1f} s there was nothing to follow")
+    if skipped:
+        say(f"this machine was too slow: {sum(skipped):.1f} s were left out")
     if source.broken:
         say(f"{source.broken} packets were broken and left out")
     if source.foreign:
         say(f"{source.foreign} packets of another machine than the first were left out")
+    if source.rivals:
+        say(_twice(source))
     if sender is not None and sender.lost:
         say(f"{sender.lost} frames could not be sent")
 
 
-def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
-    """Times [s] to ask a source at, FPS a second: as they come, or those of a file, where they need not be waited for."""
+def _twice(source: Any) -> str:
+    return f"two programs send the same trackers, from {' and '.join(source.rivals)}: close one of them, or give its trackers other names"
+
+
+def _times(source: Any, seconds: float | None, paced: bool, skipped: list[float]) -> Iterator[float]:
+    """Times [s] to ask a source at, FPS a second: as they come, or those of a file, where they need not be waited for. paced: whether somebody sees
+    each as it comes. skipped: where times [s] are put that were left out."""
     length = getattr(source, "duration", None)
     if length is None:
-        yield from _ticks(seconds)
+        yield from _ticks(seconds, _SENDING_BEHIND if paced else _BEHIND, skipped)
         return
     number, began, last = 0, time.monotonic(), length if seconds is None else min(length, source.told_until + seconds)
     while (now := source.told_until + 1 / FPS) <= last:
@@ -132,10 +145,10 @@ def _times(source: Any, seconds: float | None, paced: bool) -> Iterator[float]:
 
 
 def stand(source: Any, height: float | None, calibration: Path | None = None, posing: bool = False, tell: Callable[[Any], None] | None = None,
-          say: Callable[[str], None] = say) -> None:
+          say: Callable[[str], None] = say, wait: float | None = None) -> None:
     """Tell the source where floor and body are: as somebody does who stands still, and if a file is named how trackers are worn, too: as it says if
     it is there; else it is written then. posing: whether set poses are asked for. tell, say: who
-    hears what is asked for (`app.Asked`), each time, and what is known, in words."""
+    hears what is asked for (`app.Asked`), each time, and what is known, in words. wait: for how long [s] at most; Mistake if nobody has stood still by then."""
     from gambol.controllers.reconstruction.calibration import load, save
 
     if calibration is not None and calibration.exists():
@@ -144,7 +157,7 @@ def stand(source: Any, height: float | None, calibration: Path | None = None, po
         return
     if calibration is not None and not calibration.parent.is_dir():
         raise Mistake(f"{calibration}: there is no folder {calibration.parent}")
-    _stood(source, height, calibration is not None, posing, tell, say)
+    _stood(source, height, calibration is not None, posing, tell, say, wait)
     if source.worn is not None and calibration is not None:
         say(source.worn.said(source.controls.names))
         save(calibration, source.worn)
@@ -162,7 +175,8 @@ def moved(source: Any, calibration: Path | None) -> None:
         say(f"{calibration}: written; with it nobody need stand still the next time")
 
 
-def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, tell: Callable[[Any], None] | None, say: Callable[[str], None]) -> None:
+def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, tell: Callable[[Any], None] | None, say: Callable[[str], None],
+           wait: float | None) -> None:
     """Wait until somebody who wears the trackers stands still; where they sit is told, too, if it is asked for."""
     import numpy as np
 
@@ -173,9 +187,10 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
     live = not hasattr(source, "duration")
     if live:
         say(f"listening at {source.host}, port {source.port}: stand upright for a second, in T-pose or with the arms down")
-    standing, told = Standing(), -_TELL / 2
-    times = _times(source, None, False)
+    standing, told, began = Standing(), -_TELL / 2, None
+    times = _times(source, None, True, [])
     for now in times:
+        began = now if began is None else began
         seen = source.at(now)
         if tell is not None:
             from ..app import Asked
@@ -193,9 +208,15 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
             except ValueError as error:
                 say(str(error))
                 standing, told = Standing(), now
-        if now - told > _TELL:
+        over = live and wait is not None and now - began > wait
+        if over or now - told > _TELL:
             missing = [name for name, there in zip(names, np.isfinite(seen).all(-1)) if not there]
+            if over:
+                raise Mistake(f"nobody has stood still for {wait:g} s" + (f": nothing is heard of {', '.join(missing)}" if missing else "")
+                              + (f"; {_twice(source)}" if source.rivals else ""))
             say(f"waiting for {', '.join(missing)}" if missing else "waiting for somebody who stands still")
+            if source.rivals:
+                say(_twice(source))
             if live and not source.heard and source.local:
                 say("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
             if source.unknown:
@@ -204,12 +225,16 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
     raise Mistake("nobody stands still in these packets, upright, in T-pose or with the arms down")
 
 
-def _ticks(seconds: float | None) -> Iterator[float]:
-    """Times [s] of a steady clock, FPS a second, each when it has come."""
+def _ticks(seconds: float | None, behind: float, skipped: list[float]) -> Iterator[float]:
+    """Times [s] of a steady clock, FPS a second, each when it has come; where they come later than by `behind` [s], the next one is now."""
     began, number = time.monotonic(), 0
     while seconds is None or number < round(seconds * FPS):
         due = began + number / FPS
-        time.sleep(max(0.0, due - time.monotonic()))
+        late = time.monotonic() - due
+        if late > behind:
+            skipped.append(late)
+            began, due = began + late, due + late
+        time.sleep(max(0.0, -late))
         yield due
         number += 1
 

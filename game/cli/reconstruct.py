@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from functools import partial
 from pathlib import Path
@@ -32,7 +33,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 height: Annotated[float | None, typer.Option(min=0.5, max=2.5, help="Of who wears the trackers, in metres; told from how they stand by default.")] = None,
                 calibration: Annotated[Path | None, typer.Option(help="Trackers are worn anyhow, beside their joints: a TOML file of how, read if it is there, else written once one has stood still, and moved.")] = None,
                 poses: Annotated[bool, typer.Option("--poses", help="With --calibration: be asked to stand in eight poses, which tells most of how trackers are worn.")] = False,
-                seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long; until Ctrl-C by default.")] = None,
+                seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long from when somebody has stood still, and wait as long for that, half a minute at least; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
                 send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
                 window: Annotated[bool, typer.Option("--window", help="Show the body in a window, too, while it is sent on.")] = False) -> None:
@@ -83,8 +84,9 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     worn_on = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn_on.values())
     method = method or _usual(names, database)
-    with live.heard(worn_on, clip, port, host, keep) as source:
-        if out is None and (send is None or window):
+    shown = out is None and (send is None or window)
+    with live.heard(worn_on, clip, port, host, keep, own_time=not shown) as source:
+        if shown:
             watch(method, names, database, stream=source, send=send, ask=partial(live.stand, source, height, calibration, poses))
         else:
             with live.sent(send) as sender:
@@ -131,7 +133,7 @@ def _named(text: str) -> str:
 
 def _controller(method: str, file: Path | None, points: str, skeleton: Any = None) -> Any:
     """The controller that follows some points, learnt from a database where it has not been yet. skeleton: the performer's, for methods that know
-    bodies of other proportions."""
+    bodies of other proportions. Wherever a performer went unseen, he is found again."""
     from dataclasses import replace
 
     from gambol.controllers.reconstruction import Reconstruction
@@ -143,8 +145,8 @@ def _controller(method: str, file: Path | None, points: str, skeleton: Any = Non
     learnt, controls = known(method, points)
     if skeleton is not None and method == SHIPPED:
         own = replace(learnt, skeleton=skeleton)
-        return Reconstruction(own, controls, dt=known.frame_time(method), starts=own, skeleton=skeleton)
-    return Reconstruction(learnt, controls, dt=known.frame_time(method), starts=known.starts(method, points))
+        return Reconstruction(own, controls, dt=known.frame_time(method), starts=own, skeleton=skeleton, far=math.inf)
+    return Reconstruction(learnt, controls, dt=known.frame_time(method), starts=known.starts(method, points), far=math.inf)
 
 
 def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, noise: float, seed: int, turning: bool) -> None:

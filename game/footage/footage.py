@@ -66,6 +66,9 @@ class Footage:
         try:
             with np.load(self.path / TRUTH) as file:
                 return dict(file)
+        except FileNotFoundError:
+            raise FootageError(f"{self.path}: does not say where somebody is in the first frame, as only what virtual cameras filmed does "
+                               f"({TRUTH}): say it with --start, a .toml file of where joints are seen, or a motion file") from None
         except (OSError, ValueError, EOFError, KeyError) as fault:
             raise FootageError(f"{self.path / TRUTH}: {reason(fault)}") from None
 

@@ -131,6 +131,18 @@ def renamed(described):
         node["name"] = "bone"
 
 
+def flattened(described):
+    for number in described["scenes"][0]["nodes"]:
+        described["nodes"][number].pop("matrix", None)
+        described["nodes"][number]["scale"] = [0.0, 0.0, 0.0]
+
+
+def exchanged(described):
+    for node in described["nodes"]:
+        name = node.get("name", "")
+        node["name"] = name.replace("Left", "@").replace("Right", "Left").replace("@", "Right")
+
+
 FAULTS = {
     "no skin": (lambda d: [d.pop("skins"), [n.pop("skin", 0) for n in d["nodes"]]], "no skin"),
     "no names": (renamed, "no human"),
@@ -138,7 +150,9 @@ FAULTS = {
     "a path upwards": (lambda d: d["buffers"][0].update(uri="../body.bin"), "not beside it"),
     "packed": (lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"]), "Draco"),
     "old": (lambda d: d["asset"].update(version="1.0"), "glTF 1.0"),
-    "a joint that is not there": (lambda d: d["skins"][0]["joints"].append(999), "not sound"),
+    "a joint that is not there": (lambda d: d["skins"][0]["joints"].append(999), "skin 0 has node 999 for a joint, and there are"),
+    "a node scaled to nothing": (flattened, "scaled to nothing"),
+    "left and right exchanged": (exchanged, "toes point backward"),
     "a ring of nodes": (lambda d: d["nodes"][5].update(children=[1]), "not sound"),
     "an accessor too long": (lambda d: d["accessors"][1].update(count=10**6), "beyond buffer"),
     "a huge count": (lambda d: d["accessors"][1].update(count=10**12), "counts"),

@@ -199,8 +199,8 @@ import sys
 from gambol.game.cli import live, main
 live._clock = lambda: None
 ticks = live._ticks
-def told(seconds):
-    for number, now in enumerate(ticks(seconds)):
+def told(seconds, *more):
+    for number, now in enumerate(ticks(seconds, *more)):
         print("tick", number, file=sys.stderr, flush=True)
         yield now
 live._ticks = told

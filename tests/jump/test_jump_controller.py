@@ -111,6 +111,15 @@ def test_a_refusal_names_a_place_that_can_be_reached(jump, standing):
     jump.enter(standing, Intent(np.zeros(3), Leap(nearest)))
 
 
+def test_the_nearest_place_is_the_same_however_far_the_refused_one_is(jump, standing):
+    nearest = []
+    for far in (3.0, 20.0, 1e3, 1e5):
+        with pytest.raises(Refused) as refused:
+            jump.enter(standing, leap(far))
+        nearest.append(refused.value.nearest)
+    np.testing.assert_allclose(nearest, [nearest[0]] * 4, atol=0.005)  # but for where between the feet the way begins
+
+
 @pytest.mark.parametrize(("far", "reason"), [(0.4, "too near for this run|no leg pushes off so hard"), (9.0, "no leg|too far")])
 def test_a_runner_who_is_refused_is_told_the_nearest_place_too(jump, running, far, reason):
     """Beyond the target, if that is too near."""

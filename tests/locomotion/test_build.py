@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
-from gambol.controllers.body import human
+from gambol.controllers.body import Clip, exp, human
 from gambol.controllers.body.clip import mirror_index
 from gambol.controllers.body.rotations import log
 from gambol.controllers.locomotion import Library, LibraryError, Locomotion
-from gambol.controllers.locomotion.library_build import Source, build_library, gather, mirrored, read_recipe
+from gambol.controllers.locomotion.library_build import Source, build_library, gather, mirrored, read_recipe, rest_pose
 from gambol.controllers.locomotion.cycles import SAMPLES, cut, track
 from gambol.controllers.mocap import write_bvh
 from playing import FPS, hold, mean_velocity, play
@@ -255,3 +255,27 @@ def test_recorded_walking_is_cut(shared):
             half = 0.5 * cycle.velocity[1] * cycle.period
             assert speed * abs(np.sinc(half / np.pi)) == pytest.approx(direct, abs=0.12), "the chord of its arc"
     assert any(cut(one, "walk") for one, _, _ in tracks)
+
+
+@pytest.mark.parametrize("lowered, wins", [(1.3, True), (0.9, True), (0.3, False)])
+def test_nobody_rests_in_a_t_pose_if_there_is_anything_else(lowered, wins):
+    """Though it is nearer to the mean of walking here, and somebody stands lower beside it; of T-poses alone the best is taken."""
+    skeleton, turns = human(), np.tile(np.eye(3), (120, len(human()), 1, 1))
+    arms = turns.copy()
+    for side, way in (("Left", -1.0), ("Right", 1.0)):
+        arms[:, skeleton.index(side + "Arm")] = exp(np.array([0.0, 0.0, way * lowered]))
+    root = np.tile(skeleton.offsets[0], (120, 1))
+    tracks = [track(Clip(name, skeleton, 1 / 60, root - [0.0, down, 0.0], Rotation.from_matrix(some.reshape(-1, 3, 3)).as_quat().reshape(120, -1, 4))) for name, some, down in (("t", turns, 0.0), ("stands", arms, 0.01))]
+    assert rest_pose(tracks, turns[0])[1] == ("stands" if wins else "t")
+    assert rest_pose(tracks[:1], turns[0])[1] == "t"
+
+
+def test_a_report_says_of_a_library_that_it_hardly_walks(locomotion):
+    from gambol.controllers.locomotion.coverage import report
+
+    whole = locomotion.library
+    slow = [n for n, one in enumerate(whole.primitives) if one.family == "rest" or one.family == "walk" and abs(whole.velocities[n, 0]) < 0.5
+            and abs(whole.velocities[n, 1]) < 0.6]
+    shuffle = replace(whole, primitives=tuple(whole.primitives[n] for n in slow), velocities=whole.velocities[slow], coefficients=whole.coefficients[slow])
+    assert not any("hardly walks" in line for line in report(whole))
+    assert any("hardly walks" in line for line in report(shuffle))

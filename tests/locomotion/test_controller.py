@@ -253,3 +253,8 @@ def test_the_size_of_the_step_does_not_matter(locomotion):
 def test_settings_that_no_body_moves_by_are_refused(name, value):
     with pytest.raises(ValueError, match=f"{name} must be a finite number"):
         Locomotion.load(settings=Settings()._replace(**{name: value}))
+
+
+def test_wishes_for_another_number_of_bodies_are_refused_with_both_shapes(locomotion):
+    with pytest.raises(ValueError, match=r"shape \(7, 3\) for bodies that take \(10, 3\)"):
+        locomotion.step(locomotion.start(np.zeros((10, 3))), Intent(np.zeros((7, 3))), 1 / 60)

@@ -1,5 +1,6 @@
 """Units, axes, calibration frames and root offsets are judged rightly, and can be overruled."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -86,6 +87,9 @@ def test_what_can_not_be_judged_is_asked_for(tmp_path):
     with pytest.raises(MotionFileError, match="a.bvh: no foot or ankle .*antenna.*LeftFoot"):
         load(path)
     assert load(path, scale=2.0).root[0].tolist() == [2, 4, 6]
+    path.write_text(re.sub(r"OFFSET .*", "OFFSET 0 0 0", BVH))
+    with pytest.raises(MotionFileError, match="a.bvh: all offsets of its joints are zero"):
+        load(path)
     path.write_text(BVH.replace("OFFSET 1 -2 3", "OFFSET 1e9 0 0"))
     with pytest.raises(MotionFileError, match="a leg of .* units is no human's"):
         load(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -19,6 +20,8 @@ HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
 WAYS = (False, False), (False, True), (True, True)
 """With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
+GRID, FARTHEST = 0.02, 10.0
+"""The nearest place is sought so finely [m], and no farther away than nobody leaps on Earth [m]."""
 BACK = 1.0, 0.85, 0.6
 """A place that is offered instead of another is planned, too: if something would be touched there, less far on the way."""
 KEPT = 32
@@ -141,7 +144,8 @@ class Reach:
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                 around: Sequence[Any] = ()) -> np.ndarray | None:
         """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from one that takes
-        no effort: where it stands, or where a run would carry the body. None if that can't be reached either."""
+        no effort: where it stands, or where a run would carry the body; to `GRID`, however far the refused one is. None if that can't be
+        reached either."""
         here = self.middle(start, floor)
 
         def reached(there: np.ndarray) -> bool:
@@ -153,10 +157,12 @@ class Reach:
         found = next((there for there in easy if reached(there)), None)
         if found is None:
             return None
-        low, high, begun = 0.0, 1.0, found.copy()
-        for _ in range(7):
-            middle = 0.5 * (low + high)
-            there = begun + middle * (place - begun)
+        begun, way = found.copy(), place - found
+        length = max(float(np.linalg.norm(way)), 1e-9)
+        low, high = 0, math.ceil(min(length, FARTHEST * max(1.0, 9.81 / -self.gravity[1])) / GRID)
+        while high - low > 1:
+            middle = (low + high) // 2
+            there = begun + middle * GRID / length * way
             if reached(there):
                 low, found = middle, there
             else:

@@ -22,16 +22,16 @@ def spread(points: np.ndarray) -> float:
     return float(np.linalg.norm(seen[:, None] - seen, axis=-1).max())
 
 
-def reached(seen: np.ndarray, body: np.ndarray, factor: float = 1.0) -> float:
+def reached(seen: np.ndarray, body: np.ndarray, factor: float = 1.0, far: float = FAR) -> float:
     """How far points (n, 3) [m], some of them seen, are from the body's (n, 3) on the average [m].
 
-    factor: how much larger the world's lengths are than these, to tell them. Unable unless they can be of this body.
+    factor: how much larger the world's lengths are than these, to tell them. Unable unless they can be of this body, no more than far [m] away.
     """
     there = np.isfinite(seen).all(-1)
     if not there.any():
         raise Unable("no point is seen")
     away = float(np.linalg.norm(seen - body, axis=-1)[there].mean())
-    if away > FAR:
+    if away > far:
         raise Unable(f"the points are {away * factor:.1f} m away from the body")
     apart = spread(seen[there])
     if apart > APART:

@@ -27,6 +27,8 @@ _VRCHAT = re.compile(r"/tracking/trackers/([1-8]|head)/(position|rotation)")
 _CLOCK = "/VMC/Ext/T"
 LONGEST_NAME = 100
 """Letters of a tracker's name."""
+MOST_PARTS = 1024
+"""A packet of more messages than any program sends is broken: one of 60 kB may hold 15,000 empty ones, which take longer to read than a frame."""
 # the library logs a broken packet whole, for everybody to see: here it is counted
 _quiet = logging.getLogger("gambol.osc")
 _quiet.disabled = True
@@ -54,6 +56,8 @@ class Seen(NamedTuple):
 
 def understood(packet: bytes) -> Seen | None:
     """What a packet says. No trackers in messages about something else, None for a packet that is broken."""
+    if _parts(packet) > MOST_PARTS:
+        return None
     try:
         messages = [timed.message for timed in OscPacket(packet).messages]
     except (ParseError, ValueError, IndexError, RecursionError):
@@ -79,6 +83,21 @@ def understood(packet: bytes) -> Seen | None:
         found[reading.serial] = reading._replace(place=np.where(np.isnan(reading.place), before.place, reading.place),
                                                  turn=np.where(np.isnan(reading.turn), before.turn, reading.turn))
     return Seen(list(found.values()), sent)
+
+
+def _parts(packet: bytes) -> int:
+    """How many parts a bundle has, bundles in it with theirs; counted no farther than one beyond `MOST_PARTS`."""
+    bundles, count = [(0, len(packet))], 0
+    while bundles:
+        start, end = bundles.pop()
+        if not packet.startswith(b"#bundle\0", start, end):
+            continue
+        at = start + 16
+        while at < end and count <= MOST_PARTS:
+            size = max(int.from_bytes(packet[at:at + 4], "big", signed=True), 0)
+            bundles.append((at + 4, min(at + 4 + size, end)))
+            at, count = at + 4 + size, count + 1
+    return count
 
 
 def _tracker(serial: Any, kind: str, place: Sequence[Any], turn: Rotation | None) -> Reading | None:

@@ -33,7 +33,9 @@ PINNED = 1.0
 """Whoever sends first is heard alone until silent for so long [s]."""
 _AT_ONCE = 4096  # packets taken in one go: a flood must not stop a frame
 _MOST_NAMES = 64  # of trackers that are on no point: how many are remembered
-_LAGGING = 0.02  # the share by which the time that is asked for is brought to the clock, a question
+_LAGGING = 0.02  # the share by which the time that is asked for is brought to the clock, a question …
+_FAR_BEHIND = 1.0  # … unless it is so far off [s] that it leaps there
+_BUFFER = 4 << 20  # bytes that may wait while this program is kept from listening, as far as the system grants them
 
 
 class Trackers:
@@ -42,7 +44,7 @@ class Trackers:
     points: what each tracker is on, a point as `controls.parse` has it by serial number, "hmd" for any head-set.
     A tracker that is called like one of these points is on it, too. stale: [s] see STALE. placement: into the world; `placing`
     finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
-    many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to.
+    many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to. rivals: addresses of two programs on it that lately sent the same tracker in turns, if there are.
     turns: (n, 3, 3) how the joints below the trackers are turned, as of when the points were told last; NaN where not known; the
     trackers' own turns until a placement knows how they are mounted. worn: who makes joints of what trackers say, places (n, 3) [m] and turns
     (n, 3, 3) of the room, instead of the placement (`calibration.Wearer`).
@@ -57,6 +59,8 @@ class Trackers:
         self._lines = [Timeline() for _ in points]
         self.turns = np.full((len(points), 3, 3), np.nan)
         self._from = "", -np.inf
+        self.rivals: tuple[str, ...] = ()
+        self._by: list[dict[str, float]] = [{} for _ in points]  # when [s] each point's tracker was heard from which address
 
     @property
     def unknown(self) -> list[str]:
@@ -64,8 +68,9 @@ class Trackers:
         return sorted(printable(serial) for serial in self.heard if serial not in self._index)
 
     def take(self, time: float, sender: str, packet: bytes) -> None:
-        """Take a packet that came at a time [s] from a machine."""
-        if sender != self._from[0] and time - self._from[1] <= PINNED:
+        """Take a packet that came at a time [s] from a sender: a machine's address, with or without ":port"."""
+        machine = sender.partition(":")[0] if sender.count(":") == 1 else sender
+        if machine != self._from[0] and time - self._from[1] <= PINNED:
             self.foreign += 1
             return
         seen = understood(packet)
@@ -73,17 +78,26 @@ class Trackers:
             self.broken += 1
             return
         if seen.trackers:
-            self._from = sender, time
+            self._from = machine, time
         for serial, kind, place, turn in seen.trackers:
             if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
                 self.heard[serial] = time
             number = self._index.get(serial, self._index.get("hmd") if kind == "Hmd" else None)
             if number is None:
                 continue
+            self._watch(time, sender, number)
             if np.isnan(place).any():
                 self._lines[number].turned(time, turn)
             else:
                 self._lines[number].heard(time, place, seen.sent, turn)
+
+    def _watch(self, time: float, sender: str, number: int) -> None:
+        """See whether another program told of this tracker since this one did; one that was started anew tells no more from its old port."""
+        known = {one: when for one, when in self._by[number].items() if time - when <= PINNED}
+        between = [one for one, when in known.items() if when > known.get(sender, np.inf)]
+        if between:
+            self.rivals = tuple(sorted((sender, between[0])))
+        self._by[number] = known | {sender: time}
 
     def told(self, now: float, evenly: bool = True) -> np.ndarray:
         """Where the points are (n, 3) [m] at a time: evenly, one packet late, or as the newest packets say. Sets `turns`."""
@@ -121,16 +135,19 @@ class Stream(Trackers):
     """Points from trackers as they are sent.
 
     port, host: where to listen, see HOST. clock: tells the time [s], such as `time.monotonic`; with it packets are timed as
-    they arrive, and points told one packet late, evenly. log: keeps them. For the rest see `Trackers`.
+    they arrive, and points told one packet late, evenly. own_time: whether that is also the clock by which it is asked: then each moment is
+    told as it was, however late somebody asks, as long as no more than 4096 packets wait; else the times that it is asked for are brought to
+    the clock little by little. log: keeps them. For the rest see `Trackers`.
     StreamError if host or port can't be had. Close it, or use it in a `with`.
     """
 
     def __init__(self, points: Mapping[str, str], port: int = PORT, host: str = HOST, stale: float = STALE,
-                 clock: Callable[[], float] | None = None, log: PacketLog | None = None):
+                 clock: Callable[[], float] | None = None, log: PacketLog | None = None, own_time: bool = False):
         super().__init__(points, stale)
-        self._clock, self._lag, self.log = clock, np.nan, log
+        self._clock, self._lag, self._own_time, self.log = clock, 0.0 if own_time else np.nan, own_time, log
         self._arrived: deque[tuple[float, str, bytes]] = deque(maxlen=_AT_ONCE)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
         try:
             if not host:
                 raise ValueError("it is empty")
@@ -174,11 +191,13 @@ class Stream(Trackers):
                     self._keep(time, *packet)
                     self.take(time, *packet)
             return self.told(time, evenly=False)
-        late = self._clock() - time
-        self._lag = self._lag + (late - self._lag) * _LAGGING if abs(late - self._lag) < self.stale else late
-        for _ in range(len(self._arrived)):  # no more: others arrive meanwhile
+        if not self._own_time:
+            late = self._clock() - time
+            self._lag = self._lag + (late - self._lag) * _LAGGING if abs(late - self._lag) < _FAR_BEHIND else late
+        moment = time + self._lag
+        while self._arrived and self._arrived[0][0] <= moment:  # of what came later nothing is known yet, or a slow frame would see ahead
             self.take(*self._arrived.popleft())
-        return self.told(time + self._lag)
+        return self.told(moment)
 
     def _listen(self, clock: Callable[[], float]) -> None:
         while not self._closed:
@@ -200,7 +219,7 @@ class Stream(Trackers):
             return None
         except OSError:
             return None if self._closed else ("", b"")
-        return sender[0], packet or b"\0"
+        return f"{sender[0]}:{sender[1]}", packet or b"\0"
 
     def close(self) -> None:
         """Listen no more."""

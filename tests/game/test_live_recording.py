@@ -1,0 +1,88 @@
+"""What `gambol reconstruct --stream` does with time: on a clock that the test turns."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gambol.controllers.body import STATURE
+from gambol.controllers.reconstruction.control_points import parse
+from gambol.controllers.reconstruction.pose_vector import SKELETON
+from gambol.game.cli import live
+from gambol.game.cli.base import Mistake
+
+
+class Clock:
+    """Passes as somebody sleeps."""
+
+    now = 100.0
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch):
+    turned = Clock()
+    monkeypatch.setattr(live, "time", turned)
+    return turned
+
+
+@given(st.lists(st.floats(0.0, 1.5), min_size=60, max_size=60))
+def test_frames_of_a_take_are_evenly_apart_however_slow_the_machine_is(works):
+    """Each as long as none is ten seconds late."""
+    clock, skipped = live.time, []
+    sum_, times = 0.0, []
+    for now, work in zip(live._ticks(1.0, live._BEHIND, skipped), works):
+        times.append(now)
+        sum_ += work
+        clock.now += work if sum_ < live._BEHIND else 0.0
+    assert len(times) == 60 and not skipped
+    np.testing.assert_allclose(np.diff(times), 1 / live.FPS)
+
+
+def test_frames_that_are_sent_on_are_left_out_where_they_would_come_too_late_and_that_is_counted(clock):
+    skipped, late = [], []
+    for now in live._ticks(5.0, live._SENDING_BEHIND, skipped):
+        late.append(clock.now - now)
+        clock.now += 0.03
+    assert max(late) <= live._SENDING_BEHIND and len(late) == 300
+    assert sum(skipped) + max(late) + 0.03 >= 300 * (0.03 - 1 / 60)
+
+
+class Restless:
+    """A stream of somebody who never stands still; of nobody, where there is none."""
+
+    host, port, local, heard, unknown, rivals, turns, worn = "127.0.0.1", 9000, True, {}, [], (), None, None
+    controls = parse("lwrist,rwrist", SKELETON)
+
+    def __init__(self, there=True, rivals=()):
+        self.there, self.rivals = there, rivals
+
+    def at(self, time):
+        return np.full((2, 3), time) if self.there else np.full((2, 3), np.nan)
+
+
+@pytest.mark.parametrize("there, rivals, why", [
+    (True, (), "stood still for 40 s"), (False, (), "nothing is heard of lwrist, rwrist"),
+    (True, ("127.0.0.1:1", "127.0.0.1:2"), "two programs send the same trackers, from 127.0.0.1:1 and 127.0.0.1:2")])
+def test_waiting_for_somebody_to_stand_still_ends_where_time_is_limited(clock, there, rivals, why):
+    said = []
+    with pytest.raises(Mistake, match=why):
+        live.stand(Restless(there, rivals), STATURE, say=said.append, wait=40.0)
+    assert 140.0 < clock.now < 140.1
+    assert ("two programs" in " ".join(said)) == bool(rivals)
+
+
+@pytest.mark.parametrize("seconds", [0.5, 50.0])
+def test_a_recording_of_some_seconds_of_nobody_ends(clock, seconds, monkeypatch):
+    monkeypatch.setattr(live, "say", lambda line: None)
+    follower = SimpleNamespace(skeleton=SKELETON, precondition=lambda *_: 0.0)
+    with pytest.raises(Mistake, match="nobody has stood still"):
+        live.record(Restless(False), lambda skeleton: follower, None, None, seconds)
+    assert clock.now - 100.0 == pytest.approx(max(seconds, 30.0), abs=0.05)
