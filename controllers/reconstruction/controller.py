@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..body import STATURE, Pose, Skeleton, human, settle
+from ..body import STATURE, Pose, Skeleton, damp, human, settle
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
@@ -33,6 +33,8 @@ LEAP = 0.03
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more …"""
 SHAKEN = 1.0
 """… unless points are so noisy that poses shake: by so many times as far as points lately were from where their motion led."""
+STEADY = 0.5
+"""How a body moves is told from its last frames, with a half-life of so many seconds for each metre that it shakes by beyond `LEAP`: one frame of noise is no motion."""
 TAKEN = 0.01
 """… and no joint takes more of it [m] at once."""
 FADE = 0.15
@@ -60,7 +62,7 @@ class Following:
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
     frame, (n, 3) and turns (n, 3, 3), NaN where nothing. pose, before: the newest
-    frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
+    frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
     point was followed. fault: what went wrong.
@@ -71,6 +73,7 @@ class Following:
     seen: np.ndarray
     pose: Pose
     before: Pose
+    pace: np.ndarray
     ahead: float
     offset: np.ndarray
     rate: np.ndarray
@@ -159,7 +162,7 @@ class Reconstruction(Controller):
         before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
         motion, zero = (self._points(pose) - self._points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
         return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
-                         0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)))
+                         difference(pose, before), 0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
@@ -212,7 +215,7 @@ class Reconstruction(Controller):
 
     def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray) -> Following:
         """One frame of the method on."""
-        now, earlier = joints_of(following.pose, self.body), joints_of(following.before, self.body)
+        now, earlier = (joints_of(some, self.body) for some in (following.pose, moved(following.pose, -following.pace)))
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         blind = 0.0 if following.gate.trusted.any() else following.lost
@@ -230,15 +233,17 @@ class Reconstruction(Controller):
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
-        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
+        shaking = SHAKEN * float(np.median(gate.rough))
+        change = difference(pose, following.pose)
+        pace = damp(following.pace, change, STEADY * max(shaking - LEAP, 0.0), self.dt)
+        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, lost=lost)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
-        if leap <= max(LEAP, SHAKEN * float(np.median(gate.rough))):
+        if leap <= max(LEAP, shaking):
             return after
         # a little of it may be how bodies change their pace, and the rest fades
-        step = difference(following.pose, following.before)
-        step = step + TAKEN / leap * (difference(pose, following.pose) - step)
+        step = following.pace + TAKEN / leap * (change - following.pace)
         ahead = moved(following.pose, step)
-        return self._fading(replace(after, before=moved(pose, -step)), moved(ahead, following.offset))
+        return self._fading(replace(after, before=moved(pose, -step), pace=step), moved(ahead, following.offset))
 
     def _fading(self, following: Following, shown: Pose) -> Following:
         """With an offset by which a pose is shown for now."""
@@ -248,9 +253,9 @@ class Reconstruction(Controller):
     def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
-        ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
+        ahead = moved(moved(following.pose, following.pace), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
-        after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, lost=0.0)
+        after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
         zero = np.zeros_like(following.offset)
         return replace(after, offset=zero, rate=zero) if far else self._fading(after, ahead)
 

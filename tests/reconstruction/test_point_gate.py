@@ -150,6 +150,15 @@ def test_noise_of_three_centimetres_is_borne_and_a_jump_in_it_is_not(seed):
     assert refused[150:160].all() and refused[30:150].mean() < 0.02
 
 
+@given(st.integers(0, 99))
+@settings(max_examples=10)
+def test_noise_that_is_there_from_the_first_frame_is_borne_soon(seed):
+    """5 cm on points that stand: from the fifth frame on nearly all of it is followed."""
+    seen = np.random.default_rng(seed).normal(0.0, 0.05, (20, 6, 3))
+    goals, _ = passed(seen, np.zeros_like(seen))
+    assert np.isfinite(goals[4:]).all(-1).mean() > 0.93
+
+
 def test_a_turn_that_blinks_goes_on_and_one_that_is_none_is_not_known():
     turns = exp(np.arange(60)[:, None, None] * [0.0, 5.0 * DT, 0.0])
     gate = Gate.before(np.zeros((1, 3)), np.zeros((1, 3)))

@@ -48,7 +48,7 @@ class Gate:
     raw: (n, 3) [m] where they were last seen, or have gone since then, NaN where lost. rate, smooth: (n, 3) [m/s] how they
     move, and how they did in the last frames, which noise blurs less. gone: (n,) [s] for how long they have not been seen.
     steady: (n,) [s] for how long they have moved like a body. rough: (n,) [m] how far they lately were from where their
-    motion led. trusted: (n,) bool, which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has
+    motion led, of what was heard of them (n,), 0 … 1: in the first moments there is little. trusted: (n,) bool, which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has
     settled. order: (n,) under which number each one comes now. turned, spin, untold: (n, 3, 3), (n, 3) [rad/s], (n,) [s] how
     they were last told to be turned, or have turned since then, NaN where unknown; how fast they turn, and since when
     that was not told.
@@ -60,6 +60,7 @@ class Gate:
     gone: np.ndarray
     steady: np.ndarray
     rough: np.ndarray
+    heard: np.ndarray
     trusted: np.ndarray
     offset: np.ndarray
     slip: np.ndarray
@@ -73,7 +74,7 @@ class Gate:
         """When points were seen for the first time, at (n, 3) [m], NaN where not; taken to move as the body does
         [m/s]. None is followed yet."""
         zero, none = np.zeros_like(motion), np.zeros(len(seen))
-        return Gate(seen, motion, motion, none, none, none, np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)),
+        return Gate(seen, motion, motion, none, none, none, none, np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)),
                     np.full((len(seen), 3, 3), np.nan), zero, none)
 
     def named(self, seen: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
@@ -112,7 +113,8 @@ class Gate:
         steady = np.where(blinks, self.steady, np.where(goes_on, self.steady + since, 0.0))
         rate = np.where(blinks[:, None], self.smooth, 0.0)
         rate = np.where(goes_on[:, None], (moved + self.rate * self.gone[:, None]) / since[:, None], rate)
-        rough = np.where(there & known, damp(self.rough, np.minimum(away, NEAR), _ROUGH, dt), self.rough)
+        heard = np.where(there & known, damp(self.heard, 1.0, _ROUGH, dt), self.heard)
+        rough = np.where(there & known, damp(self.rough * self.heard, np.minimum(away, NEAR), _ROUGH, dt) / np.maximum(heard, 1e-9), self.rough)
         smooth = np.where((self.steady > 0.0)[:, None], damp(self.smooth, rate, _RATE, dt), rate)
         place = np.where(blinks[:, None], ahead, seen)
         gap = _length(place - body)
@@ -123,7 +125,7 @@ class Gate:
         back = back & (lost == 0.0)
         offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
         slip = np.where(believed[:, None], np.where(back, _at_most(motion - smooth, SLIP), slip), 0.0)
-        after = replace(self, raw=place, rate=rate, smooth=smooth, gone=np.where(there, 0.0, since), steady=steady, rough=rough,
+        after = replace(self, raw=place, rate=rate, smooth=smooth, gone=np.where(there, 0.0, since), steady=steady, rough=rough, heard=heard,
                         trusted=believed, offset=offset, slip=slip)
         return after, np.where(believed[:, None], place + offset, np.nan)
 
