@@ -17,7 +17,7 @@ from ..body import STATURE, Pose, Skeleton, damp, human, settle
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
-from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
+from .following import (APART, FAR, Beginning, Doubts, Gate, above, difference, guessed_past, joints_of, moved, reached,
                         rotations, spread, unbroken)
 from .pose_vector import SKELETON, decode
 
@@ -61,7 +61,7 @@ class Following:
     """What is remembered while points are followed; lengths as of a standard body on a floor at height 0.
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
-    frame, (n, 3) and turns (n, 3, 3), NaN where nothing. pose, before: the newest
+    frame, (n, 3) and turns (n, 3, 3), NaN where nothing. doubts: which points may have exchanged their numbers. pose, before: the newest
     frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
@@ -78,6 +78,7 @@ class Following:
     offset: np.ndarray
     rate: np.ndarray
     late: tuple[np.ndarray, np.ndarray]
+    doubts: Doubts
     level: float = 0.0
     fade: float = FADE
     lost: float = 0.0
@@ -162,7 +163,7 @@ class Reconstruction(Controller):
         before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
         motion, zero = (self._points(pose) - self._points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
         return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
-                         difference(pose, before), 0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)))
+                         difference(pose, before), 0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)), Doubts.of(len(seen)))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
@@ -195,7 +196,7 @@ class Reconstruction(Controller):
             points = seen if k == due else start + (seen - start) * (k / due)
             following = self._frame(following, points, turns)
         if due:
-            following = replace(following, seen=seen)
+            following = self._doubted(replace(following, seen=seen), due * self.dt)
         offset, rate = settle(following.offset, following.rate, following.fade, dt)
         following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
         shown = following.pose
@@ -211,7 +212,12 @@ class Reconstruction(Controller):
         following: Following = state.memory
         if following.fault:
             return Status("failed", following.fault)
-        return Status("done", "the points are lost") if following.lost >= LOST else Status("running")
+        return Status("done", "the points are lost") if following.lost >= LOST else Status("running", self._exchanges(following.gate.order))
+
+    def _exchanges(self, order: np.ndarray) -> str:
+        """Which points come under others' numbers, in words; nothing where none does."""
+        names = [name for k, name in enumerate(self.controls.names) if order[k] != k]
+        return f"{', '.join(names[:-1])} and {names[-1]} have exchanged their numbers" if names else ""
 
     def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray) -> Following:
         """One frame of the method on."""
@@ -224,6 +230,7 @@ class Reconstruction(Controller):
         gate, turned = gate.told(turns[gate.order], self.dt)
         back = blind > 0.0 and gate.trusted.any()
         if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
+            turns = turns[gate.order]
             return self._anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
         if not getattr(self.method, "hears_turns", False):
             memory, pose = self.method.step(following.memory, goals)
@@ -245,6 +252,22 @@ class Reconstruction(Controller):
         ahead = moved(following.pose, step)
         return self._fading(replace(after, before=moved(pose, -step), pace=step), moved(ahead, following.offset))
 
+    def _doubted(self, following: Following, dt: float) -> Following:
+        """With two points under each other's number, if what the method has seen for some time is much likelier so."""
+        if not hasattr(self.method, "exchanged"):
+            return following
+        doubts, asked = following.doubts.asked(following.gate.confusable, dt)
+        if asked is None:
+            return replace(following, doubts=doubts)
+        i, j = doubts.pairs[asked]
+        other = self.method.exchanged(following.memory, i, j)
+        doubts, taken = doubts.told(asked, self.method.energy(following.memory), self.method.energy(other))  # type: ignore[attr-defined]
+        if not taken:
+            return replace(following, doubts=doubts)
+        order = np.arange(len(self.controls))
+        order[[i, j]] = j, i
+        return replace(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order])
+
     def _fading(self, following: Following, shown: Pose) -> Following:
         """With an offset by which a pose is shown for now."""
         away = float(np.linalg.norm(joints_of(shown, self.body)[0] - joints_of(following.pose, self.body)[0], axis=-1).max())
@@ -255,7 +278,7 @@ class Reconstruction(Controller):
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, following.pace), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
-        after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
+        after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
         zero = np.zeros_like(following.offset)
         return replace(after, offset=zero, rate=zero) if far else self._fading(after, ahead)
 

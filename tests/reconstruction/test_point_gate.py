@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body import exp
-from gambol.controllers.reconstruction.following.point_gate import BLINK, NEAR, PATIENCE, REACH, Gate, rotations
+from gambol.controllers.reconstruction.following.point_gate import BLINK, CALM, ENOUGH, EVERY, LISTENED, MARGIN, NEAR, PATIENCE, REACH, Doubts, Gate, rotations
 
 DT = 1 / 60
 
@@ -55,6 +55,49 @@ def test_exchanged_points_are_told_apart(first, count, order, step):
         gate, own = gate.named(now, step * DT)
         assert np.array_equal(own, truth)
         gate, _ = gate.admit(own, truth, np.zeros_like(truth), step * DT)
+
+
+@given(st.floats(1.5, 50.0), st.integers(0, 5))
+def test_an_exchange_is_taken_after_as_much_evidence_as_it_needs(ratio, which):
+    """One pair of four whose other assignment always has `ratio` times less energy, the others as much more."""
+    doubts, frames, taken = Doubts.of(4), 0, False
+    while not taken and frames < 10_000:
+        doubts, asked = doubts.asked(np.zeros((4, 4), bool), DT)
+        frames += 1
+        if asked is not None:
+            energy = 10.0 * ratio if asked == which else 10.0 / ratio
+            doubts, taken = doubts.told(asked, energy, 10.0)
+            assert taken is (asked == which and taken)
+    gain = min(np.log((10.0 * ratio + CALM) / (10.0 + CALM)) - MARGIN, 2.0)
+    assert taken and frames <= EVERY * (6 + np.ceil(ENOUGH / gain))
+
+
+def test_who_is_not_in_doubt_is_not_asked_about():
+    """After the first seconds only two that are near each other, or neither of which is seen, are."""
+    doubts, none, two = Doubts.of(3), np.zeros((3, 3), bool), np.zeros((3, 3), bool)
+    two[0, 2] = two[2, 0] = True
+    for _ in range(int(LISTENED / DT) + 2):
+        doubts, _ = doubts.asked(none, DT)
+    assert all(doubts.asked(none, DT)[1] is None for _ in range(EVERY))
+    doubts, _ = doubts.asked(two, DT)
+    asked = []
+    for _ in range(4 * EVERY):
+        doubts, pair = doubts.asked(none, DT)
+        asked.append(pair)
+    assert {tuple(doubts.pairs[pair]) for pair in asked if pair is not None} == {(0, 2)}
+
+
+def test_only_points_that_are_near_each_other_or_unseen_can_be_exchanged_unseen():
+    seen = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
+    gate = Gate.before(seen, np.zeros_like(seen))
+    for k in range(20):
+        now = seen.copy()
+        now[2:] = np.nan if k >= 4 else now[2:]
+        gate, _ = gate.admit(now, seen, np.zeros_like(seen), DT)
+        pairs = {(i, j) for i, j in zip(*np.nonzero(np.triu(gate.confusable, 1)))}
+        assert pairs == ({(0, 1), (2, 3)} if k >= 4 else {(0, 1)})
+    other = gate.exchanged(0, 3)
+    assert list(other.order) == [3, 1, 2, 0] and np.array_equal(other.raw[0], gate.raw[3], equal_nan=True)
 
 
 @pytest.mark.parametrize("seed", range(3, 15, 3))

@@ -156,6 +156,25 @@ class Trackers:
         frame[GROUND] = 0.0
         return frame[None], track[None]
 
+    def energy(self, memory: Remembered) -> float:
+        """How ill the last half second's places and turns and the pose they make agree with each other, whatever came before."""
+        known = self._slots >= 0
+        points, turns = np.full((len(known), 3), np.nan), np.full((len(known), 3, 3), np.nan)
+        points[known], turns[known] = memory.places[0, self._slots[known]], memory.turns[0, self._slots[known]]
+        points[self.controls.offsets.any(-1)] = np.nan
+        return self._solved(replace(memory, off=np.zeros(WIDTH), soles=Soles.none()), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
+
+    def exchanged(self, memory: Remembered, i: int, j: int) -> Remembered:
+        """The memory in which two trackers had each other's number all the time; the same one where they have no slots."""
+        a, b = self._slots[[i, j]]
+        if min(a, b) < 0:
+            return memory
+        slots, order = np.arange(len(SLOTS)), np.arange(len(self.controls))
+        slots[[a, b]], order[[i, j]] = (b, a), (j, i)
+        points = memory.points and replace(memory.points, place=memory.points.place[order], change=memory.points.change[order])
+        return replace(memory, places=memory.places[:, slots], turns=memory.turns[:, slots], turning=memory.turning[order],
+                       recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH))
+
     def _followed(self, memory, points, turns, blur):
         """The memory a frame later."""
         if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
