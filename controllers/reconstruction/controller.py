@@ -264,6 +264,10 @@ class Reconstruction(Controller):
         doubts, taken = doubts.told(asked, self.method.energy(following.memory), self.method.energy(other))  # type: ignore[attr-defined]
         if not taken:
             return replace(following, doubts=doubts)
+        best = min(doubts.open, key=lambda pair: self.method.energy(self.method.exchanged(following.memory, *doubts.pairs[pair])))  # type: ignore[attr-defined]
+        if best != asked:
+            return replace(following, doubts=doubts.rather(asked, int(best)))
+        doubts = replace(doubts, evidence=np.zeros_like(doubts.evidence))
         order = np.arange(len(self.controls))
         order[[i, j]] = j, i
         return replace(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order])

@@ -211,7 +211,7 @@ class Doubts:
         """The doubts dt [s] later, and the number of the pair that is asked about now. confusable: (n, n) bool, which could be exchanged in this frame."""
         left = np.where(confusable[self.pairs[:, 0], self.pairs[:, 1]], LISTENED, np.maximum(self.left - dt, 0.0))
         after = replace(self, left=left, frames=self.frames + 1)
-        opened = np.flatnonzero((left > 0.0) | (self.evidence > 0.0))
+        opened = after.open
         if after.frames % EVERY or not len(opened):
             return after, None
         strongest = int(opened[np.argmax(self.evidence[opened])])
@@ -222,8 +222,18 @@ class Doubts:
         gain = math.log((now + CALM) / (other + CALM))
         evidence = self.evidence.copy()
         evidence[pair] = max(0.0, evidence[pair] + float(np.clip(gain - MARGIN, -MOST, MOST)))
-        taken = bool(evidence[pair] >= ENOUGH)
-        return replace(self, evidence=np.zeros_like(evidence) if taken else evidence), taken
+        return replace(self, evidence=evidence), bool(evidence[pair] >= ENOUGH)
+
+    def rather(self, pair: int, other: int) -> Doubts:
+        """The doubts after it was found that another pair's exchange explains more than that of the one that was about to be taken."""
+        evidence = self.evidence.copy()
+        evidence[pair], evidence[other] = 0.0, max(evidence[other], 0.5 * ENOUGH)
+        return replace(self, evidence=evidence)
+
+    @property
+    def open(self) -> np.ndarray:
+        """The numbers of the pairs that are in doubt."""
+        return np.flatnonzero((self.left > 0.0) | (self.evidence > 0.0))
 
 
 def rotations(turns: np.ndarray) -> np.ndarray:
