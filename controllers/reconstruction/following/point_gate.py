@@ -49,7 +49,7 @@ CALM = 0.3
 """Energies are told apart as far as they are above this: less is how exactly bodies are met anyway."""
 MARGIN, MOST, ENOUGH = 0.2, 2.0, 4.0
 """The logarithm of how many times as much energy this assignment has as the other one speaks for that as far as it is beyond the first of these; a frame
-counts up to the second; and the third has to come together. In walks, boxing and tennis, with 5 cm of noise, too, not 1 ever does for a wrong one."""
+counts up to the second; and the third has to come together. In walks, with 5 cm of noise, too, not more than 1 ever does for a wrong one."""
 _ROUGH = 0.2  # s, half-life of the roughness that is told from places
 _RATE = 0.03  # s, half-life of the velocity that is told from places
 
