@@ -62,7 +62,7 @@ class Following:
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
     frame, (n, 3) and turns (n, 3, 3), NaN where nothing. doubts: which points may have exchanged their numbers. pose, before: the newest
-    frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out. offset, rate: (1 + J, 3) what is added to root
+    frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
     point was followed. fault: what went wrong.
@@ -73,7 +73,6 @@ class Following:
     seen: np.ndarray
     pose: Pose
     before: Pose
-    pace: np.ndarray
     ahead: float
     offset: np.ndarray
     rate: np.ndarray
@@ -83,6 +82,12 @@ class Following:
     fade: float = FADE
     lost: float = 0.0
     fault: str = ""
+    pace: np.ndarray | None = None
+
+    @property
+    def step(self) -> np.ndarray:
+        """By what (1 + J, 3) a frame goes on."""
+        return difference(self.pose, self.before) if self.pace is None else self.pace
 
 
 class Reconstruction(Controller):
@@ -163,7 +168,7 @@ class Reconstruction(Controller):
         before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
         motion, zero = (self._points(pose) - self._points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
         return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
-                         difference(pose, before), 0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)), Doubts.of(len(seen)))
+                         0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)), Doubts.of(len(seen)))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
@@ -221,7 +226,8 @@ class Reconstruction(Controller):
 
     def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray) -> Following:
         """One frame of the method on."""
-        now, earlier = (joints_of(some, self.body) for some in (following.pose, moved(following.pose, -following.pace)))
+        earlier = following.before if following.pace is None else moved(following.pose, -following.pace)
+        now, earlier = joints_of(following.pose, self.body), joints_of(earlier, self.body)
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         blind = 0.0 if following.gate.trusted.any() else following.lost
@@ -241,14 +247,14 @@ class Reconstruction(Controller):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
         shaking = SHAKEN * float(np.median(gate.rough))
-        change = difference(pose, following.pose)
-        pace = damp(following.pace, change, STEADY * max(shaking - LEAP, 0.0), self.dt)
+        pace = damp(following.step, difference(pose, following.pose), STEADY * (shaking - LEAP), self.dt) if shaking > LEAP else None
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, lost=lost)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
         if leap <= max(LEAP, shaking):
             return after
         # a little of it may be how bodies change their pace, and the rest fades
-        step = following.pace + TAKEN / leap * (change - following.pace)
+        step = following.step
+        step = step + TAKEN / leap * (difference(pose, following.pose) - step)
         ahead = moved(following.pose, step)
         return self._fading(replace(after, before=moved(pose, -step), pace=step), moved(ahead, following.offset))
 
@@ -256,7 +262,7 @@ class Reconstruction(Controller):
         """With two points under each other's number, if what the method has seen for some time is much likelier so."""
         if not hasattr(self.method, "exchanged"):
             return following
-        doubts, asked = following.doubts.asked(following.gate.confusable, dt)
+        doubts, asked = following.doubts.asked(following.gate.confusable(following.doubts.pairs), dt)
         if asked is None:
             return replace(following, doubts=doubts)
         i, j = doubts.pairs[asked]
@@ -280,7 +286,7 @@ class Reconstruction(Controller):
     def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
-        ahead = moved(moved(following.pose, following.pace), following.offset)
+        ahead = moved(moved(following.pose, following.step), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
         after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
         zero = np.zeros_like(following.offset)

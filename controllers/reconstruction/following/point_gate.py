@@ -41,8 +41,8 @@ SLIP = 3.0
 """It is taken to move at most so much faster or slower than it is seen to [m/s]: else it would swing past."""
 SKEW = 0.1
 """What no rotation's RᵀR is farther from 1 than."""
-EVERY = 4
-"""In each so-manieth frame one pair is asked about."""
+EVERY, SELDOM = 4, 2
+"""In each so-manieth frame one pair is asked about, for which something speaks; where nothing does, so many times more seldom."""
 LISTENED = 3.0
 """For so long [s] after two could last have been exchanged, and as long as something speaks for it."""
 CALM = 0.3
@@ -106,13 +106,13 @@ class Gate:
                     seen[[i, j]], order[[i, j]] = seen[[j, i]], order[[j, i]]
         return replace(self, order=order), seen
 
-    @property
-    def confusable(self) -> np.ndarray:
-        """Which two (n, n) bool could be exchanged now without a leap: where both are as near each other as points get from where their
-        motion led, or neither is seen where it was followed."""
-        apart = _length(self.raw[:, None] - self.raw)
-        lost = ~(self.trusted & self.seen)
-        return (apart <= np.maximum(self.usual[:, None], self.usual)) | (lost[:, None] & lost)
+    def confusable(self, pairs: np.ndarray) -> np.ndarray:
+        """Which pairs (P, 2) of points could be exchanged now without a leap (P,) bool: where both are as near each other as points get from where
+        their motion led, or neither is seen where it was followed."""
+        a, b = pairs.T
+        apart, usual, lost = self.raw[a] - self.raw[b], self.usual, ~(self.trusted & self.seen)
+        near = np.einsum("pi,pi->p", apart, apart) <= np.maximum(usual[a], usual[b]) ** 2
+        return near | (lost[a] & lost[b])
 
     def exchanged(self, i: int, j: int) -> Gate:
         """The gate for which two points have had each other's number for some time."""
@@ -208,14 +208,16 @@ class Doubts:
         return Doubts(pairs, np.full(len(pairs), LISTENED), np.zeros(len(pairs)))
 
     def asked(self, confusable: np.ndarray, dt: float) -> tuple[Doubts, int | None]:
-        """The doubts dt [s] later, and the number of the pair that is asked about now. confusable: (n, n) bool, which could be exchanged in this frame."""
-        left = np.where(confusable[self.pairs[:, 0], self.pairs[:, 1]], LISTENED, np.maximum(self.left - dt, 0.0))
-        after = replace(self, left=left, frames=self.frames + 1)
-        opened = after.open
-        if after.frames % EVERY or not len(opened):
+        """The doubts dt [s] later, and the number of the pair that is asked about now. confusable: (P,) bool, which could be exchanged in this frame."""
+        after = replace(self, left=np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0)), frames=self.frames + 1)
+        if after.frames % EVERY:
             return after, None
-        strongest = int(opened[np.argmax(self.evidence[opened])])
-        return after, strongest if self.evidence[strongest] > 0.0 else int(opened[after.frames // EVERY % len(opened)])
+        strongest = int(np.argmax(self.evidence)) if len(self.pairs) else 0
+        if strongest < len(self.pairs) and self.evidence[strongest] > 0.0:
+            return after, strongest
+        opened = after.open
+        turn, rest = divmod(after.frames // EVERY, SELDOM)
+        return after, int(opened[turn % len(opened)]) if len(opened) and not rest else None
 
     def told(self, pair: int, now: float, other: float) -> tuple[Doubts, bool]:
         """The doubts after a pair was found to have the energy `now`, with its numbers exchanged that of `other`, and whether this is to be taken."""
