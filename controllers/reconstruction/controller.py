@@ -196,12 +196,12 @@ class Reconstruction(Controller):
         following = replace(following, late=late)
         if due:
             gate, seen = following.gate.named(seen, due * self.dt)
-            following = replace(following, gate=gate)
+            following = replace(following, gate=gate, doubts=following.doubts.heard(gate.confusable(following.doubts.pairs, seen, due * self.dt), due * self.dt))
         for k in range(1, due + 1):
             points = seen if k == due else start + (seen - start) * (k / due)
             following = self._frame(following, points, turns)
         if due:
-            following = self._doubted(replace(following, seen=seen), due * self.dt)
+            following = self._doubted(replace(following, seen=seen))
         offset, rate = settle(following.offset, following.rate, following.fade, dt)
         following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
         shown = following.pose
@@ -258,11 +258,11 @@ class Reconstruction(Controller):
         ahead = moved(following.pose, step)
         return self._fading(replace(after, before=moved(pose, -step), pace=step), moved(ahead, following.offset))
 
-    def _doubted(self, following: Following, dt: float) -> Following:
+    def _doubted(self, following: Following) -> Following:
         """With two points under each other's number, if what the method has seen for some time is much likelier so."""
         if not hasattr(self.method, "exchanged"):
             return following
-        doubts, asked = following.doubts.asked(following.gate.confusable(following.doubts.pairs), dt)
+        doubts, asked = following.doubts.asked()
         if asked is None:
             return replace(following, doubts=doubts)
         i, j = doubts.pairs[asked]

@@ -1,5 +1,6 @@
 """The network for trackers: what it sees, what it learns by, and the bodies that come of it."""
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -10,10 +11,12 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import Skeleton, contact_height, contact_points, exp, forward_kinematics, yaw
 from gambol.controllers.contract import Intent, Unable
+from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
+from gambol.controllers.reconstruction.following.point_gate import ENOUGH, LISTENED
 from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, WIDTH, encode
 from gambol.controllers.reconstruction.regression import kinematics_kernel
 from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, SLOTS, Learner, Moments, Network, Trackers, bodies, standing
@@ -22,6 +25,7 @@ from gambol.controllers.reconstruction.trackers.network import OUTPUTS
 from gambol.controllers.reconstruction.trackers.samples import FIRST
 from gambol.controllers.reconstruction.trackers.slots import view_kernel
 from gambol.controllers.reconstruction.trackers.solver import misfit_kernel, slopes_kernel
+from walks import walked
 
 DT = 1 / 60
 HEAD_AND_HANDS = "head,lwrist,rwrist"
@@ -336,3 +340,24 @@ def test_two_trackers_that_come_back_under_each_others_number_are_found_out(poin
         off.append(np.linalg.norm(forward_kinematics(SKELETON, pose.root, pose.rotations)[0] - true, axis=-1).mean())
     assert follower.status(state).reason == f"{controls.names[min(pair)]} and {controls.names[max(pair)]} have exchanged their numbers"
     assert np.mean(off[-20:]) < np.mean(off[30:55]) + 0.02
+
+
+@pytest.mark.parametrize("points", ["4", "6"])
+@pytest.mark.parametrize("walk", ["doll", "Gambol's"])
+def test_in_walks_nothing_speaks_for_an_exchange(points, walk):
+    """Not half as much as it takes, though any two are in doubt all the time."""
+    controls = parse(points, SKELETON)
+    if walk == "doll":
+        positions = forward_kinematics(SKELETON, *strides())[0]
+    else:
+        clip = walked(Locomotion.load(), [(0.5, 0, 0, 0), (1.5, 1.3, 0.4, 0), (1, 2.5, 0, 0), (1, 0, 0, 0)])
+        positions = clip.kinematics()[0]
+    method = Trackers(shipped(), controls, DT)
+    follower = Reconstruction(method, controls, starts=method)
+    state, most = follower.begin(positions[0, controls.joints]), 0.0
+    for now in positions[1:, controls.joints]:
+        doubts = state.memory.doubts
+        state = replace(state, memory=replace(state.memory, doubts=replace(doubts, left=np.full(len(doubts.pairs), LISTENED))))
+        state, _ = follower.step(state, Intent(points=now), DT)
+        most = max(most, state.memory.doubts.evidence.max())
+    assert most < 0.5 * ENOUGH and follower.status(state).reason == ""

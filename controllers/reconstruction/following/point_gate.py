@@ -1,7 +1,7 @@
 """Points as trackers give them, made fit to be followed: exchanged ones get their names back, those that blink go on as they
 went, lost ones stay away, wild ones are refused, returning ones eased in.
 
-While two points are so near each other, or both so badly seen, that nobody could tell them apart, their question is open: now and then it is asked how
+Where two points went on as if they were each other, or both were unseen, so that nobody could tell them apart, their question is open: now and then it is asked how
 much better the other assignment explains what was seen, and what it says is added up (a CUSUM test, Page 1954). Where enough has come together it is taken.
 Whatever comes back after longer than a blink is first taken to be where the body has it already, with the body's velocity; the difference
 then settles (inertialisation), so that nothing pops.
@@ -41,6 +41,8 @@ SLIP = 3.0
 """It is taken to move at most so much faster or slower than it is seen to [m/s]: else it would swing past."""
 SKEW = 0.1
 """What no rotation's RᵀR is farther from 1 than."""
+PLAIN = 0.5
+"""Two points that are no nearer to where their own motion led than by this times their distance from where the other one's did may have been exchanged."""
 EVERY, SELDOM = 4, 2
 """In each so-manieth frame one pair is asked about, for which something speaks; where nothing does, so many times more seldom."""
 LISTENED = 3.0
@@ -106,13 +108,13 @@ class Gate:
                     seen[[i, j]], order[[i, j]] = seen[[j, i]], order[[j, i]]
         return replace(self, order=order), seen
 
-    def confusable(self, pairs: np.ndarray) -> np.ndarray:
-        """Which pairs (P, 2) of points could be exchanged now without a leap (P,) bool: where both are as near each other as points get from where
-        their motion led, or neither is seen where it was followed."""
+    def confusable(self, pairs: np.ndarray, seen: np.ndarray, dt: float) -> np.ndarray:
+        """Which pairs (P, 2) of points could have been exchanged (P,) bool when they came to seen (n, 3), dt [s] after the last ones: where each of both went
+        on hardly nearer to where its own motion led than to where the other's did, or neither was seen where it was followed."""
         a, b = pairs.T
-        apart, usual, lost = self.raw[a] - self.raw[b], self.usual, ~(self.trusted & self.seen)
-        near = np.einsum("pi,pi->p", apart, apart) <= np.maximum(usual[a], usual[b]) ** 2
-        return near | (lost[a] & lost[b])
+        ahead, lost = self.raw + self.rate * dt, ~(self.trusted & self.seen)
+        own, others = (np.square(seen - ahead).sum(-1), np.square(seen[a] - ahead[b]).sum(-1) + np.square(seen[b] - ahead[a]).sum(-1))
+        return (own[a] + own[b] >= PLAIN ** 2 * others) | (lost[a] & lost[b])
 
     def exchanged(self, i: int, j: int) -> Gate:
         """The gate for which two points have had each other's number for some time."""
@@ -203,13 +205,17 @@ class Doubts:
 
     @staticmethod
     def of(count: int) -> Doubts:
-        """Of points that are seen for the first time: any two may have been given each other's number."""
+        """Of points that nobody has doubted yet."""
         pairs = np.array(list(combinations(range(count), 2)), int).reshape(-1, 2)
-        return Doubts(pairs, np.full(len(pairs), LISTENED), np.zeros(len(pairs)))
+        return Doubts(pairs, np.zeros(len(pairs)), np.zeros(len(pairs)))
 
-    def asked(self, confusable: np.ndarray, dt: float) -> tuple[Doubts, int | None]:
-        """The doubts dt [s] later, and the number of the pair that is asked about now. confusable: (P,) bool, which could be exchanged in this frame."""
-        after = replace(self, left=np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0)), frames=self.frames + 1)
+    def heard(self, confusable: np.ndarray, dt: float) -> Doubts:
+        """The doubts dt [s] later. confusable: (P,) bool, which pairs could have been exchanged meanwhile."""
+        return replace(self, left=np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0)))
+
+    def asked(self) -> tuple[Doubts, int | None]:
+        """The doubts a frame later, and the number of the pair that is asked about now."""
+        after = replace(self, frames=self.frames + 1)
         if after.frames % EVERY:
             return after, None
         strongest = int(np.argmax(self.evidence)) if len(self.pairs) else 0
