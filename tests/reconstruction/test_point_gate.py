@@ -117,7 +117,7 @@ def test_two_of_which_none_is_seen_are_in_doubt():
         now = seen + 0.001 * k * k
         now[2:] = np.nan if k >= 4 else now[2:]
         found = {tuple(pair) for pair in pairs[gate.confusable(pairs, now, DT)]}
-        assert k < 3 or found == ({(2, 3)} if k >= 5 else set())
+        assert k < 3 or found == ({(2, 3)} if k > 4 + BLINK / DT else set())
         gate, _ = gate.admit(now, seen, np.zeros_like(seen), DT)
     other = gate.exchanged(0, 3)
     assert list(other.order) == [3, 1, 2, 0] and np.array_equal(other.raw[0], gate.raw[3], equal_nan=True)

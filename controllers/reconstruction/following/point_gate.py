@@ -45,8 +45,8 @@ PLAIN = 0.5
 """Two points that are no nearer to where their own motion led than by this times their distance from where the other one's did may have been exchanged."""
 EVERY, SELDOM = 4, 2
 """In each so-manieth frame one pair is asked about, for which something speaks; where nothing does, so many times more seldom."""
-LISTENED = 3.0
-"""For so long [s] after two could last have been exchanged, and as long as something speaks for it."""
+LISTENED = 2.0
+"""For so long [s] after two could last have been exchanged: who crosses his arms unseen is as unlikely as exchanged hands, and more so the longer he does."""
 CALM = 0.3
 """Energies are told apart as far as they are above this: less is how exactly bodies are met anyway."""
 MARGIN, MOST, ENOUGH = 0.2, 2.0, 4.0
@@ -109,10 +109,10 @@ class Gate:
         return replace(self, order=order), seen
 
     def confusable(self, pairs: np.ndarray, seen: np.ndarray, dt: float) -> np.ndarray:
-        """Which pairs (P, 2) of points could have been exchanged (P,) bool when they came to seen (n, 3), dt [s] after the last ones: where each of both went
-        on hardly nearer to where its own motion led than to where the other's did, or neither was seen where it was followed."""
+        """Which pairs (P, 2) of points could have been exchanged (P,) bool when they came to seen (n, 3), dt [s] after the last ones: where both went
+        on hardly nearer to where their own motion led than to where the other's did, or neither was followed for longer than a blink."""
         a, b = pairs.T
-        ahead, lost = self.raw + self.rate * dt, ~(self.trusted & self.seen)
+        ahead, lost = self.raw + self.rate * dt, ~self.trusted & ((self.gone > 0.0) | (self.steady > 0.0))
         own, others = (np.square(seen - ahead).sum(-1), np.square(seen[a] - ahead[b]).sum(-1) + np.square(seen[b] - ahead[a]).sum(-1))
         return (own[a] + own[b] >= PLAIN ** 2 * others) | (lost[a] & lost[b])
 
@@ -211,7 +211,8 @@ class Doubts:
 
     def heard(self, confusable: np.ndarray, dt: float) -> Doubts:
         """The doubts dt [s] later. confusable: (P,) bool, which pairs could have been exchanged meanwhile."""
-        return replace(self, left=np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0)))
+        left = np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0))
+        return replace(self, left=left, evidence=np.where(left > 0.0, self.evidence, 0.0))
 
     def asked(self) -> tuple[Doubts, int | None]:
         """The doubts a frame later, and the number of the pair that is asked about now."""
@@ -241,7 +242,7 @@ class Doubts:
     @property
     def open(self) -> np.ndarray:
         """The numbers of the pairs that are in doubt."""
-        return np.flatnonzero((self.left > 0.0) | (self.evidence > 0.0))
+        return np.flatnonzero(self.left > 0.0)
 
 
 def rotations(turns: np.ndarray) -> np.ndarray:
