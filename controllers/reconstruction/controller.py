@@ -260,17 +260,18 @@ class Reconstruction(Controller):
 
     def _doubted(self, following: Following) -> Following:
         """With two points under each other's number, if what the method has seen for some time is much likelier so."""
-        if not hasattr(self.method, "exchanged"):
+        method: Any = self.method
+        if not hasattr(method, "exchanged"):
             return following
         doubts, asked = following.doubts.asked()
         if asked is None:
             return replace(following, doubts=doubts)
         i, j = doubts.pairs[asked]
-        other = self.method.exchanged(following.memory, i, j)
-        doubts, taken = doubts.told(asked, self.method.energy(following.memory), self.method.energy(other))  # type: ignore[attr-defined]
+        other = method.exchanged(following.memory, i, j)
+        doubts, taken = doubts.told(asked, method.energy(following.memory), method.energy(other))
         if not taken:
             return replace(following, doubts=doubts)
-        best = min(doubts.open, key=lambda pair: self.method.energy(self.method.exchanged(following.memory, *doubts.pairs[pair])))  # type: ignore[attr-defined]
+        best = min(doubts.open, key=lambda pair: method.energy(method.exchanged(following.memory, *doubts.pairs[pair])))
         if best != asked:
             return replace(following, doubts=doubts.rather(asked, int(best)))
         doubts = replace(doubts, evidence=np.zeros_like(doubts.evidence))
