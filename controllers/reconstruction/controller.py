@@ -13,11 +13,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..body import STATURE, Pose, Skeleton, human, settle
+from ..body import STATURE, Pose, Skeleton, damp, human, settle
 from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
-from .following import (APART, FAR, Beginning, Gate, above, difference, guessed_past, joints_of, moved, reached,
+from .following import (APART, FAR, Beginning, Doubts, Gate, above, difference, guessed_past, joints_of, moved, reached,
                         rotations, spread, unbroken)
 from .pose_vector import SKELETON, decode
 
@@ -33,6 +33,8 @@ LEAP = 0.03
 """A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more …"""
 SHAKEN = 1.0
 """… unless points are so noisy that poses shake: by so many times as far as points lately were from where their motion led."""
+STEADY = 0.5
+"""How a body moves is told from its last frames, with a half-life of so many seconds for each metre that it shakes by beyond `LEAP`: one frame of noise is no motion."""
 TAKEN = 0.01
 """… and no joint takes more of it [m] at once."""
 FADE = 0.15
@@ -61,8 +63,8 @@ class Following:
     """What is remembered while points are followed; lengths as of a standard body on a floor at height 0.
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
-    frame, (n, 3) and turns (n, 3, 3), NaN where nothing. pose, before: the newest
-    frame and the one before; the newest is `ahead` [s] of the present. offset, rate: (1 + J, 3) what is added to root
+    frame, (n, 3) and turns (n, 3, 3), NaN where nothing. doubts: which points may have exchanged their numbers. pose, before: the newest
+    frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it. offset, rate: (1 + J, 3) what is added to root
     and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
     point was followed. fault: what went wrong.
@@ -77,10 +79,17 @@ class Following:
     offset: np.ndarray
     rate: np.ndarray
     late: tuple[np.ndarray, np.ndarray]
+    doubts: Doubts
     level: float = 0.0
     fade: float = FADE
     lost: float = 0.0
     fault: str = ""
+    pace: np.ndarray | None = None
+
+    @property
+    def step(self) -> np.ndarray:
+        """By what (1 + J, 3) a frame goes on."""
+        return difference(self.pose, self.before) if self.pace is None else self.pace
 
 
 class Reconstruction(Controller):
@@ -163,7 +172,7 @@ class Reconstruction(Controller):
         before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
         motion, zero = (self._points(pose) - self._points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
         return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
-                         0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)))
+                         0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)), Doubts.of(len(seen)))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state that was not entered).
@@ -191,12 +200,12 @@ class Reconstruction(Controller):
         following = replace(following, late=late)
         if due:
             gate, seen = following.gate.named(seen, due * self.dt)
-            following = replace(following, gate=gate)
+            following = replace(following, gate=gate, doubts=following.doubts.heard(gate.confusable(following.doubts.pairs, seen, due * self.dt), due * self.dt))
         for k in range(1, due + 1):
             points = seen if k == due else start + (seen - start) * (k / due)
             following = self._frame(following, points, turns)
         if due:
-            following = replace(following, seen=seen)
+            following = self._doubted(replace(following, seen=seen))
         offset, rate = settle(following.offset, following.rate, following.fade, dt)
         following = replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
         shown = following.pose
@@ -212,11 +221,17 @@ class Reconstruction(Controller):
         following: Following = state.memory
         if following.fault:
             return Status("failed", following.fault)
-        return Status("done", "the points are lost") if following.lost >= LOST else Status("running")
+        return Status("done", "the points are lost") if following.lost >= LOST else Status("running", self._exchanges(following.gate.order))
+
+    def _exchanges(self, order: np.ndarray) -> str:
+        """Which points come under others' numbers, in words; nothing where none does."""
+        names = [name for k, name in enumerate(self.controls.names) if order[k] != k]
+        return f"{', '.join(names[:-1])} and {names[-1]} have exchanged their numbers" if names else ""
 
     def _frame(self, following: Following, points: np.ndarray, turns: np.ndarray) -> Following:
         """One frame of the method on."""
-        now, earlier = joints_of(following.pose, self.body), joints_of(following.before, self.body)
+        earlier = following.before if following.pace is None else moved(following.pose, -following.pace)
+        now, earlier = joints_of(following.pose, self.body), joints_of(earlier, self.body)
         body = self.controls.on(*now)
         motion = (body - self.controls.on(*earlier)) / self.dt
         blind = 0.0 if following.gate.trusted.any() else following.lost
@@ -225,6 +240,7 @@ class Reconstruction(Controller):
         gate, turned = gate.told(turns[gate.order], self.dt)
         back = blind > 0.0 and gate.trusted.any()
         if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
+            turns = turns[gate.order]
             return self._anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
         if not getattr(self.method, "hears_turns", False):
             memory, pose = self.method.step(following.memory, goals)
@@ -234,15 +250,38 @@ class Reconstruction(Controller):
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
-        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, lost=lost)
+        shaking = SHAKEN * float(np.median(gate.rough))
+        pace = damp(following.step, difference(pose, following.pose), STEADY * (shaking - LEAP), self.dt) if shaking > LEAP else None
+        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, lost=lost)
         leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
-        if leap <= max(LEAP, SHAKEN * float(np.median(gate.rough))):
+        if leap <= max(LEAP, shaking):
             return after
         # a little of it may be how bodies change their pace, and the rest fades
-        step = difference(following.pose, following.before)
+        step = following.step
         step = step + TAKEN / leap * (difference(pose, following.pose) - step)
         ahead = moved(following.pose, step)
-        return self._fading(replace(after, before=moved(pose, -step)), moved(ahead, following.offset))
+        return self._fading(replace(after, before=moved(pose, -step), pace=step), moved(ahead, following.offset))
+
+    def _doubted(self, following: Following) -> Following:
+        """With two points under each other's number, if what the method has seen for some time is much likelier so."""
+        method: Any = self.method
+        if not hasattr(method, "exchanged"):
+            return following
+        doubts, asked = following.doubts.asked()
+        if asked is None:
+            return replace(following, doubts=doubts)
+        i, j = doubts.pairs[asked]
+        other = method.exchanged(following.memory, i, j)
+        doubts, taken = doubts.told(asked, method.energy(following.memory), method.energy(other))
+        if not taken:
+            return replace(following, doubts=doubts)
+        best = min(doubts.open, key=lambda pair: method.energy(method.exchanged(following.memory, *doubts.pairs[pair])))
+        if best != asked:
+            return replace(following, doubts=doubts.rather(asked, int(best)))
+        doubts = replace(doubts, evidence=np.zeros_like(doubts.evidence))
+        order = np.arange(len(self.controls))
+        order[[i, j]] = j, i
+        return replace(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order])
 
     def _fading(self, following: Following, shown: Pose) -> Following:
         """With an offset by which a pose is shown for now."""
@@ -253,9 +292,15 @@ class Reconstruction(Controller):
     def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
+<<<<<<< HEAD
         ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
         after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, lost=0.0)
+=======
+        ahead = moved(moved(following.pose, following.step), following.offset)
+        far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
+        after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
+>>>>>>> 5a38aaba62d8403c4ea99335f0083bd57e09ffc6
         zero = np.zeros_like(following.offset)
         return replace(after, offset=zero, rate=zero) if far else self._fading(after, ahead)
 

@@ -87,3 +87,33 @@ def test_noise_is_told_on_a_moving_body(level, seed):
     assert 0.8 < np.mean(told) < 1.08 and 0.88 < np.mean(spoilt) < 1.16  # five and more of the means' own deviations
     assert np.std(told) < 0.2 and np.std(spoilt) < 0.22
     assert noise(np.full((15, 4, 3), np.nan)) == 0.0
+
+
+@given(st.floats(1e-6, 1e-5), st.integers(0, 99))
+def test_what_has_heard_little_is_a_line_through_all_that_it_heard(index, seed):
+    """By least squares, until the steady state's gains, here next to nothing, are reached."""
+    seen = np.random.default_rng(seed).normal(size=12)
+    motion = Motion(seen[:1], np.zeros(1), 1.0)
+    for t in range(1, 12):
+        motion = motion.towards(seen[t:t + 1], index)
+        slope, start = np.polyfit(np.arange(t + 1), seen[:t + 1], 1)
+        assert np.allclose(motion.place, start + slope * t) and np.allclose(motion.change, slope)
+
+
+@given(st.floats(0.05, 3.0), st.integers(0, 99))
+def test_in_the_end_it_is_the_steady_state(index, seed):
+    seen = np.random.default_rng(seed).normal(size=(200, 3))
+    short, long = Motion(seen[0], np.zeros(3), 1.0), Motion(seen[0], np.zeros(3))
+    for now in seen[1:]:
+        short, long = short.towards(now, index), long.towards(now, index)
+    assert np.allclose(short.place, long.place, atol=1e-6)
+
+
+def test_a_velocity_from_before_noise_was_known_is_soon_forgotten():
+    """Three frames believed to the full, then that they are noisy by one: places of one who stands stay within the noise."""
+    rng, off = np.random.default_rng(3), []
+    motion = Motion(rng.normal(size=(500, 3)), np.zeros((500, 3)), 2.0)
+    for t in range(30):
+        motion = motion.towards(rng.normal(size=(500, 3)), np.inf if t < 3 else 0.03)
+        off.append(np.sqrt(np.mean(motion.place ** 2)))
+    assert max(off) < 1.3 and off[-1] < 0.6

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body import exp
-from gambol.controllers.reconstruction.following.point_gate import BLINK, NEAR, PATIENCE, REACH, Gate, rotations
+from gambol.controllers.reconstruction.following.point_gate import BLINK, CALM, ENOUGH, EVERY, LISTENED, MARGIN, MOST, NEAR, PATIENCE, REACH, SELDOM, Doubts, Gate, rotations
 
 DT = 1 / 60
 
@@ -55,6 +55,72 @@ def test_exchanged_points_are_told_apart(first, count, order, step):
         gate, own = gate.named(now, step * DT)
         assert np.array_equal(own, truth)
         gate, _ = gate.admit(own, truth, np.zeros_like(truth), step * DT)
+
+
+@given(st.floats(1.5, 50.0), st.integers(0, 5))
+def test_an_exchange_is_taken_after_as_much_evidence_as_it_needs(ratio, which):
+    """One pair of four whose other assignment always has `ratio` times less energy, the others as much more."""
+    doubts, frames, taken = Doubts.of(4), 0, False
+    while not taken and frames < 10_000:
+        doubts, asked = doubts.heard(np.ones(6, bool), DT).asked()
+        frames += 1
+        if asked is not None:
+            energy = 10.0 * ratio if asked == which else 10.0 / ratio
+            doubts, taken = doubts.told(asked, energy, 10.0)
+            assert taken is (asked == which and taken)
+    gain = min(np.log((10.0 * ratio + CALM) / (10.0 + CALM)) - MARGIN, MOST)
+    assert taken and frames <= EVERY * (6 * SELDOM + np.ceil(ENOUGH / gain))
+
+
+def test_who_is_not_in_doubt_is_not_asked_about():
+    """Only two that could have been exchanged are, for some seconds."""
+    doubts = Doubts.of(3)
+    none, two = np.zeros(3, bool), (doubts.pairs == [0, 2]).all(-1)
+    for now, expected in ((none, set()), (two, {(0, 2)})):
+        asked, doubts = set(), doubts.heard(now, DT)
+        for _ in range(round(LISTENED / DT) + 2):
+            doubts, pair = doubts.heard(none, DT).asked()
+            asked |= set() if pair is None else {tuple(doubts.pairs[pair])}
+        assert asked == expected and not len(doubts.open)
+
+
+@pytest.mark.parametrize("apart, doubted", [(0.01, True), (0.1, False)])
+def test_who_passes_another_in_the_open_is_not_in_doubt(apart, doubted):
+    """Two that cross at 2 m/s, some way apart, in steps of 33 mm that they miss by 4."""
+    times = DT * np.arange(-20, 21)[:, None, None]
+    seen = times * [[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]] + apart * np.array([[0.0, 0.5, 0.0], [0.0, -0.5, 0.0]])
+    seen += 0.002 * (-1.0) ** np.arange(41)[:, None, None] * [0.0, 0.0, 1.0]
+    gate, found = Gate.before(seen[0], np.zeros((2, 3))), []
+    for k, now in enumerate(seen[1:]):
+        if k > 2:
+            found.append(gate.confusable(np.array([[0, 1]]), now, DT)[0])
+        gate, _ = gate.admit(now, now, np.zeros_like(now), DT)
+    assert any(found) is doubted
+
+
+@given(st.floats(0.02, 0.15), st.integers(0, 99))
+def test_two_that_are_exchanged_without_a_leap_are_in_doubt(apart, seed):
+    """However they move and shake, as long as they do that by less than they are apart."""
+    rng = np.random.default_rng(seed)
+    way, off = rng.normal(size=(6, 2, 3)), 0.05 * apart * rng.normal(size=(6, 2, 3))
+    seen = 0.3 * apart * np.arange(6)[:, None, None] * way[0] / 3.0 + apart * np.array([[0.0, 0.5, 0.0], [0.0, -0.5, 0.0]]) + off.clip(-0.1 * apart, 0.1 * apart)
+    gate = Gate.before(seen[0], seen[1] - seen[0])
+    for now in seen[1:5]:
+        gate, _ = gate.admit(now, now, np.zeros_like(now), DT)
+    assert gate.confusable(np.array([[0, 1]]), seen[5][::-1], DT)[0] or np.linalg.norm(np.diff(seen[5], axis=0)) < 0.5 * apart
+
+
+def test_two_of_which_none_is_seen_are_in_doubt():
+    seen = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
+    gate, pairs = Gate.before(seen, np.zeros_like(seen)), Doubts.of(4).pairs
+    for k in range(20):
+        now = seen + 0.001 * k * k
+        now[2:] = np.nan if k >= 4 else now[2:]
+        found = {tuple(pair) for pair in pairs[gate.confusable(pairs, now, DT)]}
+        assert k < 3 or found == ({(2, 3)} if k > 4 + BLINK / DT else set())
+        gate, _ = gate.admit(now, seen, np.zeros_like(seen), DT)
+    other = gate.exchanged(0, 3)
+    assert list(other.order) == [3, 1, 2, 0] and np.array_equal(other.raw[0], gate.raw[3], equal_nan=True)
 
 
 @pytest.mark.parametrize("seed", range(3, 15, 3))
@@ -148,6 +214,15 @@ def test_noise_of_three_centimetres_is_borne_and_a_jump_in_it_is_not(seed):
     goals, _ = passed(noisy, seen)
     refused = np.isnan(goals).reshape(len(goals), -1).any(-1)
     assert refused[150:160].all() and refused[30:150].mean() < 0.02
+
+
+@given(st.integers(0, 99))
+@settings(max_examples=10)
+def test_noise_that_is_there_from_the_first_frame_is_borne_soon(seed):
+    """5 cm on points that stand: from the fifth frame on nearly all of it is followed."""
+    seen = np.random.default_rng(seed).normal(0.0, 0.05, (20, 6, 3))
+    goals, _ = passed(seen, np.zeros_like(seen))
+    assert np.isfinite(goals[4:]).all(-1).mean() > 0.93
 
 
 def test_a_turn_that_blinks_goes_on_and_one_that_is_none_is_not_known():

@@ -1,5 +1,6 @@
 """The network for trackers: what it sees, what it learns by, and the bodies that come of it."""
 
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -10,10 +11,12 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import Skeleton, contact_height, contact_points, exp, forward_kinematics, yaw
 from gambol.controllers.contract import Intent, Unable
+from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
+from gambol.controllers.reconstruction.following.point_gate import ENOUGH, LISTENED
 from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, WIDTH, encode
 from gambol.controllers.reconstruction.regression import kinematics_kernel
 from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, SLOTS, Learner, Moments, Network, Trackers, bodies, standing
@@ -22,6 +25,7 @@ from gambol.controllers.reconstruction.trackers.network import OUTPUTS
 from gambol.controllers.reconstruction.trackers.samples import FIRST
 from gambol.controllers.reconstruction.trackers.slots import view_kernel
 from gambol.controllers.reconstruction.trackers.solver import misfit_kernel, slopes_kernel
+from walks import walked
 
 DT = 1 / 60
 HEAD_AND_HANDS = "head,lwrist,rwrist"
@@ -315,3 +319,45 @@ def test_a_recorded_walk_that_it_never_saw():
     root, rotations = played(Trackers(shipped(), controls, DT), positions[:200, controls.joints])
     away = np.linalg.norm(forward_kinematics(SKELETON, root, rotations)[0] - positions[:200], axis=-1)[:, JOINTS].mean(-1)
     assert away.mean() < 0.03 and away[0] < 0.05
+
+
+@pytest.mark.parametrize("points, two, turning", [("6", ("lwrist", "rwrist"), True), ("6", ("lankle", "rankle"), True), ("4", ("rwrist", "lankle"), False)])
+def test_two_trackers_that_come_back_under_each_others_number_are_found_out(points, two, turning):
+    """Neither was seen for 0.3 s, as they do on; it is told, and the body is soon as if nothing had been."""
+    controls = parse(points, SKELETON)
+    positions, orientations = forward_kinematics(SKELETON, *strides())
+    seen, turns = positions[:, controls.joints].copy(), orientations[:, controls.joints].copy()
+    pair = [controls.names.index(name) for name in two]
+    seen[60:78, pair] = turns[60:78, pair] = np.nan
+    seen[78:, pair], turns[78:, pair] = seen[78:, pair[::-1]], turns[78:, pair[::-1]]
+    method = Trackers(shipped(), controls, DT)
+    follower = Reconstruction(method, controls, starts=method)
+    state, off = follower.begin(seen[0], turns=turns[0] if turning else None), []
+    for point, turn, true in zip(seen[1:], turns[1:], positions[1:]):
+        if len(off) == 60:
+            assert follower.status(state).reason == ""
+        state, pose = follower.step(state, Intent(points=point, turns=turn if turning else None), DT)
+        off.append(np.linalg.norm(forward_kinematics(SKELETON, pose.root, pose.rotations)[0] - true, axis=-1).mean())
+    assert follower.status(state).reason == f"{controls.names[min(pair)]} and {controls.names[max(pair)]} have exchanged their numbers"
+    assert np.mean(off[-20:]) < np.mean(off[30:55]) + 0.02
+
+
+@pytest.mark.parametrize("points", ["4", "6"])
+@pytest.mark.parametrize("walk", ["doll", "Gambol's"])
+def test_in_walks_nothing_speaks_for_an_exchange(points, walk):
+    """Not half as much as it takes, though any two are in doubt all the time."""
+    controls = parse(points, SKELETON)
+    if walk == "doll":
+        positions = forward_kinematics(SKELETON, *strides())[0]
+    else:
+        clip = walked(Locomotion.load(), [(0.5, 0, 0, 0), (1.5, 1.3, 0.4, 0), (1, 2.5, 0, 0), (1, 0, 0, 0)])
+        positions = clip.kinematics()[0]
+    method = Trackers(shipped(), controls, DT)
+    follower = Reconstruction(method, controls, starts=method)
+    state, most = follower.begin(positions[0, controls.joints]), 0.0
+    for now in positions[1:, controls.joints]:
+        doubts = state.memory.doubts
+        state = replace(state, memory=replace(state.memory, doubts=replace(doubts, left=np.full(len(doubts.pairs), LISTENED))))
+        state, _ = follower.step(state, Intent(points=now), DT)
+        most = max(most, state.memory.doubts.evidence.max())
+    assert most < 0.5 * ENOUGH and follower.status(state).reason == ""

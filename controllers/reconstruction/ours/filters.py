@@ -28,18 +28,25 @@ def gains(index: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Where things are and go, filtered. place: any shape. change: by how much the place changes in a frame."""
+    """Where things are and go, filtered. place: any shape. change: by how much the place changes in a frame. told: on how many
+    frames that rests: gains fall no sooner than a line through so many and one more has them; where it is infinite they are the steady state's at once."""
 
     place: np.ndarray
     change: np.ndarray
+    told: float = math.inf
 
     def towards(self, seen: np.ndarray, index: float) -> Motion:
         """A frame later, where things are seen at `seen`; what is not finite there is lost, and coasts to a halt."""
-        alpha, beta = gains(index)
+        (alpha, beta), told = gains(index), self.told
+        if math.isfinite(told):
+            line = 6.0 / ((told + 1.0) * (told + 2.0))
+            if line > beta:
+                alpha, beta = (4.0 * told + 2.0) / ((told + 1.0) * (told + 2.0)), line
+            told = 0.5 * (math.sqrt(1.0 + 24.0 / beta) - 1.0)
         expected = self.place + self.change
         there = np.isfinite(seen)
         miss = np.where(there, seen, expected) - expected
-        return Motion(expected + alpha * miss, np.where(there, self.change + beta * miss, _COAST * self.change))
+        return Motion(expected + alpha * miss, np.where(there, self.change + beta * miss, _COAST * self.change), told)
 
 
 def noise(points: np.ndarray) -> float:

@@ -44,6 +44,7 @@ BEGINNINGS = 8
 """From so many headings the first frame is tried where no tracker turns."""
 SURE = np.radians(10.0)
 """A first frame that turns by more than this when it is seen from its own heading hardly agrees with itself."""
+_LITTLE = 2.0  # frames that velocities rest on at first
 _RECENT = 15  # frames that tell the noise
 _JUMP = 1.0  # rad or m, beyond which the chart has jumped: nothing to be smoothed
 _WORLD = np.zeros(3)
@@ -99,7 +100,7 @@ class Trackers:
                 places[:, absent], turns[:, absent] = np.nan, np.nan
         pose, before = frames[0], frames[min(1, len(frames) - 1)]
         return Remembered(pose, before, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
-                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before)), Soles.none())
+                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before), _LITTLE), Soles.none())
 
     def step(self, memory: Remembered, points: np.ndarray, turns: np.ndarray | None = None) -> tuple[Remembered, Pose]:
         """The pose a frame later, for trackers at points (n, 3) [m] in the world with turns (n, 3, 3), NaN where not known."""
@@ -110,9 +111,9 @@ class Trackers:
         recent, level, reach, filtered = np.concatenate([memory.recent[1:], points[None]]), 0.0, ACCELERATION * self.dt ** 2, memory.points
         if self.steady:
             if filtered is None:
-                filtered = Motion(np.where(np.isfinite(points), points, 0.0), np.zeros_like(points))
+                filtered = Motion(np.where(np.isfinite(points), points, 0.0), np.zeros_like(points), _LITTLE)
             fresh = ~np.isfinite(memory.recent[-1]) & np.isfinite(points)
-            filtered = Motion(np.where(fresh, points - filtered.change, filtered.place), filtered.change)
+            filtered = replace(filtered, place=np.where(fresh, points - filtered.change, filtered.place))
             level = noise(recent)
             filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
             points = np.where(np.isfinite(points), filtered.place, np.nan)
@@ -121,7 +122,7 @@ class Trackers:
         if not self.steady:
             return replace(after, recent=recent), shown_as(found)
         if np.abs(less(found, memory.shown.place)).max() > _JUMP:
-            shown = Motion(found, np.zeros(WIDTH))
+            shown = Motion(found, np.zeros(WIDTH), _LITTLE)
         else:
             near = memory.shown.place + less(found, memory.shown.place)
             shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
@@ -154,6 +155,25 @@ class Trackers:
         frame, track = best.copy(), best[GROUND]
         frame[GROUND] = 0.0
         return frame[None], track[None]
+
+    def energy(self, memory: Remembered) -> float:
+        """How ill the last half second's places and turns and the pose they make agree with each other, whatever came before."""
+        known = self._slots >= 0
+        points, turns = np.full((len(known), 3), np.nan), np.full((len(known), 3, 3), np.nan)
+        points[known], turns[known] = memory.places[0, self._slots[known]], memory.turns[0, self._slots[known]]
+        points[self.controls.offsets.any(-1)] = np.nan
+        return self._solved(replace(memory, off=np.zeros(WIDTH), soles=Soles.none()), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
+
+    def exchanged(self, memory: Remembered, i: int, j: int) -> Remembered:
+        """The memory in which two trackers had each other's number all the time; the same one where they have no slots."""
+        a, b = self._slots[[i, j]]
+        if min(a, b) < 0:
+            return memory
+        slots, order = np.arange(len(SLOTS)), np.arange(len(self.controls))
+        slots[[a, b]], order[[i, j]] = (b, a), (j, i)
+        points = memory.points and replace(memory.points, place=memory.points.place[order], change=memory.points.change[order])
+        return replace(memory, places=memory.places[:, slots], turns=memory.turns[:, slots], turning=memory.turning[order],
+                       recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH))
 
     def _followed(self, memory, points, turns, blur):
         """The memory a frame later."""
