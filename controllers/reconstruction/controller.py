@@ -292,15 +292,9 @@ class Reconstruction(Controller):
     def _anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self._frame(self._begun(*past, points, self.dt), points, turns)
-<<<<<<< HEAD
-        ahead = moved(moved(following.pose, difference(following.pose, following.before)), following.offset)
-        far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
-        after = replace(following, memory=begun.memory, gate=begun.gate, pose=begun.pose, before=begun.before, lost=0.0)
-=======
         ahead = moved(moved(following.pose, following.step), following.offset)
-        far = np.linalg.norm(ahead.root - begun.pose.root) > FAR
+        far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
         after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
->>>>>>> 5a38aaba62d8403c4ea99335f0083bd57e09ffc6
         zero = np.zeros_like(following.offset)
         return replace(after, offset=zero, rate=zero) if far else self._fading(after, ahead)
 
