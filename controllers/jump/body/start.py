@@ -106,7 +106,7 @@ class Start:
 @dataclass(frozen=True, eq=False)
 class Measures:
     """Heights [m] of a body's centre of mass over the floor: standing; leaves: (L,) as it takes off so far ahead (L,) [m] of
-    the balls of its feet; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles.
+    the balls of its feet; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles, negative ahead of it.
 
     carried: (2,) how high the centre of mass lies over the pelvis for that, at take-off and at touch-down [m].
     """
@@ -118,9 +118,9 @@ class Measures:
     touches: np.ndarray
     carried: np.ndarray
 
-    def touch(self, trail: float) -> float:
-        """How high it touches down `trail` [m] behind its feet."""
-        return float(np.interp(trail, self.trails, self.touches))
+    def touch(self, trail: float, aside: float = 0.0) -> float:
+        """How high it touches down `trail` [m] behind its feet, and so far to a side of them."""
+        return over(float(np.interp(trail, self.trails, self.touches)), aside)
 
     def leave(self, lead: float, aside: float = 0.0) -> float:
         """How high it takes off `lead` [m] ahead of the balls of its feet, and so far to a side of them."""
@@ -144,7 +144,7 @@ def _measures(physique):
     leads = np.linspace(-0.2, MOST_LEAD, 9) * (body.thigh + body.shank)
     ball = feet[:, 2].mean()
     leaves = [_height(physique, carriage.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH, feet, ball + lead) for lead in leads]
-    trails = np.linspace(0.0, TRAIL[1], 5) * body.size
+    trails = np.linspace(-TRAIL[1], TRAIL[1], 9) * body.size
     touches = [_height(physique, carriage.TOUCH, TOES_DOWN, TOUCH_REACH, feet, -trail) for trail in trails]
     return Measures(_height(physique, carriage.STAND, 0.0, STAND_REACH, feet), leads, np.array(leaves), trails, np.array(touches),
                     np.array([carried(physique, carriage.TAKE_OFF), carried(physique, carriage.TOUCH)]))
