@@ -12,9 +12,9 @@ import numpy as np
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Leap, Status, level, seconds
 from ..navigation import floor_at
-from .body import GRAVITY, TAKE_OFF_REACH, Physique, Start, airtime_up, along, measures
+from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Plan, fall, over_nothing, straightest, struck
+from .motion import Plan, fall, over_nothing, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
@@ -131,10 +131,8 @@ class Jump(Reach, Controller):
     @cached_property
     def longest(self) -> float:
         """How long [s] it can be in the air at most as it jumps straight up from a stand."""
-        heights, body, g = measures(self.physique), self.physique.tables, -float(self.gravity[1])
-        rise = heights.leave(0.0) - heights.stand
-        speed = strongest(self.physique, rise, self.gravity)
-        speed = strongest(self.physique, rise - (TAKE_OFF_REACH - straightest(speed, body)) * (body.thigh + body.shank), self.gravity)
+        heights, g = measures(self.physique), -float(self.gravity[1])
+        speed = strongest(self.physique, heights.leave(0.0) - heights.stand, self.gravity)
         return airtime_up(self.physique, SPARES * 0.5 * speed**2 / g, self.gravity)
 
     def landing(self, state: CharacterState) -> CharacterState:

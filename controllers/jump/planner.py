@@ -137,7 +137,8 @@ class _Draft(Airborne):
         rows[:, :EACH, 0] = self.way.keys[:2 * BETWEEN + 1, LEGS + side * EACH:LEGS + (side + 1) * EACH]
         due = self.due[:2 * BETWEEN + 1]
         fastest = float(np.abs(np.diff(rows[:, :EACH, 0], axis=0) / np.diff(due)[:, None]).max())
-        rows = rows[0] + (rows - rows[0]) * min(SWINGS[0] / max(fastest, 1e-6), 1.0)  # whoever has less time comes less far
+        # whoever has less time swings it less far back: it leaves the floor as recorded ones do, and clears the floor meanwhile
+        rows = rows[-1] + (rows - rows[-1]) * min(SWINGS[0] / max(fastest, 1e-6), 1.0)
         slopes, lacks = monotone(due, rows), start - rows[0]
         lasts = max(GATHERS * self.leave, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
         swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)

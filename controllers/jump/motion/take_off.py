@@ -66,7 +66,7 @@ SOONER, TIMES = 0.85, 5
 EXTENDS, SHORTEST = (0.85, 0.35, 16.0, 0.07), 0.94
 """Whoever leaves faster does so from knees bent more: legs lengthen by the first, as a share of the speed along them, and by the second more aside or
 backward, where heels that rise help less; knees turn no faster for that than the third [rad/s] when they are bent by twice the fourth [rad] more than at
-last. But legs are no shorter than this share of their length."""
+last. But legs are no shorter than this share of their length, and as straight as usual where the leap would be too far for the muscles then."""
 
 
 class TakeOff(NamedTuple):
@@ -85,15 +85,16 @@ class TakeOff(NamedTuple):
 def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, heading: float, guess: np.ndarray, velocity: np.ndarray, pushes: float) -> float:
     """How high [m] the centre of mass is over `guess`'s (3,) place as feet (2, 5) leave the floor with a velocity (3,) [m/s] after a push of so long [s], the body
     carried by `angles` (11,)."""
-    lifted, body, legs = 0.0 if start.single is None else LIFTED * physique.size, physique.tables, guess - feet[:, :3]
-    facing = yaw(heading)[:, 2]
-    astray = velocity * FLAT - max(float(velocity @ facing), 0.0) * facing
-    share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
-    reach = min(start.straight, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
+    lifted, body, reach = 0.0 if start.single is None else LIFTED * physique.size, physique.tables, start.straight
+    if not start.tall:
+        legs, facing = guess - feet[:, :3], yaw(heading)[:, 2]
+        astray = velocity * FLAT - max(float(velocity @ facing), 0.0) * facing
+        share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
+        reach = min(reach, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
     return stretched(physique, angles, feet, heels_up(start, feet, guess, pushes, body), reach, heading, guess) + lifted
 
 
-def straightest(speed: float, body: BodyTables, astray: float = 0.0) -> float:
+def straightest(speed: float, body: BodyTables, astray: float) -> float:
     """How straight a leg is that leaves with a speed [m/s] along it, as a share of its length, see EXTENDS. astray: how much of it is aside or backward."""
     sine = (EXTENDS[0] + EXTENDS[1] * astray) * speed / (EXTENDS[2] * 0.5 * (body.thigh + body.shank))
     bent = math.asin(min(max(sine, 0.0), 1.0)) - EXTENDS[3]  # half of how far its knee is
