@@ -137,8 +137,14 @@ class _Draft(Airborne):
         rows[:, :EACH, 0] = self.way.keys[:2 * BETWEEN + 1, LEGS + side * EACH:LEGS + (side + 1) * EACH]
         due = self.due[:2 * BETWEEN + 1]
         fastest = float(np.abs(np.diff(rows[:, :EACH, 0], axis=0) / np.diff(due)[:, None]).max())
-        # whoever has less time swings it less far back: it leaves the floor as recorded ones do, and clears the floor meanwhile
-        rows = rows[-1] + (rows - rows[-1]) * min(SWINGS[0] / max(fastest, 1e-6), 1.0)
+        # whoever has less time swings it less far, each joint between how it would begin and how it would end so that it begins as it is; but the knee is
+        # bent as far as recorded ones, so that the foot clears the floor
+        share = min(SWINGS[0] / max(fastest, 1e-6), 1.0)
+        early, late = (rows[k] + (rows - rows[k]) * share for k in (0, -1))
+        apart = np.where(np.abs(late[0] - early[0]) > 1e-9, late[0] - early[0], 1e-9)
+        shifted = np.clip((start - early[0]) / apart, 0.0, 1.0)
+        shifted[1] = 1.0
+        rows = early + shifted * (late - early)
         slopes, lacks = monotone(due, rows), start - rows[0]
         lasts = max(GATHERS * self.leave, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
         swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)

@@ -1,12 +1,14 @@
 """How fast knees and ankles turn: no faster than people's, wherever a leap leads."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gambol.controllers.body import log
-from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.body import forward_kinematics, log, sole_corners
+from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump
 from gambol.controllers.jump.body import Physique, nearest_kernel, turns
 from gambol.controllers.jump.body.dynamics import place_kernel
@@ -15,6 +17,7 @@ from gambol.controllers.jump.motion.path_estimate import SOFT, softened
 
 BODY = Physique().tables
 ROUND = [(far * np.sin(way), up, far * np.cos(way)) for way in np.radians([0, 50, 90, 140, 180, -75]) for far, up in ((0.3, 0.0), (0.9, 0.0), (0.8, -0.5))]
+WALK = np.array([1.4, 0.0, 0.0])
 HIGH = [(0.9, 0.0, 0.2), (-0.5, 0.0, -0.5), (0.0, 0.0, 0.1)]
 
 
@@ -74,3 +77,29 @@ def test_whoever_falls_fast_touches_down_on_knees_bent_so_that_they_need_not_fly
     if 0.0 < lower < SOFT[2] * body.size:  # a leg of two such bones is 2 a cos θ/2 long
         half = np.arccos(0.93 - lower / (2.0 * bone))
         assert SOFT[0] * fall / (bone * np.sin(half)) == pytest.approx(SOFT[1], rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def walkers(locomotion):
+    """Moments of a stride at a walk."""
+    state, states = locomotion.start(), []
+    for _ in range(216):
+        before = state
+        state, _ = locomotion.step(state, Intent(WALK), 1 / 60)
+        states.append(replace(state, previous=before.pose, elapsed=1 / 60))
+    return states[150::6]
+
+
+def test_a_walkers_free_leg_swings_no_faster_than_peoples_and_clears_the_floor(jump, walkers):
+    found = []
+    for state in walkers:
+        try:
+            made = jump.plan(state, Intent(WALK, Leap(np.array([state.ground[0], 0.0, state.ground[1] + 1.4]))))
+        except Unable:
+            continue
+        if made.path.single:
+            off = made.times <= made.take_off
+            soles = sole_corners(jump.skeleton, *forward_kinematics(jump.skeleton, made.roots[off], made.local[off]))
+            found.append((soles[..., 1].min(), fastest(jump, made, "Leg")))
+    deepest, knees = np.array(found).T
+    assert deepest.min() > -0.01 and knees.max() < 19.0
