@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body import forward_kinematics, log, sole_corners
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump
-from gambol.controllers.jump.body import Physique, nearest_kernel, turns
+from gambol.controllers.jump.body import Physique, airtime_up, nearest_kernel, turns
 from gambol.controllers.jump.body.dynamics import place_kernel
 from gambol.controllers.jump.body.planted_pose import ankle_kernel, foot_kernel, leg_kernel
 from gambol.controllers.jump.motion.path_estimate import SOFT, softened
@@ -103,3 +103,10 @@ def test_a_walkers_free_leg_swings_no_faster_than_peoples_and_clears_the_floor(j
             found.append((soles[..., 1].min(), fastest(jump, made, "Leg")))
     deepest, knees = np.array(found).T
     assert deepest.min() > -0.01 and knees.max() < 19.0
+
+
+@pytest.mark.parametrize("place, high", [((0.0, 0.0, 0.0), 0.40), ((1.45, 0.0, 0.0), None), ((0.0, 0.0, -1.45), None)])
+def test_no_leap_is_refused_for_its_knees(jump, standing, place, high):
+    """The highest and the farthest, which take all of the push's way, are leapt on straight legs."""
+    airtime = None if high is None else airtime_up(jump.physique, high, jump.gravity)
+    assert not jump.refusal(standing, Intent(leap=Leap(np.array(place) + np.array([standing.ground[0], standing.floor, standing.ground[1]]), airtime)))

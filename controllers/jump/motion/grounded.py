@@ -108,6 +108,7 @@ def _left(physique: Physique, start: Start, way: Path, planted: np.ndarray, cour
     """The path that leaves where the course does, as high as its legs then reach."""
     leave = way.leave.copy()
     leave[[0, 2]] = course.place[-1]
+    assert way.push is not None  # `grounded` has looked
     if not start.runs:
         leave[1] = top(physique, start, way.keys[2 * BETWEEN, :LEGS], start.pushing(planted), start.heading, leave, way.velocity, way.push.duration)
     else:
