@@ -126,7 +126,7 @@ PLAN = {
         "jump.reach": "body contract navigation jump.body jump.motion jump.muscles jump.prior",
         "struck": "compiled body contract mocap navigation navigation.passing jump jump.body jump.motion jump.prior",
         "reconstruction.database": "compiled files body contract mocap supervisor jump locomotion",
-        "person": "compiled body contract jump.body navigation.planning supervisor jump.muscles jump locomotion scaled struck",
+        "person": "compiled body contract jump.body navigation navigation.crowd navigation.passing navigation.planning supervisor jump.muscles jump locomotion scaled struck",
         "reconstruction.neighbours": "compiled reconstruction.database",
         "reconstruction.regression": "compiled body reconstruction.neighbours",
         "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",

@@ -75,7 +75,7 @@ def test_a_log_that_goes_another_way_is_filmed_with_a_warning(log, tmp_path, mon
     (("render", "demo", "--replay", "a.gambol", "-o", "a.mp4"), "needs either"),
     (("render", "demo", "-o", "a.mp4", "--from", "1"), "--from goes with --replay"),
     (("render", "--replay", "none.gambol", "-o", "a.mp4"), "none.gambol: No such file"),
-    (("render", "--replay", "a.gambol", "-o", "a.mp4", "--from", "5"), "has 2.0 s: nothing lies from 5 to 2 s"),
+    (("render", "--replay", "a.gambol", "-o", "a.mp4", "--from", "5"), "has 2.0 s: nothing lies from 5 s"),
     (("render", "--replay", "a.gambol", "-o", "a.bvh"), "a.bvh: a log is filmed"),
     (("play", "--replay", "none.gambol"), "none.gambol: No such file"),
     (("play", "--record", "a.gambol"), "a.gambol: is there already"),
