@@ -79,5 +79,5 @@ def test_a_performer_who_was_lost_is_found_again_however_far_and_no_joint_flies(
     assert (np.linalg.norm(np.diff(joints, axis=0), axis=-1) / DT).max() < 10.0
     assert someone.active(states[-1])[0] == "reconstruction"
     late = 180 + round((0.8 + away / 4.0) / DT)
-    off = np.linalg.norm(np.array([wide._points(one.pose) for one in states[late:]]) - np.array(seen[late:]), axis=-1)
+    off = np.linalg.norm(np.array([wide.follower.points(one.pose) for one in states[late:]]) - np.array(seen[late:]), axis=-1)
     assert off.mean() < 0.05

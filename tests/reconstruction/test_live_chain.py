@@ -66,8 +66,8 @@ def test_another_program_shows_the_performer_calmly_and_one_packet_late(rate, pe
     moments = moments[rng.random(len(moments)) >= LOSS]
     arrivals = moments + LATENCY + np.abs(rng.normal(0.0, UNREST, len(moments)))
     order = np.argsort(arrivals, kind="stable")
-    follower = Reconstruction(Trackers(Network.load(), controls), controls, STATURE)
-    follower.starts = follower.method
+    method = Trackers(Network.load(), controls)
+    follower = Reconstruction(method, controls, STATURE, starts=method)
     state, k, shown, times = None, 0, [], []
     with Stream({f"LHR-{n}": name for n, name in enumerate(WORN)}, 0, clock=lambda: now[0]) as stream, \
             socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as worn, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as screen:

@@ -1,7 +1,6 @@
-"""The network for trackers: what it sees, what it learns by, and the bodies that come of it."""
+"""The network for trackers: what it sees, and the bodies that come of it."""
 
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -9,22 +8,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gambol.controllers.body import Skeleton, contact_height, contact_points, exp, forward_kinematics, yaw
+from gambol.controllers.body import Skeleton, forward_kinematics, yaw
 from gambol.controllers.contract import Intent, Unable
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
-from gambol.controllers.reconstruction.database import Database
-from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.following.point_gate import ENOUGH, LISTENED
-from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, WIDTH, encode
+from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, WIDTH
 from gambol.controllers.reconstruction.regression import kinematics_kernel
-from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, SLOTS, Learner, Moments, Network, Trackers, bodies, standing
-from gambol.controllers.reconstruction.trackers.learning import loss
-from gambol.controllers.reconstruction.trackers.network import OUTPUTS
+from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, SLOTS, Trackers, bodies
 from gambol.controllers.reconstruction.trackers.samples import FIRST
 from gambol.controllers.reconstruction.trackers.slots import view_kernel
 from gambol.controllers.reconstruction.trackers.solver import misfit_kernel, slopes_kernel
+from dolls import shipped, strides
 from walks import walked
 
 DT = 1 / 60
@@ -32,44 +28,11 @@ HEAD_AND_HANDS = "head,lwrist,rwrist"
 SHARED = Path(__file__).parents[3] / "shared" / "mocap" / "cmu" / "16"
 
 
-@lru_cache
-def shipped():
-    return Network.load()
-
-
-def strides(count=240, pace=1.1):
-    """Root (T, 3) and rotations (T, J, 3, 3) of somebody who walks like a wooden doll: the lower foot is on the floor."""
-    phase = 2.0 * np.pi * 0.95 * np.arange(count) * DT
-    vectors = np.zeros((count, len(SKELETON), 3))
-    for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        swing = sign * np.sin(phase)
-        vectors[:, SKELETON.index(side + "UpLeg"), 0] = -0.1 - 0.35 * swing
-        vectors[:, SKELETON.index(side + "Leg"), 0] = 0.15 + 0.5 * np.maximum(sign * np.cos(phase), 0.0) ** 2
-        vectors[:, SKELETON.index(side + "Arm"), 2] = -sign * 1.3
-        vectors[:, SKELETON.index(side + "ForeArm"), 1] = -sign * (0.3 + 0.15 * swing)
-    rotations, root = exp(vectors), np.zeros((count, 3))
-    root[:, 2] = pace * DT * np.arange(count)
-    soles = contact_points(SKELETON, *forward_kinematics(SKELETON, root, rotations))[..., 1]
-    root[:, 1] = contact_height(SKELETON) - soles.min(-1)
-    return root, rotations
-
-
 @pytest.fixture(scope="module")
 def walk():
     """Root, rotations, positions and orientations of a walk that is no recording."""
     root, rotations = strides()
     return root, rotations, *forward_kinematics(SKELETON, root, rotations)
-
-
-@pytest.fixture(scope="module")
-def known(tmp_path_factory):
-    """A small database of it, at several paces."""
-    path = tmp_path_factory.mktemp("walks") / "walks.gambolmotion"
-    with Writer(path) as writer:
-        for number, pace in enumerate((0.8, 1.1, 1.4)):
-            frames, _ = encode(*strides(pace=pace), DT)
-            writer.add(f"walk {number}", f"doll {number}", "walk", frames, np.ones(len(frames), bool))
-    return Database.open(path)
 
 
 def seen(rng, shape=(len(LAGS), len(SLOTS))):
@@ -159,87 +122,6 @@ def test_the_solver_falls_along_its_energy(seed):
         assert abs(-0.5 * slope - fall[d]) <= 2e-4 * max(1.0, abs(fall).max())
 
 
-def test_the_loss_has_the_slopes_it_says(known):
-    batch = Moments.of(known).draw(3, 0, 5)
-    rng = np.random.default_rng(0)
-    found = np.concatenate([batch.truth + 0.1 * rng.normal(size=batch.truth.shape), rng.normal(size=(3, 4))], -1)
-    _, slopes = loss(found, batch)
-    for b, d in [(0, 3), (1, 20), (2, 57), (0, 58), (1, 60), (2, 62), (1, OUTPUTS - 1)]:
-        step = np.zeros_like(found)
-        step[b, d] = 1e-6
-        assert np.isclose((loss(found + step, batch)[0] - loss(found - step, batch)[0]) / 2e-6, slopes[b, d], rtol=1e-3, atol=1e-6)
-
-
-def test_truth_is_where_the_trackers_of_each_body_are(known):
-    """What is drawn without noise has its trackers on the joints of the pose that is to be found, in that body."""
-    batch = Moments.of(known).draw(64, 0, 1)
-    newest = batch.inputs[:, 5 * 0:3]
-    placed = batch.inputs[:, 3] == 1.0
-    fresh = placed & (batch.inputs[:, 4] == 0.0)
-    assert fresh.any()
-    hips = np.stack([batch.truth[:, -1], batch.truth[:, 57]], -1)  # leftward, height
-    assert np.median(np.abs(newest[fresh, 0] * 0.4 - hips[fresh, 0])) < 0.01
-    assert np.median(np.abs(newest[fresh, 1] * 0.4 + 0.9 - hips[fresh, 1])) < 0.01
-
-
-def test_learning_goes_on_from_a_checkpoint_the_same(known, tmp_path):
-    moments = Moments.of(known)
-    whole = Learner(moments, 4, 3, (24,), 16)
-    whole.learn(tmp_path / "whole.npz", 4)
-    first = Learner(moments, 4, 3, (24,), 16)
-    first.step()
-    first.step()
-    first.save(tmp_path / "first.npz")
-    second = Learner(moments, 4, 3, (24,), 16)
-    second.resume(tmp_path / "first.npz")
-    second.learn(tmp_path / "second.npz", 4)
-    assert all(np.array_equal(a, b) for a, b in zip(whole.means, second.means, strict=True))
-    with pytest.raises(ValueError, match="another seed, batch size or width"):
-        Learner(moments, 4, 4, (24,), 16).resume(tmp_path / "first.npz")
-
-
-def test_it_learns(known):
-    learner = Learner(Moments.of(known), 120, 0, (32,), 64)
-    losses = [learner.step() for _ in range(120)]
-    assert np.mean(losses[-20:]) < 0.8 * np.mean(losses[:20])
-
-
-def test_feet_on_the_floor_stand():
-    """And no others: of one who stays upright, then hangs in the air."""
-    root = np.zeros((40, 3))
-    root[:, 1] = SKELETON.offsets[0, 1]
-    root[20:, 1] += 0.3
-    frames, _ = encode(root, np.broadcast_to(np.eye(3), (40, len(SKELETON), 3, 3)), DT)
-    stands = standing(frames, False, 60.0)
-    assert stands[:18].all() and not stands[20:].any()
-
-
-def test_one_sample_is_found_as_in_a_batch():
-    inputs = np.random.default_rng(0).normal(size=(3, INPUTS)).astype(np.float32)
-    poses, soles = shipped().predict(inputs)
-    for b in range(3):
-        pose, sole = shipped().predict(inputs[b])
-        assert np.allclose(pose, poses[b], atol=1e-3) and np.allclose(sole, soles[b], atol=1e-3)
-
-
-def test_files_that_are_no_network_are_told_of(tmp_path):
-    path = tmp_path / "network.npz"
-    for content in (b"", b"PK nothing"):
-        path.write_bytes(content)
-        with pytest.raises(ValueError, match="network.npz"):
-            Network.load(path)
-    with pytest.raises(ValueError, match="can't be read"):
-        Network.load(tmp_path / "none.npz")
-    made = shipped()
-    Network((made.weights[0][:-1], *made.weights[1:]), made.biases, made.outs, made.kinds, made.factors, made.rests, made.lower,
-            made.upper).save(path)
-    with pytest.raises(ValueError, match=r"weights0 of shape .*, expected"):
-        Network.load(path)
-    Network(made.weights, made.biases, made.outs * np.nan, made.kinds, made.factors, made.rests, made.lower, made.upper).save(path)
-    with pytest.raises(ValueError, match="not finite"):
-        Network.load(path)
-
-
 @pytest.mark.parametrize(("points", "turning", "bound"), [("6", False, 0.05), ("6", True, 0.04), ("4", False, 0.12), (HEAD_AND_HANDS, True, 0.2)])
 def test_a_walk_is_found_from_nothing(walk, points, turning, bound):
     _, _, positions, orientations = walk
@@ -285,14 +167,6 @@ def test_a_larger_body_is_met_on_its_own_skeleton(walk):
     assert away.mean() < 0.05
     with pytest.raises(ValueError, match="the chart's joints"):
         Trackers(shipped(), parse("6", SKELETON), DT, Skeleton(("Hips",), np.array([-1]), np.zeros((1, 3)), np.empty(0, int), np.empty((0, 3))))
-
-
-def test_bodies_are_symmetric_and_the_same_from_the_same_seed():
-    made = bodies(50, np.random.default_rng(1))
-    left, right = SKELETON.index("LeftLeg"), SKELETON.index("RightLeg")
-    assert np.array_equal(made, bodies(50, np.random.default_rng(1)))
-    assert np.allclose(np.linalg.norm(made[:, left], axis=-1), np.linalg.norm(made[:, right], axis=-1))
-    assert np.linalg.norm(made[:, left], axis=-1).std() > 0.01
 
 
 def test_a_controller_hears_turns_and_begins_from_nothing(walk):
