@@ -15,15 +15,15 @@ SEEN = 0.8
 """A foot comes down no more than a `STEP` higher or deeper than the other stands, and what is higher than this over the body's level is no ground [m]: feet go up two of the highest steps from one that stands."""
 SAME = 0.02
 """Grounds nearer to each other than this are the same one [m]."""
-FLAT = np.zeros((0, 8))
+FLAT = np.zeros((0, 9))
 """No tops: the ground is the character's own floor."""
 
 
 def tops(around: Sequence[Any]) -> np.ndarray:
-    """The tops (M, 8) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
-    along [m], height [m], slope along."""
+    """The tops (M, 9) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
+    along [m], height [m], slope along, and how high they begin [m]."""
     rows = [(b.centre[0], b.centre[2], math.cos(b.heading), math.sin(b.heading), 0.5 * b.size[0], 0.5 * b.size[2],
-             b.centre[1] + 0.5 * b.size[1], slope(b)) for b in around if is_box(b)]
+             b.centre[1] + 0.5 * b.size[1], slope(b), b.centre[1] - 0.5 * b.size[1]) for b in around if is_box(b)]
     return np.array(rows, float) if rows else FLAT
 
 
