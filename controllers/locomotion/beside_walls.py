@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 
 from ..compiled import kernel
 from ..navigation.passing import STEP
@@ -15,6 +14,8 @@ FAR = 1.2
 """What is farther from a body's middle than this [m] no foot gets to."""
 PASSED = 0.5
 """What hangs so much higher than a foot stands is passed under by it [m]."""
+EDGE = 0.04
+"""Right before something is so far from it [m]."""
 
 
 @kernel
@@ -31,6 +32,8 @@ def out_of_walls(m, tops, floor, foot, line, out):
         across, along = c * x - s * z, s * x + c * z
         beside, before = abs(across) - tops[k, 4], abs(along) - tops[k, 5]
         if max(beside, before) <= 0.0 or max(beside, before) > FAR:  # it is over it, or far away
+            continue
+        if _stepped_onto(tops, k, across, along, beside, before):
             continue
         least, way_across, way_along = math.inf, 0.0, 0.0
         for side in range(4):  # out to the left and right, and by both ends, but not beyond
@@ -50,3 +53,21 @@ def out_of_walls(m, tops, floor, foot, line, out):
             out[1] += -s * way_across + c * way_along
             found = True
     return found
+
+
+@kernel
+def _stepped_onto(tops, k, across, along, beside, before):
+    """Whether somebody whose middle is across and along in top k's frame [m], so far outside its sides and ends, has something right before it that is no more than
+    a step lower, as on stairs."""
+    u = math.copysign(min(abs(across), tops[k, 4]) + (EDGE if beside >= before else 0.0), across)
+    w = math.copysign(min(abs(along), tops[k, 5]) + (EDGE if before > beside else 0.0), along)
+    c, s = tops[k, 2], tops[k, 3]
+    x, z = tops[k, 0] + c * u + s * w, tops[k, 1] - s * u + c * w
+    for i in range(tops.shape[0]):
+        dx, dz = x - tops[i, 0], z - tops[i, 1]
+        c, s = tops[i, 2], tops[i, 3]
+        u, w = c * dx - s * dz, s * dx + c * dz
+        high = tops[i, 6] + tops[i, 7] * w
+        if abs(u) <= tops[i, 4] and abs(w) <= tops[i, 5] and tops[k, 6] - STEP <= high < tops[k, 6]:
+            return True
+    return False
