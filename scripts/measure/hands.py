@@ -1,6 +1,6 @@
 """Play the whole game by random hands: walk, run, leap, be pushed, be sent to places, among what stands about; and look at the body in every step.
 
-    python scripts/measure/hands.py [--minutes 10] [--seed 0] [--stage course yard] [--pictures DIR]
+    python scripts/measure/hands.py [--minutes 4] [--seed 0] [--stage course yard] [--pictures DIR]
 
 Hands do what players do: head for a thing or away from it on eight keys or a stick, run or walk, tap and hold the leap's key, let go of all keys, step aside, turn on
 the spot, click at places, push. Nothing is asked of the controllers but the final pose: how deep flesh is in things and in the ground, how far soles slide that
@@ -231,7 +231,7 @@ def draw(body: Body, found: dict[str, list[tuple[int, float]]], folder: Path) ->
 def main() -> None:
     """Print all figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--minutes", type=float, default=4.0)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--stage", nargs="+", choices=list(STAGES), default=list(STAGES))
     parser.add_argument("--pictures", type=Path)
