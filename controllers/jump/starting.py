@@ -107,12 +107,11 @@ def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterSt
 def ready(physique: Physique, state: CharacterState) -> bool:
     """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
     start = start_of(physique, state)
-    low = start.feet[:, 1] - float(state.floor) < physique.tables.sole + UP * physique.size
-    if np.hypot(start.velocity[0], start.velocity[2]) < RUNNING:
-        return bool(low.any())
+    speed = float(np.hypot(start.velocity[0], start.velocity[2]))
     if start.single is None:
-        return False
-    towards = start.velocity * FLAT / np.hypot(start.velocity[0], start.velocity[2])
+        low = start.feet[:, 1] - float(state.floor) < physique.tables.sole + UP * physique.size
+        return speed < RUNNING and bool(low.any())
+    towards = start.velocity * FLAT / max(speed, 1e-9)
     return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
 
 

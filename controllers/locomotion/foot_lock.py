@@ -78,7 +78,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
             _hold(m, foot, before, now, dt)
         else:
             ball = 2 * foot + 1
-            swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, dt)
+            swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = 0.0
     for foot in range(2):

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
+from .beside_walls import out_of_walls
 from .cycles import EVENTS
 from .foot_points import shown_kernel
 
@@ -53,11 +54,11 @@ def swing_progress(m, foot):
 
 
 @kernel
-def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, dt):
+def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, dt):
     """Lead the offset of a foot that swings on for dt, and how far it gives way.
 
     ahead: where the blend's foot will be (`foothold`). speed_x, speed_z: how fast it goes now, in the world [m/s]. height: of standing
-    heels and balls [m].
+    heels and balls [m]. tops, floor: of the ground (`uneven_ground`).
     """
     offset, rate, push = m.offset[foot], m.offset_rate[foot], m.offset_push[foot]
     whole = max(ahead.until[foot], SOONEST)
@@ -68,6 +69,8 @@ def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, dt):
         offset[i], rate[i], push[i] = goal + smoothest(x, v, a, whole, s, 0), smoothest(x, v, a, whole, s, 1), smoothest(x, v, a, whole, s, 2)
     wanted = np.empty(2)
     _give_way(m, body, foot, ahead, speed_x + rate[0], speed_z + rate[1], height, wanted)
+    if tops.shape[0] > 0:
+        _keep_clear(m, body, foot, ahead, speed_x + rate[0], speed_z + rate[1], tops, floor, wanted)
     aside, aside_rate = m.aside[foot], m.aside_rate[foot]
     nearer = wanted[0] * aside[0] + wanted[1] * aside[1] < aside[0] ** 2 + aside[1] ** 2
     for i in range(2):
@@ -78,7 +81,7 @@ def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, dt):
 def _give_way(m, body, foot, ahead, speed_x, speed_z, height, out):
     """Write into `out` (2,) how far x, z in the world [m] a swinging foot gives way to the other one: as far as it must now and a
     moment later, and of what it must later the more the sooner that is."""
-    there, here, point = np.empty((3, 2)), np.empty((3, 2)), np.empty(2)
+    there, here = np.empty((3, 2)), np.empty((3, 2))
     out[0] = out[1] = 0.0
     if m.turn != 0.0 and m.spot:  # as recorded, feet pass each other
         return
@@ -86,34 +89,58 @@ def _give_way(m, body, foot, ahead, speed_x, speed_z, height, out):
         return
     side, most = 1.0 - 2.0 * foot, 0.0
     for k in range(-2, SAMPLES):
-        s = ahead.shares[foot, k] if k >= 0 else 0.0
-        later = s * ahead.until[foot]
-        if k >= 0 and (s <= 0.0 or s >= 1.0 or later > AHEAD):
+        share, low = _foretold(m, body, foot, ahead, k, speed_x, speed_z, here)
+        if share <= 0.0:
             continue
-        if k < 0:  # as it is, and goes
-            outline_kernel(m, body, foot, here)
-            low = min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
-            share = min(swing_progress(m, foot) / YIELDING, 1.0)
-            c, sine = math.cos(m.ground[2]), math.sin(m.ground[2])
-            for i in range(3):
-                x, z = here[i, 0], here[i, 1]
-                here[i, 0] = m.ground[0] + c * x + sine * z - m.aside[foot, 0] + (k + 2) * LEAD * speed_x
-                here[i, 1] = m.ground[1] - sine * x + c * z - m.aside[foot, 1] + (k + 2) * LEAD * speed_z
-        else:
-            heel, ball = ahead.way[foot, k, 0], ahead.way[foot, k, 1]
-            low, share = min(heel[1], ball[1]), smooth(1.0 - later / AHEAD)
-            for i in range(2):
-                goal = m.land[foot, i]
-                point[i] = ball[2 * i] + goal + smoothest(m.offset[foot, i] - goal, m.offset_rate[foot, i], m.offset_push[foot, i],
-                                                          max(ahead.until[foot], SOONEST), s, 0)
-                here[1, i], here[0, i] = point[i], point[i] + heel[2 * i] - ball[2 * i]
-            with_toe(body, here)
         need = share * need_of_room(there, here, side, FADE) * smooth((HIGH - low + height) / (HIGH - LOW))
         if need > most:
             most = need
             own_side(there, here, side, out)
     out[0] *= most
     out[1] *= most
+
+
+@kernel
+def _keep_clear(m, body, foot, ahead, speed_x, speed_z, tops, floor, out):
+    """Add to `out` (2,) how far x, z in the world [m] a swinging foot that gives way so far goes aside to pass what is too high to step on."""
+    here, aside, most = np.empty((3, 2)), np.empty(2), 0.0
+    x, z = out[0], out[1]
+    for k in range(-2, SAMPLES):
+        share, _ = _foretold(m, body, foot, ahead, k, speed_x, speed_z, here)
+        if share <= 0.0:
+            continue
+        for i in range(3):
+            here[i, 0] += x
+            here[i, 1] += z
+        if out_of_walls(m, tops, floor, foot, here, aside) and share * math.hypot(aside[0], aside[1]) > most:
+            most = share * math.hypot(aside[0], aside[1])
+            out[0], out[1] = x + share * aside[0], z + share * aside[1]
+
+
+@kernel
+def _foretold(m, body, foot, ahead, k, speed_x, speed_z, here):
+    """Write a swinging foot's centre line (3, 2) in the world as it will be without giving way: now and a moment later for k of −2 and −1, then at moment k of its
+    way. How much that counts, 0 where it does not, and how high [m] the foot is then."""
+    if k < 0:  # as it is, and goes
+        outline_kernel(m, body, foot, here)
+        c, sine = math.cos(m.ground[2]), math.sin(m.ground[2])
+        for i in range(3):
+            x, z = here[i, 0], here[i, 1]
+            here[i, 0] = m.ground[0] + c * x + sine * z - m.aside[foot, 0] + (k + 2) * LEAD * speed_x
+            here[i, 1] = m.ground[1] - sine * x + c * z - m.aside[foot, 1] + (k + 2) * LEAD * speed_z
+        return min(swing_progress(m, foot) / YIELDING, 1.0), min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
+    s = ahead.shares[foot, k]
+    later = s * ahead.until[foot]
+    if s <= 0.0 or s >= 1.0 or later > AHEAD:
+        return 0.0, 0.0
+    heel, ball = ahead.way[foot, k, 0], ahead.way[foot, k, 1]
+    for i in range(2):
+        goal = m.land[foot, i]
+        here[1, i] = ball[2 * i] + goal + smoothest(m.offset[foot, i] - goal, m.offset_rate[foot, i], m.offset_push[foot, i],
+                                                    max(ahead.until[foot], SOONEST), s, 0)
+        here[0, i] = here[1, i] + heel[2 * i] - ball[2 * i]
+    with_toe(body, here)
+    return smooth(1.0 - later / AHEAD), min(heel[1], ball[1])
 
 
 @kernel

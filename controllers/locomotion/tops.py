@@ -1,4 +1,4 @@
-"""The tops of boxes and ramps that feet can step on, and how high the ground lies somewhere."""
+"""The tops of boxes and ramps that feet can step on, or must keep clear of, and how high the ground lies somewhere."""
 
 from __future__ import annotations
 
@@ -9,21 +9,25 @@ from typing import Any
 import numpy as np
 
 from ..compiled import kernel
-from ..navigation import is_box, slope
+from ..navigation import is_box, is_pillar, slope
+from ..navigation.passing import STEP
 
 SEEN = 0.8
 """A foot comes down no more than a `STEP` higher or deeper than the other stands, and what is higher than this over the body's level is no ground [m]: feet go up two of the highest steps from one that stands."""
 SAME = 0.02
 """Grounds nearer to each other than this are the same one [m]."""
-FLAT = np.zeros((0, 8))
+SQUARE, ENDLESS = 0.5 * math.sqrt(math.pi), 1e3
+"""Half as wide as a circle of radius 1 a square is that is as large; nobody stands on what is so high [m]."""
+FLAT = np.zeros((0, 9))
 """No tops: the ground is the character's own floor."""
 
 
 def tops(around: Sequence[Any]) -> np.ndarray:
-    """The tops (M, 8) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
-    along [m], height [m], slope along."""
+    """The tops (M, 9) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
+    along [m], height [m], slope along, and how high they begin [m]; and pillars, as squares as large that nobody stands on."""
     rows = [(b.centre[0], b.centre[2], math.cos(b.heading), math.sin(b.heading), 0.5 * b.size[0], 0.5 * b.size[2],
-             b.centre[1] + 0.5 * b.size[1], slope(b)) for b in around if is_box(b)]
+             b.centre[1] + 0.5 * b.size[1], slope(b), b.centre[1] - 0.5 * b.size[1]) for b in around if is_box(b)]
+    rows += [(p.foot[0], p.foot[2], 1.0, 0.0, SQUARE * p.radius, SQUARE * p.radius, ENDLESS, 0.0, p.foot[1]) for p in around if is_pillar(p) and p.height > STEP]
     return np.array(rows, float) if rows else FLAT
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiled import kernel
 from ..navigation.passing import STEP
+from .beside_walls import out_of_walls
 from .memory import RUN, WALK
 from .root_motion import cadence_kernel
 from .tops import SAME, ground_kernel
@@ -92,7 +93,12 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         along_x, along_z = along_x / speed, along_z / speed
     else:
         along_x, along_z = s, c
-    other, here = m.base[1 - foot], np.empty(3)
+    other, here, line, aside = m.base[1 - foot], np.empty(3), np.empty((3, 2)), np.empty(2)
+    for i in range(3):
+        back = (FOOT, 0.0, -TOE)[i]
+        line[i, 0], line[i, 1] = x - back * s, z - back * c
+    out_of_walls(m, tops, floor, foot, line, aside)
+    x, z = x + aside[0], z + aside[1]
     best, least, most = 0.0, 9.0, NONE
     for shift in SHIFTS:
         if abs(shift) >= least:
@@ -101,7 +107,7 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         if stands > NONE and abs(here[0] - other) <= STEP and abs(shift) + WORTH[stands] < least:
             best, least, most = shift, abs(shift) + WORTH[stands], stands
             out[0], out[1], out[2] = here[0], here[1], here[2]
-    m.land[foot, 0], m.land[foot, 1] = best * along_x, best * along_z
+    m.land[foot, 0], m.land[foot, 1] = aside[0] + best * along_x, aside[1] + best * along_z
     if most == NONE:
         under_kernel(m, tops, floor, x, z, c, s, out)
         if out[0] < other - STEP and speed > SLOW:  # over an edge: as the other one, until it is over it, too

@@ -84,7 +84,7 @@ def feet(walker: Locomotion) -> None:
     """Compile what places the feet: half of a step."""
     memory, body, legs, places, turns, local, dt = _some(walker)
     ahead = step.room_to_plan(memory["weights"].size, len(local))
-    _compile(step.place_feet, memory, body, legs, ahead, walker.settings.clearance, np.zeros((0, 8)), 0.0, np.zeros((4, 2)), places, turns, local,
+    _compile(step.place_feet, memory, body, legs, ahead, walker.settings.clearance, np.zeros((0, 9)), 0.0, np.zeros((4, 2)), places, turns, local,
              dt, np.zeros((5, 3, 3)))
 
 

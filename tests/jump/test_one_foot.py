@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from gambol.controllers.jump.starting import ready, start_of
 from gambol.controllers.body import contact_points, forward_kinematics, sole_corners
 from gambol.controllers.contract import Intent, Leap, Unable, but
 from gambol.controllers.jump import Jumping
@@ -116,3 +117,17 @@ def test_what_is_no_foot_and_what_no_leg_can_push_is_refused(jump, standing, per
     assert memory.rebounds
     with pytest.raises(Unable, match="0.75 s in the air is too long for this body there"):
         jump.plan(but(states[down], memory=memory, previous=states[down - 1].pose, elapsed=1 / FPS), Intent(leap=Leap(np.zeros(3), 0.75)))
+
+
+def test_nobody_pushes_off_one_foot_that_is_behind_him_already(person):
+    """However slowly he walks: the leg in front had to be torn back up in a twentieth of a second, at 540 m/s²."""
+    physique, rng, state, seen = person.parts["jump"].physique, np.random.default_rng(0), person.start(), 0
+    for n in range(40 * 60):
+        if n % 40 == 0:
+            wish = np.array([rng.uniform(1.0, 1.5), rng.uniform(-2.0, 2.0), 0.0])
+        state, _ = person.step(state, Intent(wish), 1 / 60)
+        start = start_of(physique, state)
+        if start.single is not None and ready(physique, state):
+            seen += 1
+            assert (start.centre - start.feet[start.single, :3]) @ (start.velocity * [1.0, 0.0, 1.0]) < 0.0
+    assert seen > 20

@@ -1,0 +1,96 @@
+"""Feet beside what is too high to step on: they come down before it, and swing past it."""
+
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from gambol.controllers.body import contact_points, forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion.beside_walls import BESIDE, out_of_walls
+from gambol.controllers.locomotion.tops import tops
+from gambol.controllers.navigation import gap
+from gambol.controllers.navigation.passing import STEP
+
+FPS = 60
+NEAR = st.floats(-1.0, 1.0)
+
+
+def box(centre, size, heading=0.0):
+    return SimpleNamespace(centre=centre, size=size, heading=heading, slope=0.0)
+
+
+class Someone(NamedTuple):
+    """What is asked of a character's memory."""
+
+    ground: np.ndarray
+    base: np.ndarray
+    left: np.ndarray
+
+
+def body(x=0.0, z=0.0):
+    return Someone(np.array([x, z, 0.0]), np.zeros(2), np.zeros(2))
+
+
+def pushed(who, things, line):
+    """The centre line (3, 2) of a foot where it goes."""
+    out = np.empty(2)
+    out_of_walls(who, tops(things), 0.0, 0, line, out)
+    return line + out
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.floats(0.2, 2.0), st.floats(0.2, 2.0), st.floats(-3.0, 3.0), NEAR, NEAR, st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-3.0, 3.0))
+def test_a_foot_is_led_out_to_its_bodys_side(wide, deep, heading, x, z, aside, ahead, points):
+    """No place of it is in the box afterwards, by half a shoe, and the way from the body to it leads through no box."""
+    thing = box((0.0, 0.5, 0.0), (wide, 1.0, deep), heading)
+    assume(gap(np.array([[x, 0.5, z]]), thing)[0] > 0.15)
+    line = np.array([x + aside, z + ahead]) + np.outer([0.0, 0.175, 0.27], [np.sin(points), np.cos(points)])
+    led = pushed(body(x, z), (thing,), line)
+    at = np.column_stack([led[:, 0], np.full(3, 0.5), led[:, 1]])
+    if not np.array_equal(led, line):
+        assert gap(at, thing).min() > -1e-9
+    c, s = np.cos(heading), np.sin(heading)
+    local = np.abs(np.stack([c * led[:, 0] - s * led[:, 1], s * led[:, 0] + c * led[:, 1]], -1))
+    assert (local >= 0.5 * np.array([wide, deep]) + BESIDE - 1e-9).any(-1).all()
+
+
+@pytest.mark.parametrize("high", (0.1, STEP))
+def test_what_can_be_stepped_on_pushes_no_foot(high):
+    line = np.array([[0.3, 0.0], [0.4, 0.0], [0.5, 0.0]])
+    assert np.array_equal(pushed(body(), (box((0.8, 0.5 * high, 0.0), (1.0, high, 1.0)),), line), line)
+
+
+def test_the_next_tread_but_one_is_no_wall_to_who_comes_up_the_stairs():
+    """But it is to who comes from the side."""
+    stairs = tuple(box((0.0, 0.085 * (n + 1), 1.0 + 0.29 * n), (2.0, 0.17 * (n + 1), 0.29)) for n in range(4))
+    line = np.array([[0.0, 1.2], [0.0, 1.375], [0.0, 1.47]])
+    assert np.array_equal(pushed(body(0.0, 0.7), stairs, line), line)
+    led = pushed(body(1.3, 1.5), stairs, np.array([[1.1, 1.6], [0.95, 1.6], [0.9, 1.6]]))
+    assert (led[:, 0] > 1.0 + BESIDE - 1e-9).all()
+
+
+def test_what_hangs_overhead_pushes_no_foot():
+    line = np.array([[0.3, 0.0], [0.4, 0.0], [0.5, 0.0]])
+    assert np.array_equal(pushed(body(), (box((0.8, 1.5, 0.0), (1.0, 1.0, 1.0)),), line), line)
+
+
+@pytest.mark.parametrize("thing", (box((0.0, 0.3, 2.0), (2.0, 0.6, 2.0)), SimpleNamespace(foot=(0.0, 0.0, 1.3), radius=0.3, height=2.0)), ids=("a box", "a pillar"))
+def test_who_turns_and_steps_close_by_keeps_his_feet_out_of_it(locomotion, thing):
+    """Restless hands that press a body against it: no heel, ball or tip is in it, and nobody climbs what is too high for a step."""
+    rng, state, states = np.random.default_rng(3), locomotion.start((0.0, 0.6, 0.0)), []
+    wish = np.zeros(3)
+    for n in range(40 * FPS):
+        if n % 25 == 0:  # on towards it, mostly, and turning
+            way = np.arctan2(-state.ground[0], 1.5 - state.ground[1]) - state.ground[2] + rng.normal(0.0, 1.0)
+            wish = np.array([np.cos(way), 0.0, np.sin(way)]) * rng.uniform(0.2, 1.0) + [0.0, rng.uniform(-2.5, 2.5), 0.0]
+        state, _ = locomotion.step(state, Intent(wish, around=(thing,)), 1 / FPS)
+        assert abs(float(state.floor)) < 0.05
+        states.append(state)
+    points = contact_points(locomotion.skeleton, *forward_kinematics(
+        locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float)))
+    deep = -gap(points.reshape(-1, 3), thing).reshape(points.shape[:-1])
+    assert deep.max() < 0.03 and np.mean(deep.max(1) > 0.01) < 0.005, (deep.max(), np.mean(deep.max(1) > 0.01))
