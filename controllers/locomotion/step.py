@@ -29,7 +29,9 @@ from .uneven_ground import stand_on
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
 HEAVY = 2.0
-"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints."""
+"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints …"""
+SINKS = 0.5
+"""… and this many times where it holds them up: who begins to run as his hips go down, or a walk as they rise, would else be carried on through the air."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
 MOMENTS = 8
@@ -216,8 +218,8 @@ def blend_series(m, settings, table, fresh, legs, dt):
 def show_row(m, settings, fresh, legs, dt):
     """Add to a row (COLUMNS,) what is left of an offset, and breath, and remember it as m.row."""
     for d in range(LABELS_AT):
-        m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
-                                                      m.fade if d < HIPS_AT else HEAVY * m.fade, dt)
+        slower = 1.0 if d < HIPS_AT else SINKS if d == HIPS_AT + 1 and m.blend[d] > 0.0 else HEAVY
+        m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0, slower * m.fade, dt)
         fresh[d] += m.blend[d]
     for d in range(COLUMNS):
         m.row_rate[d] = (fresh[d] - m.row[d]) / dt
