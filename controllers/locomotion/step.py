@@ -215,11 +215,24 @@ def blend_series(m, settings, table, fresh, legs, dt):
 
 
 @kernel
+def held_up_kernel(x, v, fade, dt):
+    """The offset of the hips' height [m] and its rate after dt: one that holds them up goes sooner, from the moment on at which it begins to."""
+    up = x > 0.0 or x == 0.0 and v > 0.0
+    half = (SINKS if up else HEAVY) * fade
+    pull = v + x * 2.0 * math.log(2.0) / (half + 1e-9)
+    first = min(-x / pull, dt) if x * pull < 0.0 else dt
+    x, v = spring_kernel(x, v, 0.0, half, first)
+    return spring_kernel(0.0, v, 0.0, (HEAVY if up else SINKS) * fade, dt - first) if first < dt else (x, v)
+
+
+@kernel
 def show_row(m, settings, fresh, legs, dt):
     """Add to a row (COLUMNS,) what is left of an offset, and breath, and remember it as m.row."""
     for d in range(LABELS_AT):
-        slower = 1.0 if d < HIPS_AT else SINKS if d == HIPS_AT + 1 and m.blend[d] > 0.0 else HEAVY
-        m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0, slower * m.fade, dt)
+        if d == HIPS_AT + 1:
+            m.blend[d], m.blend_rate[d] = held_up_kernel(m.blend[d], m.blend_rate[d], m.fade, dt)
+        else:
+            m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0, m.fade if d < HIPS_AT else HEAVY * m.fade, dt)
         fresh[d] += m.blend[d]
     for d in range(COLUMNS):
         m.row_rate[d] = (fresh[d] - m.row[d]) / dt

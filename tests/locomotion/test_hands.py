@@ -1,7 +1,10 @@
 """Hands that give a body no time: short bursts of the run key, ways changed before the last one was taken up."""
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
+from gambol.controllers.locomotion.step import SINKS, held_up_kernel
 from playing import FPS, play
 
 FLIGHT = 0.25
@@ -31,3 +34,15 @@ def test_nobody_is_carried_through_the_air_as_gaits_change(locomotion):
     motion = play(locomotion, bursts(36))
     stands = np.array([s.contacts for s in motion.states]).any(-1)
     assert max(longest(~stands[:, n]) for n in range(stands.shape[1])) < FLIGHT * FPS
+
+
+@given(st.floats(-0.2, 0.2), st.floats(-1.5, 1.5), st.integers(2, 40))
+def test_what_holds_hips_up_goes_the_same_way_in_any_steps(x, v, pieces):
+    """Exact over any step, and never over the ground by more than what it rises by in the shorter half-life."""
+    once = held_up_kernel(x, v, 0.18, 0.4)
+    at, most = (x, v), x
+    for _ in range(pieces):
+        at = held_up_kernel(*at, 0.18, 0.4 / pieces)
+        most = max(most, at[0])
+    assert np.allclose(once, at, atol=1e-9)
+    assert most <= max(x, 0.0) + max(v, 0.0) * SINKS * 0.18 / (2.0 * np.log(2.0)) / np.e + 1e-9
