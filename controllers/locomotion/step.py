@@ -30,7 +30,7 @@ STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
 HEAVY = 2.0
 """An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints …"""
-SINKS = 0.5
+SINKS = 0.8
 """… and this many times where it holds them up: who begins to run as his hips go down, or a walk as they rise, would else be carried on through the air."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
@@ -63,7 +63,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings, table, dt)
         begin_turn(m, turns, wish[n], fresh)
-        turn_corner(m, wish[n])
+        turn_corner(m, wish[n], dt)
         turn_back(m, turns, wish[n], settings, fresh)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)

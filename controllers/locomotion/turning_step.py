@@ -180,8 +180,8 @@ def end_turn(m):
 def after_turn(m, table, row, dt):
     """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, which goes on by itself, fades. How fast the
     gait goes, its weights with it, is foretold in the first step, and seen in the second."""
-    if m.left_turn == 2:
-        m.left_turn = 0
+    if m.left_turn >= 2:  # what was seen goes on: after a turn, or as a gait comes to stand or goes again (3, then 2)
+        m.left_turn = 2 * (m.left_turn - 2)
         for d in range(LABELS_AT):
             m.blend_rate[d] = m.row_rate[d] - (row[d] - (m.row[d] - m.blend[d])) / dt
         return

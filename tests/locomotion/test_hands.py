@@ -1,9 +1,11 @@
 """Hands that give a body no time: short bursts of the run key, ways changed before the last one was taken up."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gambol.controllers.body import anatomy, centre_of_mass
 from gambol.controllers.locomotion.step import SINKS, held_up_kernel
 from playing import FPS, play
 
@@ -23,6 +25,17 @@ def bursts(count):
     return wish
 
 
+def letting_go(before, then=None, moment=0.3, phases=30):
+    """Wishes (T, phases, 3) to go on for a while, each a little longer, then for a moment otherwise, and to stop."""
+    wish = np.zeros((round(4.8 * FPS), phases, 3))
+    for n in range(phases):
+        at = round(1.8 * FPS) + 2 * n
+        wish[:at, n] = before
+        if then is not None:
+            wish[at:at + round(moment * FPS), n] = then
+    return wish
+
+
 def longest(mask):
     """How many frames of a mask (T,) on end are true at most."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
@@ -34,6 +47,28 @@ def test_nobody_is_carried_through_the_air_as_gaits_change(locomotion):
     motion = play(locomotion, bursts(36))
     stands = np.array([s.contacts for s in motion.states]).any(-1)
     assert max(longest(~stands[:, n]) for n in range(stands.shape[1])) < FLIGHT * FPS
+
+
+@pytest.mark.parametrize("before", [(1.3, 0, 0), (1.3, 1.0, 0), (1.8, 0, 0), (1.8, -1.2, 0)])
+def test_hips_do_not_jerk_as_both_feet_come_to_stand(locomotion, before):
+    """The gait stands still from a tick to the next: its movement goes over into what fades."""
+    motion = play(locomotion, letting_go(before))
+    waits = np.array([s.memory["waits"] for s in motion.states])
+    jerk = np.linalg.norm(np.diff(motion.root, 2, axis=0), axis=-1) * FPS
+    for t, n in zip(*np.nonzero((waits[1:] == 1) & (waits[:-1] == 0))):
+        assert jerk[t - 2:t + 3, n].max() < 0.25
+
+
+@pytest.mark.parametrize(("before", "then"), [((1.3, 0, 0), None), ((1.8, 0, 0), None), ((2.4, -1.8, 0), None), ((2.4, 1.2, 0), (1.3, 0.5, 0)),
+                                              ((1.0, 0, 0), (1.0, 2.4, 0)), ((1.3, 0, 0), (1.3, 2.4, 0))])
+def test_who_stops_ends_over_his_feet(locomotion, before, then):
+    """Shoulders that still turn lead the way on, and who is too quick to stop over the foot that stands takes another step: nobody leans away from where he stands."""
+    motion = play(locomotion, letting_go(before, then))
+    com = centre_of_mass(anatomy(locomotion.skeleton), motion.positions, motion.orientations)
+    waits = np.array([s.memory["waits"] for s in motion.states]) == 1
+    away = np.hypot(*np.moveaxis((com - motion.points.mean(2))[..., [0, 2]], -1, 0))
+    speed = np.pad(np.linalg.norm(np.diff(com[..., [0, 2]], axis=0), axis=-1) * FPS, ((0, 1), (0, 0)))
+    assert away[waits & (speed < 0.4)].max() < 0.17
 
 
 @given(st.floats(-0.2, 0.2), st.floats(-1.5, 1.5), st.integers(2, 40))
