@@ -112,7 +112,7 @@ def _choose_place(m, speed, settings, table, stance):
     steep = min(max(most * time / speed, EVEN), STEEPEST) if brakes else EVEN
     if m.stop < AT_PLACE:
         steep = min(max(speed * time / max(_to_foot(m, speed, stance), 0.01) - 1.0, EVEN), STEEPEST)
-    elif m.stop <= ON_ITS_WAY:
+    elif m.stop <= ON_ITS_WAY and settings.footing:
         farthest = max(_to_foot(m, speed, stance) + LONGER, 0.5 * speed * speed / most)
         steep = min(max(speed * time / farthest - 1.0, steep), STEEPEST)
     m.halts = CHOSE
@@ -149,7 +149,7 @@ def _to_foot(m, speed, stance):
 def _over_foot(m, settings, speed, stance):
     """Whether somebody who stops over the foot that stands, or comes down soon, can brake as soon as that: he would end leaning away from his feet."""
     longer = LONGER if m.stop >= AT_PLACE else 0.0
-    return m.stop > ON_ITS_WAY or 0.5 * speed * speed / _most(settings) <= max(_to_foot(m, speed, stance) + longer, 0.0) + BEYOND
+    return m.stop > ON_ITS_WAY or not settings.footing or 0.5 * speed * speed / _most(settings) <= max(_to_foot(m, speed, stance) + longer, 0.0) + BEYOND
 
 
 @kernel

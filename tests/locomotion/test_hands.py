@@ -6,6 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gambol.controllers.body import anatomy, centre_of_mass
+from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion.gaze import QUICKEST, look_on
 from gambol.controllers.locomotion.step import SINKS, held_up_kernel
 from playing import FPS, play
 
@@ -69,6 +71,32 @@ def test_who_stops_ends_over_his_feet(locomotion, before, then):
     away = np.hypot(*np.moveaxis((com - motion.points.mean(2))[..., [0, 2]], -1, 0))
     speed = np.pad(np.linalg.norm(np.diff(com[..., [0, 2]], axis=0), axis=-1) * FPS, ((0, 1), (0, 0)))
     assert away[waits & (speed < 0.4)].max() < 0.17
+
+
+@pytest.mark.parametrize("degrees", [60, 90, 135, 175, -60, -90, -135, -175])
+def test_shoulders_turn_on_evenly_as_a_turns_first_foot_leaves(locomotion, degrees):
+    """Phase runs five times as fast from there on; who turns does not."""
+    state, turning = locomotion.start(), []
+    towards = np.array([np.radians(degrees), 1.3])
+    for _ in range(30):
+        state, _ = locomotion.step(state, Intent(np.zeros(3), towards=towards), 1 / FPS)
+        turning.append(state.velocity[1] if state.memory["turn"] else np.nan)
+    assert np.nanmax(np.abs(turning)) > 1.5
+    assert np.nanmax(np.abs(np.diff(turning))[1:]) < 0.8
+
+
+@given(st.lists(st.tuples(st.floats(-1.5, 1.5), st.integers(2, 30)), min_size=1, max_size=4))
+def test_heads_turn_no_faster_than_heads_do(asked):
+    """However often it is told otherwise where it will go."""
+    m = np.zeros(1, [("gaze", "f8", 2), ("gaze_rate", "f8", 2)]).view(np.recarray)[0]
+    for goal, ticks in asked:
+        for _ in range(ticks):
+            before = m.gaze_rate.copy()
+            look_on.py_func(m, 0, goal, 1 / FPS)
+            assert abs(m.gaze_rate[0] - before[0]) <= QUICKEST / FPS + 1e-9
+    for _ in range(90):
+        look_on.py_func(m, 0, 0.3, 1 / FPS)
+    assert abs(m.gaze[0] - 0.3) < 0.02
 
 
 @given(st.floats(-0.2, 0.2), st.floats(-1.5, 1.5), st.integers(2, 40))
