@@ -7,7 +7,10 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import anatomy, centre_of_mass
 from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion.first_stride import FASTEST_TURN, SHARE_HALFLIFE, start_kernel
+from gambol.controllers.locomotion.foot_lock import take_hold
 from gambol.controllers.locomotion.gaze import QUICKEST, look_on
+from gambol.controllers.locomotion.kernel import LABELS_AT
 from gambol.controllers.locomotion.step import SINKS, held_up_kernel
 from playing import FPS, play
 
@@ -97,6 +100,42 @@ def test_heads_turn_no_faster_than_heads_do(asked):
     for _ in range(90):
         look_on.py_func(m, 0, 0.3, 1 / FPS)
     assert abs(m.gaze[0] - 0.3) < 0.02
+
+
+def test_knees_brake_before_they_lock(locomotion):
+    """Who lets go in a run steps farther than a walk does: the leg that swings there straightens the earlier, the farther it is asked to."""
+    motion = play(locomotion, letting_go((2.4, 1.2, 0), phases=40))
+    bent = []
+    for side in ("Left", "Right"):
+        hip, knee, ankle = (motion.positions[..., locomotion.skeleton.index(side + joint), :] for joint in ("UpLeg", "Leg", "Foot"))
+        up, down = hip - knee, ankle - knee
+        cosine = (up * down).sum(-1) / np.linalg.norm(up, axis=-1) / np.linalg.norm(down, axis=-1)
+        bent.append(np.pi - np.arccos(np.clip(cosine, -1.0, 1.0)))
+    brakes = np.diff(bent, 2, axis=1).max(0) * FPS**2
+    assert max(brakes[round(1.8 * FPS) + 2 * n:, n].max() for n in range(40)) < 850.0
+
+
+@given(st.floats(0.0, 0.99), st.floats(0.4, 1.0), st.floats(-20.0, -1.5), st.floats(0.31, 1.0))
+def test_a_ball_that_leaves_does_not_hold_on_again(locomotion, grip, label, falls, lent):
+    """Where its heel is free and its label falls: the leg would be stretched, and its knee whip."""
+    memory = locomotion.start().memory.copy().reshape(1)
+    memory["settled"], memory["phase"], memory["lent"] = 0, 0.45, lent
+    memory["grip"], memory["row"][0, LABELS_AT + 3], memory["row_rate"][0, LABELS_AT + 3] = grip, label, falls
+    take_hold(memory[0], 3, locomotion.tables.legs.height, 1 / FPS)
+    assert memory["grip"][0, 3] <= np.float32(grip)
+
+
+@given(st.floats(0.0, 2.5), st.floats(0.0, 2.5), st.integers(0, 30))
+def test_what_a_start_adds_follows_the_wish_smoothly(locomotion, before, after, ticks):
+    """A way that changes meanwhile makes no arm jerk."""
+    memory, start = locomotion.start().memory.copy().reshape(1), locomotion.tables.start
+    memory["settled"], memory["onset"] = 0, 1.0
+    rates = []
+    for tick in range(ticks + 20):
+        was = memory["shares"].copy()
+        start_kernel(memory[0], start, np.array([1.3, before if tick < ticks else after, 0.0]), 1 / FPS)
+        rates.append((memory["shares"] - was)[0] * FPS)
+    assert np.abs(np.diff(rates, axis=0)).max() < FASTEST_TURN * (2.0 * np.log(2.0) / SHARE_HALFLIFE) ** 2 / FPS
 
 
 @given(st.floats(-0.2, 0.2), st.floats(-1.5, 1.5), st.integers(2, 40))
