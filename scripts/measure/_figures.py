@@ -24,8 +24,8 @@ def figures(motion: Motion) -> dict[str, float]:
                 com=float(np.linalg.norm(motion.com_acceleration[..., [0, 2]], axis=-1).max()))
 
 
-def told(rows) -> str:
-    """Some motions' figures in one line."""
+def told(rows, flies: bool = True) -> str:
+    """Some motions' figures in one line. flies: whether for how long nobody touches the floor is told; of recordings it isn't, whose floor is a centimetre or two off."""
     frames, runs = (np.array([r[k] for r in rows], float) for k in ("frames", "runs"))
 
     def mean(name, weights=frames):
@@ -39,7 +39,7 @@ def told(rows) -> str:
             f"{mean('run06', running):.1f}, {mean('run1', running):.1f} % · joints over 3× walking {mean('joints3'):.2f} %, worst "
             f"{most('joint'):.1f}× (runs {most('joint_run'):.1f}×) · drift a stance {mean('drift'):.2f} cm, worst {most('drift_worst'):.1f} · feet apart "
             f"{min(r['apart'] for r in rows):.1f} cm, under 7 cm in {mean('near'):.2f} % · scuffs {mean('scuffs'):.1f} % of swings above 1 m/s · "
-            f"mass centre's peak {most('com'):.1f} m/s² · in the air {most('air'):.2f} s at most")
+            f"mass centre's peak {most('com'):.1f} m/s²" + (f" · in the air {most('air'):.2f} s at most" if flies else ""))
 
 
 def at_rest(motion: Motion) -> str:
