@@ -29,10 +29,10 @@ def damp(x: ArrayLike, goal: ArrayLike, halflife: float, dt: float) -> np.ndarra
     return np.asarray(goal) + decay(np.asarray(x) - goal, halflife, dt)
 
 
-def settle(x: np.ndarray, v: np.ndarray, halflife: float, dt: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def settle(x: np.ndarray, v: np.ndarray, halflife: float | np.ndarray, dt: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """An offset and its velocity (...) after dt [s], settling critically damped to 0: inertialisation.
 
-    dt: a number, or anything that broadcasts with them.
+    halflife, dt: numbers, or anything that broadcasts with them.
 
     At a transition take x = old − new and v likewise, as vectors or rotation vectors (the short
     way round), add the settling offset to the new motion, and nothing jumps.

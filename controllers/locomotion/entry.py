@@ -16,7 +16,7 @@ from . import fourier
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel, time_kernel
 from .library import DURATION, HIPS, LABELS
 from .memory import RUN, WALK
-from .step import HEAVY
+from .step import HEAVY, SINKS
 
 WALKS_ON = 0.35
 """A body that moves faster than this [m/s] walks on; a slower one stands."""
@@ -119,8 +119,10 @@ def _fade(locomotion: Any, memory: np.ndarray, foot: int) -> float:
     series_kernel(locomotion.tables.series, weights, np.float32((phase + ahead / PHASES) % 1.0), row)
     for half in FADES:
         left = row.astype(float)
-        for part, slower in ((slice(HIPS_AT), 1.0), (slice(HIPS_AT, LABELS_AT), HEAVY)):
-            left[part] += settle(memory["blend"][part], memory["blend_rate"][part], slower * half, later)[0]
+        slower = np.ones(LABELS_AT)
+        slower[HIPS_AT:] = HEAVY
+        slower[HIPS_AT + 1] = SINKS if memory["blend"][HIPS_AT + 1] > 0.0 else HEAVY
+        left[:LABELS_AT] += settle(memory["blend"][:LABELS_AT], memory["blend_rate"][:LABELS_AT], slower * half, later)[0]
         if _height(locomotion, left, foot) < DOWN:
             break
     return half

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..body import spring_kernel
 from ..compiled import kernel
 from .kernel import COLUMNS, LABELS_AT
 from .library import Library
@@ -29,8 +30,8 @@ WHOLE_SPEED, WHOLE_TURN = 0.8, 1.2
 """Starts faster than this [m/s], or turning faster [rad/s], show all of it …"""
 SIDEWAYS = 0.5
 """… and those that go sideways as fast as this, or back, none."""
-SHARE_HALFLIFE = 0.06
-"""With this half-life [s] what is shown follows the wish."""
+SHARE_HALFLIFE = 0.08
+"""With this half-life [s] what is shown follows the wish, smoothly, or arms would jerk as it changes."""
 
 
 class Starting(NamedTuple):
@@ -56,7 +57,7 @@ def leave_rest(m, wish):
     m.phase = 1.0 - BEFORE if m.first == 0 else 0.5 - BEFORE
     m.settled = 0
     m.onset = BEFORE + END
-    m.shares[0] = m.shares[1] = 0.0
+    m.shares[0] = m.shares[1] = m.shares_rate[0] = m.shares_rate[1] = 0.0
 
 
 @kernel
@@ -100,9 +101,9 @@ def start_kernel(m, start, wish, dt):
     ahead = (1.0 - min(abs(wish[2]) / SIDEWAYS, 1.0)) * min(max(1.0 + wish[0] / SIDEWAYS, 0.0), 1.0)
     towards = wish[1] if m.first == 0 else -wish[1]
     whole = ahead * min(max(wish[0] / WHOLE_SPEED, abs(wish[1]) / WHOLE_TURN, 0.0), 1.0)
-    gain = 1.0 - 2.0 ** (-dt / SHARE_HALFLIFE)
-    m.shares[0] += gain * (whole - m.shares[0])
-    m.shares[1] += gain * (ahead * min(max(towards, 0.0), FASTEST_TURN) - m.shares[1])
+    turning = ahead * min(max(towards, 0.0), FASTEST_TURN)
+    m.shares[0], m.shares_rate[0] = spring_kernel(m.shares[0], m.shares_rate[0], whole, SHARE_HALFLIFE, dt)
+    m.shares[1], m.shares_rate[1] = spring_kernel(m.shares[1], m.shares_rate[1], turning, SHARE_HALFLIFE, dt)
 
 
 @kernel

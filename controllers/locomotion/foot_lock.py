@@ -49,6 +49,8 @@ PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
 STRAINED = (0.35, 0.8)
 """A ball lets go, the more the farther its heel had to rise [rad] between these."""
+LEAVES, LENT = -1.0, 0.3
+"""A ball whose label falls faster than this [1/s], its heel free by more than the second, does not hold on again: its leg would be stretched, and whip."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 OVER = 0.3
@@ -72,7 +74,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         follow_ground(m, tops, floor, SWING[m.family], dt)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
-        _take_hold(m, k, legs.height, dt)
+        take_hold(m, k, legs.height, dt)
     for foot in range(2):
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
@@ -110,7 +112,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
 
 
 @kernel
-def _take_hold(m, k, height, dt):
+def take_hold(m, k, height, dt):
     """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low."""
     wanted = 1.0
     if not (m.settled or m.waits or shift_left(m) > 0.0):
@@ -124,6 +126,8 @@ def _take_hold(m, k, height, dt):
                 m.torn[k // 2] = 0
     if wanted > m.grip[k] and not m.settled and (
             m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
+        wanted = m.grip[k]
+    if k % 2 and wanted > m.grip[k] and m.row_rate[LABELS_AT + k] < LEAVES and m.lent[k // 2] > LENT:
         wanted = m.grip[k]
     step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)

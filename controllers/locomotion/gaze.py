@@ -17,6 +17,8 @@ FARTHEST, NODS = 1.1, 0.5
 """A head turns and nods this far [rad]; what lies behind it is not looked at."""
 HALFLIFE = 0.14
 """Half-life of a head's turn [s]."""
+QUICKEST = 50.0
+"""A head that turns speeds up no faster than this [rad/s²], as people's that look elsewhere."""
 SLOW = 0.25
 """Below this speed [m/s] it counts less and less where somebody goes."""
 EYES = 0.62
@@ -40,8 +42,19 @@ def gaze_kernel(m, wish, amount, neck, row, dt):
         turn, nod = turn * behind, nod * behind
     turn = amount * min(max(turn, -FARTHEST), FARTHEST)
     nod = amount * min(max(nod, -NODS), NODS)
-    m.gaze[0], m.gaze_rate[0] = spring_kernel(m.gaze[0], m.gaze_rate[0], turn, HALFLIFE, dt)
-    m.gaze[1], m.gaze_rate[1] = spring_kernel(m.gaze[1], m.gaze_rate[1], nod, HALFLIFE, dt)
+    look_on(m, 0, turn, dt)
+    look_on(m, 1, nod, dt)
     for j in range(neck, neck + 2):  # half by the neck, half by the head
         row[j] += 0.5 * m.gaze[1]
         row[LANES + j] += 0.5 * m.gaze[0]
+
+
+@kernel
+def look_on(m, axis, goal, dt):
+    """Lead how far a head turns (axis 0) or nods (1) to a goal [rad], and how fast."""
+    at, rate = spring_kernel(m.gaze[axis], m.gaze_rate[axis], goal, HALFLIFE, dt)
+    over = abs(rate - m.gaze_rate[axis]) / (QUICKEST * dt)
+    if over > 1.0:
+        rate = m.gaze_rate[axis] + (rate - m.gaze_rate[axis]) / over
+        at = m.gaze[axis] + 0.5 * (m.gaze_rate[axis] + rate) * dt
+    m.gaze[axis], m.gaze_rate[axis] = at, rate

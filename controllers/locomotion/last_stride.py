@@ -40,6 +40,8 @@ SHORT, LONGER = 0.7, 0.2
 """He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
 NOWHERE, AHEAD, STOPS, CHOSE = range(4)
 """Whether there is a place where somebody is to come to rest: none; one ahead; he has let go of his wish for it; he stops at one of his own choice."""
+BEYOND, ON_ITS_WAY = 0.1, 0.5 + STRIKE
+"""He stops over a foot that he would be beyond by no more than this [m]; one that is on its way with less than the second left, in phase, is known."""
 HALFWAY = 0.5
 """Where the other foot is too near to the middle, the last one goes that share of it farther aside; the body makes up the rest."""
 OVER, OFF = 0.18, 0.05
@@ -50,6 +52,10 @@ TOWARDS, PAST = 0.9, 0.25
 """Who goes to a place does so at less than the angle with this cosine; one that is this near, but not ahead, has been passed [m]."""
 TARRIES, EASY, BRISK = 0.3, 1.5, 2.0
 """Who slows down to the end from the second speed [m/s] steps slower, too: a cycle takes him this share longer; from the third on he still brakes hard."""
+LAGS, TURNS_ON = 3.0, 0.6
+"""Shoulders that come to rest turn a way that is slowed down evenly by less than they turn, by so many times their own time over its; by no more than the second [rad]."""
+AT_ONCE, STILL = 3, 0.12
+"""What `after_turn` makes of it; and the half-life [s] with which the last step's movement goes as both feet stand."""
 LATEST = 3.0
 """No stop takes longer than this [s]."""
 BRAKES = 0.15, 1.5
@@ -67,6 +73,8 @@ def plan_stop(m, settings, table, stance):
     """Choose the strike that ends a walk, as the phase that is left until it, where somebody who walks has no wish any more, the place
     where he comes to rest, and how steeply he slows down for it. stance: where heels and balls are at rest (4, 2) [m]."""
     if m.settled or m.halts < STOPS and abs(m.asked[0]) + (0.0 if rounds(m) else abs(m.asked[1])) + abs(m.asked[2]) > NO_WISH:
+        if m.waits:
+            _absorb(m)
         m.stop, m.waits = 0.0, 0
         return
     speed = math.hypot(m.command[0], m.command[2])
@@ -75,15 +83,17 @@ def plan_stop(m, settings, table, stance):
     if m.stop <= 0.0:
         if m.family != WALK or speed < LEAST and m.halts < STOPS:
             return
-        left, far = (STRIKE - m.phase) % 0.5, to_halt(m) if m.halts >= STOPS else 0.0
-        while not _ends(m, settings, table, left, speed, far, m.halts >= STOPS):
-            left += 0.5
-        m.stop = left
+        far = to_halt(m) if m.halts >= STOPS else 0.0
+        m.stop = (STRIKE - m.phase) % 0.5
+        while not _ends(m, settings, table, m.stop, speed, far, m.halts >= STOPS) or m.halts < STOPS and not _over_foot(m, settings, speed, stance):
+            m.stop += 0.5
         if m.halts < STOPS:
             _choose_place(m, speed, settings, table, stance)
     elif m.stop > STRIKE and m.halts != STOPS and speed > HARD * _most(settings) * time_to_stop(m, settings, table):
         m.stop += 0.5  # he can't any more by then, and takes another step
         _choose_place(m, speed, settings, table, stance)
+    if m.halts == CHOSE and m.stop > 0.5:  # until the foot is down that he will stand on
+        _place(m, settings, math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]), time_to_stop(m, settings, table))
     m.steep = EVEN if speed <= 0.0 else min(max(speed * time_to_stop(m, settings, table) / max(to_halt(m), 0.01) - 1.0, SHORT), STEEPEST)
 
 
@@ -102,12 +112,23 @@ def _choose_place(m, speed, settings, table, stance):
     steep = min(max(most * time / speed, EVEN), STEEPEST) if brakes else EVEN
     if m.stop < AT_PLACE:
         steep = min(max(speed * time / max(_to_foot(m, speed, stance), 0.01) - 1.0, EVEN), STEEPEST)
-    time /= steep + 1.0
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    m.halt[0] = m.ground[0] + (c * m.command[2] + s * m.command[0]) * time
-    m.halt[1] = m.ground[1] + (c * m.command[0] - s * m.command[2]) * time
-    m.halt[2] = math.nan
+    elif m.stop <= ON_ITS_WAY and settings.footing:
+        farthest = max(_to_foot(m, speed, stance) + LONGER, 0.5 * speed * speed / most)
+        steep = min(max(speed * time / farthest - 1.0, steep), STEEPEST)
     m.halts = CHOSE
+    _place(m, settings, speed * time / (steep + 1.0), time)
+
+
+@kernel
+def _place(m, settings, far, time):
+    """Put the place of his own choice so far off [m] where he goes by himself for so long [s], whose shoulders still turn on a little."""
+    y = 2.0 * math.log(2.0) / (0.5 * settings.command_halflife / settings.agility)
+    turn = (2.0 * m.command[1] + m.rate[1] / y) / y * max(1.0 - LAGS / (y * max(time, 0.1)), 0.0)
+    heading, speed = m.ground[2] + min(max(turn, -TURNS_ON), TURNS_ON), max(math.hypot(m.command[0], m.command[2]), 1e-6)
+    c, s = math.cos(heading), math.sin(heading)
+    m.halt[0] = m.ground[0] + (c * m.command[2] + s * m.command[0]) * far / speed
+    m.halt[1] = m.ground[1] + (c * m.command[0] - s * m.command[2]) * far / speed
+    m.halt[2] = math.nan
 
 
 @kernel
@@ -122,6 +143,13 @@ def _to_foot(m, speed, stance):
             point[0], point[1] = c * x - s * z, s * x + c * z
         far += 0.5 * ((point[1] - stance[2 * foot + k, 1]) * m.command[0] + (point[0] - stance[2 * foot + k, 0]) * m.command[2]) / speed
     return far
+
+
+@kernel
+def _over_foot(m, settings, speed, stance):
+    """Whether somebody who stops over the foot that stands, or comes down soon, can brake as soon as that: he would end leaning away from his feet."""
+    longer = LONGER if m.stop >= AT_PLACE else 0.0
+    return m.stop > ON_ITS_WAY or not settings.footing or 0.5 * speed * speed / _most(settings) <= max(_to_foot(m, speed, stance) + longer, 0.0) + BEYOND
 
 
 @kernel
@@ -174,12 +202,15 @@ def _most(settings):
 
 @kernel
 def to_halt(m):
-    """How far somebody still is from where he is to come to rest [m], 0 where he does not go there."""
+    """How far somebody still is from where he is to come to rest [m], 0 where he does not go there; beside a place of his own choice, how far ahead it is."""
     x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     ahead = (s * x + c * z) * m.command[0] + (c * x - s * z) * m.command[2]
     far = math.hypot(x, z)
-    return far if ahead > TOWARDS * far * math.hypot(m.command[0], m.command[2]) else 0.0
+    speed = math.hypot(m.command[0], m.command[2])
+    if ahead > TOWARDS * far * speed:
+        return far
+    return max(ahead / speed, 0.0) if m.halts == CHOSE and speed > 0.0 else 0.0
 
 
 @kernel
@@ -253,6 +284,7 @@ def until_together(m, step, rest):
         faded = not m.spot or not m.left_turn and abs(m.blend[HIPS_AT]) + abs(m.blend[HIPS_AT + 2]) < FADED
         if faded and m.weights[rest] >= DECIDED and math.hypot(x, z) > 2.0 * BESIDE:
             m.waits = 0
+            _absorb(m)
         return 0.0
     if m.stop <= 0.0:
         return step
@@ -260,4 +292,12 @@ def until_together(m, step, rest):
         m.stop -= step
         return step
     step, m.stop, m.waits = m.stop, 0.0, 1
+    _absorb(m)
     return step
+
+
+@kernel
+def _absorb(m):
+    """Note that the gait stands still from now on, or goes again: how the pose moves goes over into the blend's offset (`after_turn`)."""
+    if m.turn == 0.0 and m.left_turn != 1:
+        m.left_turn, m.fade = AT_ONCE, STILL

@@ -112,12 +112,12 @@ def leg_length(body, hip):
 
 
 @kernel
-def soft_reach(distance, reach):
-    """The length [m] of a leg asked for `distance`: itself while short, smoothly up to `reach`.
+def soft_reach(distance, reach, softness):
+    """The length [m] of a leg asked for `distance`: itself while short, smoothly up to `reach`, over about `softness` [m].
 
     A knee's angle changes infinitely fast where its leg runs into a hard limit.
     """
-    return distance - SOFTNESS * math.log1p(math.exp((distance - reach) / SOFTNESS))
+    return distance - softness * math.log1p(math.exp((distance - reach) / softness))
 
 
 @kernel

@@ -10,7 +10,7 @@ import math
 
 from ..body import distance_kernel, spring_kernel
 from ..compiled import kernel
-from .legs import soft_reach, tilt_kernel
+from .legs import SOFTNESS, soft_reach, tilt_kernel
 from .swing import swing_progress
 
 HEEL_RISE = 0.9
@@ -27,6 +27,8 @@ LEND_HALFLIFE = 0.035
 """… and a heel that lets go comes with this one to be free to take what its leg lacks, so that its knee bends as the blend's …"""
 BENT = 0.006
 """… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
+EARLIER = 0.15
+"""A foot that swings farther than the blend's does straightens its leg over this share of that, so that its knee brakes before it locks."""
 TORN, LATE = 0.02, 1.7
 """A foot lets go that its leg is this much too short for [m], once it stood for long enough for its body to have come down
 to it: this many times as long as a swing after it left."""
@@ -50,7 +52,8 @@ def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work
     bears = min(max(m.bears[foot], 0.0), 1.0)
     free = bears * m.lent[foot] * (1.0 - min(m.onset, 1.0))
     asked, blended = distance_kernel(positions[hip], ankle), distance_kernel(positions[hip], positions[a])
-    length = soft_reach(asked - free * max(asked - blended, 0.0), reach - free * BENT)
+    over = max(asked - blended, 0.0)
+    length = soft_reach(asked - free * over, reach - free * BENT, SOFTNESS + EARLIER * (1.0 - max(grip, m.grip[2 * foot])) * over)
     rise = heel_rise_kernel(positions[hip], ball, ankle, axis, length)
     firm = grip * grip * (3.0 - 2.0 * grip)
     later, rate = spring_kernel(m.rise[foot], m.rise_rate[foot], rise * bears, RISE_HALFLIFE, dt)

@@ -29,7 +29,9 @@ from .uneven_ground import stand_on
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
 HEAVY = 2.0
-"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints."""
+"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints …"""
+SINKS = 0.8
+"""… and this many times where it holds them up: who begins to run as his hips go down, or a walk as they rise, would else be carried on through the air."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
 MOMENTS = 8
@@ -61,7 +63,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings, table, dt)
         begin_turn(m, turns, wish[n], fresh)
-        turn_corner(m, wish[n])
+        turn_corner(m, wish[n], dt)
         turn_back(m, turns, wish[n], settings, fresh)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)
@@ -213,11 +215,24 @@ def blend_series(m, settings, table, fresh, legs, dt):
 
 
 @kernel
+def held_up_kernel(x, v, fade, dt):
+    """The offset of the hips' height [m] and its rate after dt: one that holds them up goes sooner, from the moment on at which it begins to."""
+    up = x > 0.0 or x == 0.0 and v > 0.0
+    half = (SINKS if up else HEAVY) * fade
+    pull = v + x * 2.0 * math.log(2.0) / (half + 1e-9)
+    first = min(-x / pull, dt) if x * pull < 0.0 else dt
+    x, v = spring_kernel(x, v, 0.0, half, first)
+    return spring_kernel(0.0, v, 0.0, (HEAVY if up else SINKS) * fade, dt - first) if first < dt else (x, v)
+
+
+@kernel
 def show_row(m, settings, fresh, legs, dt):
     """Add to a row (COLUMNS,) what is left of an offset, and breath, and remember it as m.row."""
     for d in range(LABELS_AT):
-        m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0,
-                                                      m.fade if d < HIPS_AT else HEAVY * m.fade, dt)
+        if d == HIPS_AT + 1:
+            m.blend[d], m.blend_rate[d] = held_up_kernel(m.blend[d], m.blend_rate[d], m.fade, dt)
+        else:
+            m.blend[d], m.blend_rate[d] = spring_kernel(m.blend[d], m.blend_rate[d], 0.0, m.fade if d < HIPS_AT else HEAVY * m.fade, dt)
         fresh[d] += m.blend[d]
     for d in range(COLUMNS):
         m.row_rate[d] = (fresh[d] - m.row[d]) / dt

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ..body import spring_kernel
 from ..compiled import kernel
 from .first_stride import shift_left
 from .memory import WALK
@@ -35,13 +36,15 @@ TURNS, HURRIES, GAIN = 1.5, 1.3, 4.0
 SLOWS = 0.5
 """… slower by this power of how far he looks that way already; …"""
 PIVOTS = 0.5
-"""… and his pose is that of somebody who turns slower by up to this share, while his body turns so much farther over the foot that stands."""
+"""… and his pose is that of somebody who turns slower by up to this share, while his body turns so much farther over the foot that stands, …"""
+TAKEN_UP = 0.1
+"""… which it takes up with this half-life [s]."""
 
 
 @kernel
 def pivots(m):
     """How many times as fast as his pose somebody turns."""
-    return 1.0 + PIVOTS * _corner(m)
+    return 1.0 + PIVOTS * m.corner
 
 
 @kernel
@@ -53,9 +56,10 @@ def _corner(m):
 
 
 @kernel
-def turn_corner(m, wish):
-    """Make a wish (3,) straight on and turning that of somebody who takes a corner."""
+def turn_corner(m, wish, dt):
+    """Make a wish (3,) straight on and turning that of somebody who takes a corner, whose pose takes it up smoothly."""
     share = _corner(m)
+    m.corner, m.corner_rate = spring_kernel(m.corner, m.corner_rate, share, TAKEN_UP, dt)
     if share <= 0.0 or wish[2] != 0.0 or wish[0] <= 0.0:
         return
     left = short_way(m.towards[0] - m.ground[2])

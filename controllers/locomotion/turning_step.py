@@ -60,6 +60,9 @@ SHIFTED = 0.6
 """On the spot the body goes back to where it stood until so long after its first foot left, in phase."""
 MOMENT = 0.004
 """How fast a turn begins is told over this long in phase."""
+AROUND = (0.05, 0.06)
+"""Splines are told evenly in phase, but phase runs five times as fast from the first toe-off on: from so long before it until so long after it
+shoulders turn on by the smoothest way in time that there is."""
 PIECES = 8
 """The way ahead is followed in so many pieces."""
 
@@ -122,7 +125,7 @@ def enter_turn(m, turns, turn, since, row):
     m.turn, m.turned, m.first = turn, since, 0 if turn > 0.0 else 1
     m.turn_gain = 1.0
     m.stray[0] = m.stray[1] = m.glide[0] = m.glide[1] = 0.0
-    whole = turn_kernel(m, turns, WAY_AT + 1, STRIKE if m.spot else END) - turn_kernel(m, turns, WAY_AT + 1, since)
+    whole = way_kernel(m, turns, STRIKE if m.spot else END) - way_kernel(m, turns, since)
     m.turn_gain = (1.0 - FOLLOWS * m.spot) * turn / whole
     if m.spot:
         ends = np.empty(3)
@@ -157,7 +160,7 @@ def _begin_smoothly(m, turns, since, walked, row):
     else:
         m.blend_rate[HIPS_AT] += aside
         m.blend_rate[HIPS_AT + 2] += ahead
-    turned = turn_kernel(m, turns, WAY_AT + 1, MOMENT + since) - turn_kernel(m, turns, WAY_AT + 1, since)
+    turned = way_kernel(m, turns, MOMENT + since) - way_kernel(m, turns, since)
     m.blend_rate[LANES] += m.velocity[1] - turned / later
 
 
@@ -180,8 +183,8 @@ def end_turn(m):
 def after_turn(m, table, row, dt):
     """What is left of a turn that has just been left, beside the gait's row (COLUMNS,) of now, which goes on by itself, fades. How fast the
     gait goes, its weights with it, is foretold in the first step, and seen in the second."""
-    if m.left_turn == 2:
-        m.left_turn = 0
+    if m.left_turn >= 2:  # what was seen goes on: after a turn, or as a gait comes to stand or goes again (3, then 2)
+        m.left_turn = 2 * (m.left_turn - 2)
         for d in range(LABELS_AT):
             m.blend_rate[d] = m.row_rate[d] - (row[d] - (m.row[d] - m.blend[d])) / dt
         return
@@ -207,6 +210,21 @@ def turn_kernel(m, turns, d, since):
 
 
 @kernel
+def way_kernel(m, turns, since):
+    """How far a character's ground frame has turned [rad], that long after its first toe-off in phase."""
+    before, after = -AROUND[0], AROUND[1]
+    if not before < since < after:
+        return turn_kernel(m, turns, WAY_AT + 1, since)
+    slow, quick = turn_time(m, turns, 0.5 * before), turn_time(m, turns, 0.5 * after)  # [s] a phase
+    whole = after * quick - before * slow
+    t = (since * (slow if since < 0.0 else quick) - before * slow) / whole
+    a, b = turn_kernel(m, turns, WAY_AT + 1, before), turn_kernel(m, turns, WAY_AT + 1, after)
+    u = (a - turn_kernel(m, turns, WAY_AT + 1, before - MOMENT)) * whole / (MOMENT * slow)
+    v = (turn_kernel(m, turns, WAY_AT + 1, after + MOMENT) - b) * whole / (MOMENT * quick)
+    return a + t * (u + t * (3.0 * (b - a) - 2.0 * u - v + t * (2.0 * (a - b) + u + v)))
+
+
+@kernel
 def turned_row(m, turns, since, row):
     """Write the row (COLUMNS,) that a character's turn has that long after its first toe-off in phase."""
     for d in range(COLUMNS):
@@ -224,9 +242,13 @@ def turn_time(m, turns, since):
 @kernel
 def lead_turn(m, turns, agility, dt):
     """How far a turn runs on in phase in dt; command and velocity become those of its ground frame meanwhile."""
-    half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
-    step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
-    turned = turn_kernel(m, turns, WAY_AT + 1, m.turned + step) - turn_kernel(m, turns, WAY_AT + 1, m.turned)
+    until = -m.turned * turn_time(m, turns, 0.5 * m.turned) / agility  # the first toe-off, from which on phase runs otherwise
+    if 0.0 < until < dt:
+        step = (dt - until) * agility / turn_time(m, turns, 0.0) - m.turned
+    else:
+        half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
+        step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
+    turned = way_kernel(m, turns, m.turned + step) - way_kernel(m, turns, m.turned)
     pace, fades = agility * _tempo(m, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
     m.glide[0], m.glide[1] = fades * m.glide[0], fades * m.glide[1]
     c, s = math.cos(m.ground[2] + 0.5 * turned), math.sin(m.ground[2] + 0.5 * turned)
@@ -259,7 +281,7 @@ def turn_ahead(m, turns, agility, later, ground):
         since = m.turned + k * step
         time = step * turn_time(m, turns, since + 0.5 * step) / agility
         pace = agility * _tempo(m, since + 0.5 * step)
-        omega = (turn_kernel(m, turns, WAY_AT + 1, since + step) - turn_kernel(m, turns, WAY_AT + 1, since)) / max(time, 1e-6)
+        omega = (way_kernel(m, turns, since + step) - way_kernel(m, turns, since)) / max(time, 1e-6)
         advance(ground, pace * turn_kernel(m, turns, WAY_AT, since + 0.5 * step), omega, pace * turn_kernel(m, turns, WAY_AT + 2, since + 0.5 * step), time)
         _back(m, ground, since, since + step)
         whole += time

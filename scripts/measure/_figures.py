@@ -20,12 +20,12 @@ def figures(motion: Motion) -> dict[str, float]:
                 joints3=100 * (worst[walking] > 3).mean() if walking.any() else 0.0, joint=float(worst[walking].max(initial=0.0)),
                 joint_run=float(worst[~walking].max(initial=0.0)), apart=100 * float(motion.apart.min()),
                 near=100 * float((motion.apart < 0.07).mean()), drift=100 * float(drift.mean()) if len(drift) else 0.0,
-                drift_worst=100 * float(drift.max(initial=0.0)), scuffs=100 * float(scuffs.mean()) if len(scuffs) else 0.0,
+                air=motion.in_the_air(), drift_worst=100 * float(drift.max(initial=0.0)), scuffs=100 * float(scuffs.mean()) if len(scuffs) else 0.0,
                 com=float(np.linalg.norm(motion.com_acceleration[..., [0, 2]], axis=-1).max()))
 
 
-def told(rows) -> str:
-    """Some motions' figures in one line."""
+def told(rows, flies: bool = True) -> str:
+    """Some motions' figures in one line. flies: whether for how long nobody touches the floor is told; of recordings it isn't, whose floor is a centimetre or two off."""
     frames, runs = (np.array([r[k] for r in rows], float) for k in ("frames", "runs"))
 
     def mean(name, weights=frames):
@@ -39,7 +39,7 @@ def told(rows) -> str:
             f"{mean('run06', running):.1f}, {mean('run1', running):.1f} % · joints over 3× walking {mean('joints3'):.2f} %, worst "
             f"{most('joint'):.1f}× (runs {most('joint_run'):.1f}×) · drift a stance {mean('drift'):.2f} cm, worst {most('drift_worst'):.1f} · feet apart "
             f"{min(r['apart'] for r in rows):.1f} cm, under 7 cm in {mean('near'):.2f} % · scuffs {mean('scuffs'):.1f} % of swings above 1 m/s · "
-            f"mass centre's peak {most('com'):.1f} m/s²")
+            f"mass centre's peak {most('com'):.1f} m/s²" + (f" · in the air {most('air'):.2f} s at most" if flies else ""))
 
 
 def at_rest(motion: Motion) -> str:

@@ -122,6 +122,14 @@ class Motion:
             found.append(stances.drift[stances.stop - stances.start >= max(2, SHORTEST * self.rate // 60)])
         return np.concatenate(found)
 
+    def in_the_air(self) -> float:
+        """For how long nobody has a foot on the floor at most [s]."""
+        longest = 0
+        for off in ~self.standing.any(-1).T:
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], off.astype(np.int8), [0]])))
+            longest = max(longest, int(np.max(edges[1::2] - edges[::2], initial=0)))
+        return longest / self.rate
+
     def scuffs(self) -> np.ndarray:
         """For every swing of a foot above 1 m/s, whether its toe's end comes to the floor in its middle third."""
         found = []

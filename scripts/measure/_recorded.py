@@ -37,7 +37,7 @@ def recorded(folder: Path, library: Library) -> None:
         if name in STEADY:
             knees += [found for _, motion in rows for found in _knees(motion)]
         if rows:
-            print(f"  {name} ({len(rows)}): " + told([row for row, _ in rows]))
+            print(f"  {name} ({len(rows)}): " + told([row for row, _ in rows], False))
             speed = [np.linalg.norm(m.com_velocity[..., [0, 2]], axis=-1)[:, 0] for _, m in rows]
             if name == "idles":
                 print("    " + "; ".join(f"{len(m.roots) / m.rate:.0f} s: " + at_rest(m) for _, m in rows))

@@ -1,4 +1,4 @@
-"""Measure what people do: start, stop, turn, change gait, at every phase, and ten minutes of restless hands.
+"""Measure what people do: start, stop, turn, change gait, at every phase, and twice ten minutes of restless hands.
 
     python scripts/measure/changes.py [--quick] [--recordings DIR] [--strips DIR] [--only PART ...] [--set SETTING=VALUE ...]
 
@@ -34,7 +34,7 @@ WISHES = {"rest": (0, 0, 0), "0.7": (0.7, 0, 0), "1.3": (1.3, 0, 0), "1.8": (1.8
           "diagonal left": (0.6, 0, 0.35), "diagonal right": (0.6, 0, -0.35)}
 SETTLE, AFTER = 5.0, 2.5
 """Seconds before a change, in which a gait comes to be steady, and those after it that are judged."""
-PARTS = ("pairs", "sticks", "steady", "steps", "idle")
+PARTS = ("pairs", "sticks", "keys", "steady", "steps", "idle")
 
 
 @dataclass(frozen=True)
@@ -154,18 +154,56 @@ def hands(rng: np.random.Generator, frames: int, count: int):
     return move, face
 
 
-def sticks(bench: Bench):
+def bursts(rng: np.random.Generator, frames: int, count: int):
+    """What hands in a hurry ask for, as `hands`: the eight ways of keys, all or nothing, for 0.15 to 2 s, the run key pressed and let go of,
+    the way back, taps of 0.08 to 0.4 s; every third holds a stick instead, in circles and tilted by a fifth to three fifths; every fourth
+    holds a look."""
+    move, face = np.zeros((frames, count, 2)), np.full((frames, count), np.nan)
+    for n in range(count):
+        at, run, angle, speeds = 0, False, 0.0, (1.3, 3.0)
+        while at < frames:
+            kind, seconds, speed, turning = rng.random(), float(np.clip(rng.exponential(0.9), 0.15, 2.0)), speeds[run], 0.0
+            if kind < 0.2:
+                speed, seconds = 0.0, rng.uniform(0.15, 1.2)
+            elif kind < 0.3:
+                angle, seconds = angle + rng.integers(8) * np.pi / 4, rng.uniform(0.08, 0.4)
+            elif kind < 0.45:
+                run = not run
+                speed = speeds[run]
+            elif kind < 0.55:
+                angle += np.pi
+            elif kind < 0.8 or n % 3:
+                angle += rng.choice([-2, -1, 1, 2]) * np.pi / 4
+            elif kind < 0.9:
+                speed *= rng.uniform(0.2, 0.6)
+            else:
+                turning = rng.choice([-1, 1]) * rng.uniform(0.8, 4.0)
+            if n % 4 == 3 and rng.random() < 0.2:
+                face[at:, n] = angle if np.isnan(face[at, n]) else np.nan
+            until = min(at + max(round(seconds * FPS), 1), frames)
+            ways = angle + turning * np.arange(until - at) / FPS
+            move[at:until, n] = speed * np.stack([np.sin(ways), np.cos(ways)], -1)
+            at, angle = until, float(ways[-1])
+    return move, face
+
+
+def keys(bench: Bench):
+    """Ten minutes of hands in a hurry."""
+    return sticks(bench, bursts, "Hands in a hurry")
+
+
+def sticks(bench: Bench, asks=hands, name="Hands"):
     """Ten minutes of restless hands: twenty characters for thirty seconds."""
     frames, count = (12 if bench.quick else 30) * FPS, 20
-    move, face = hands(np.random.default_rng(13), frames, count)
+    move, face = asks(np.random.default_rng(13), frames, count)
     state, states = bench.locomotion.start(np.zeros((count, 3))), []
     for t in range(frames):
         wish = steer(state.ground, move[t], face[t], state.velocity[:, 1])
         state, _ = bench.locomotion.step(state, wish, 1 / FPS)
         states.append(state)
     motion = bench.motion(states)
-    print(f"Hands: {frames * count // 60 / FPS:.0f} minutes of twenty restless pairs\n  " + told([figures(motion)]))
-    moments = sorted(((float(motion.joints[t:t + 30, n].max()), "hands", motion, n, t + int(motion.joints[t:t + 30, n].max(-1).argmax()))
+    print(f"{name}: {frames * count // 60 / FPS:.0f} minutes of twenty restless pairs\n  " + told([figures(motion)]))
+    moments = sorted(((float(motion.joints[t:t + 30, n].max()), name.lower(), motion, n, t + int(motion.joints[t:t + 30, n].max(-1).argmax()))
                       for n in range(count) for t in range(0, frames - 30, 30)), key=lambda m: -m[0])
     return moments[:10]
 

@@ -55,7 +55,7 @@ def walked(walker, places, goals, seconds, around=(), groups=None):
 def test_four_of_each_side_get_through_a_door(walker):
     some = np.array([[x, z] for x in (-0.5, 0.6) for z in (-3.0, -2.0)])
     places = np.concatenate([some, -some])
-    trails = walked(walker, places, -places * [1.0, 1.3], 24.0, WALL)
+    trails = walked(walker, places, -places * [1.0, 1.3], 27.0, WALL)
     apart = np.linalg.norm(trails[:, :, None] - trails[:, None], axis=-1) + np.eye(8)
     assert apart.min() > 0.42
     assert np.all(np.sign(trails[-1][:, 1]) == -np.sign(places[:, 1])), "everybody is through"
