@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -125,16 +126,21 @@ class Reach:
     def arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
              around: Sequence[Any] = ()) -> Iterator[tuple[Path, str]]:
         """The paths to a place, and why each can't be gone, if so: the usual one first; where something stands about then with the legs
-        drawn up and the arms down and, without an airtime, higher."""
+        drawn up and the arms down and, without an airtime, higher. Who could not leave so on knees that are bent more, see `straightest`, leaves on straighter ones."""
         first = None
         for higher in HEIGHTS:
             flight = airtime if first is None else first.airtime * higher
             for low, tucked in WAYS if len(around) else WAYS[:1]:
                 if first is not None and higher > 1.0 and not tucked:
                     continue
-                way = grounded(self.physique, start, self.path(start, place, floor, flight, low, tucked), floor)
+                for tall in (False, True):
+                    one = grounded(self.physique, replace(start, tall=tall), self.path(replace(start, tall=tall), place, floor, flight, low, tucked), floor)
+                    said = fault(self.physique, one, around, floor)
+                    if not (tall and said):
+                        way, why = one, said
+                    if not said or start.runs:
+                        break
                 first = first or way
-                why = fault(self.physique, way, around, floor)
                 yield way, why
                 if not way.strong or why.startswith(HARD):
                     return
