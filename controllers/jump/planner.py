@@ -107,7 +107,7 @@ class _Draft(Airborne):
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
-        self.feet[..., 5] += (not start.fast) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
+        self.feet[..., 5] += (start.haste < 2) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
         risen = heels_up(start, self.planted, way.leave, self.push.duration, self.body) * late**2
         self.feet[..., 4] += risen[:, None]
@@ -139,7 +139,7 @@ class _Draft(Airborne):
         fastest = float(np.abs(np.diff(rows[:, :EACH, 0], axis=0) / np.diff(due)[:, None]).max())
         # whoever has less time swings it less far, each joint between how it would begin and how it would end so that it begins as it is; but the knee is
         # bent as far as recorded ones, so that the foot clears the floor
-        share = 1.0 if self.start.fast else min(SWINGS[0] / max(fastest, 1e-6), 1.0)
+        share = 1.0 if self.start.haste > 1 else min(SWINGS[0] / max(fastest, 1e-6), 1.0)
         early, late = (rows[k] + (rows - rows[k]) * share for k in (0, -1))
         apart = np.where(np.abs(late[0] - early[0]) > 1e-9, late[0] - early[0], 1e-9)
         shifted = np.clip((start - early[0]) / apart, 0.0, 1.0)
@@ -147,7 +147,7 @@ class _Draft(Airborne):
         rows = early + shifted * (late - early)
         slopes, lacks = monotone(due, rows), start - rows[0]
         lasts = GATHERS * self.leave
-        if not self.start.fast:
+        if self.start.haste < 2:
             lasts = max(lasts, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
         swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)
         swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)

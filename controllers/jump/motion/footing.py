@@ -41,14 +41,14 @@ def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np
     past = (centres[:, None] - start.pushing(planted)[:, :3]) @ yaw(start.heading)[:, 2]
     over = (past > 0.0).all(-1) & (share > 0.0)
     earliest, latest = HEELS_RISE
-    latest = latest if start.fast else max(min(latest, 1.0 - RISES_FOR / lasts), earliest)
+    latest = latest if start.haste > 1 else max(min(latest, 1.0 - RISES_FOR / lasts), earliest)
     return float(np.clip(share[int(np.argmax(over))], earliest, latest)) if over.any() else earliest
 
 
 def heels_up(start: Start, planted: np.ndarray, leave: np.ndarray, pushes: float, body: BodyTables) -> float:
     """How far feet (2, 5) point down [rad] as they leave the floor under a mass at leave (3,) [m], after a push of so long [s]: no farther than brings ankles
     nearer to the hips, as it would backward, nor than a runner's comes to."""
-    if start.fast:
+    if start.haste > 1:
         return RUNNERS_HEEL[1] if start.runs else start.heel_up
     if start.runs:
         return RUNNERS_HEEL[1] * min((1.0 - RUNNERS_HEEL[0]) * pushes / RUNS_FOR, 1.0)

@@ -29,6 +29,9 @@ LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 TURN_SETTLES = 0.25
 """So long after it touched down [s] a body has made all of its turn."""
+KEEPS = (0.95, 2.5), (0.95, 1.4), (1.0, 1.0)
+"""A runner leaves with about the first of his speed: what he leaves faster or slower along the floor is so many times as dear as what he leaves faster upward; by
+`Start.haste`."""
 SPINS = 6.0, 8.0
 """How fast a body turns in the air at most that chooses its airtime, and that was told one [rad/s]."""
 HIGHER = 0.14, 0.9
@@ -144,6 +147,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     across = float(np.sqrt(max(1.0 - along**2, 0.0)))
     runner = start.single if start.runs else None
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
+    keeps, dear = KEEPS[start.haste] if start.runs else (float(start.single is not None), 1.0)
+    stretched = np.array([dear, 1.0, dear])
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     heights, crouch = upright, 0.0
     for _ in range(ROUNDS):
@@ -151,7 +156,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         height = max(min(heights.touch(trail * along, trail * across) - TILTED * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
-            least_effort(leave, land, start.velocity * FLAT if start.single is not None else np.zeros(3), gravity),
+            least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
             (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.runs)

@@ -86,7 +86,7 @@ def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, 
     """How high [m] the centre of mass is over `guess`'s (3,) place as feet (2, 5) leave the floor with a velocity (3,) [m/s] after a push of so long [s], the body
     carried by `angles` (11,)."""
     lifted, body, reach = 0.0 if start.single is None else LIFTED * physique.size, physique.tables, start.straight
-    if not start.fast:
+    if not start.haste:
         legs, facing = guess - feet[:, :3], yaw(heading)[:, 2]
         astray = velocity * FLAT - max(float(velocity @ facing), 0.0) * facing
         share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ TRIES = 3
 CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
 """For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
 LITTLE, RISES = 0.06, 0.03
-"""Who leaves fast is elsewhere by so much at most [m]; and a body that flies higher by no more than the rise of its arc and the second [m]."""
+"""Who leaves in haste is elsewhere by so much at most [m]; and a body that flies higher by no more than the rise of its arc and the second [m]."""
 FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 
@@ -67,11 +68,11 @@ class Reach:
         if why:
             return None, why
         told, count, arcs = "", 0, self.arcs(start, place, floor, airtime, around)
-        found: tuple[Path, str, bool] | None = next(arcs)
+        found: tuple[Path, str, int] | None = next(arcs)
         while found is not None:
-            (way, why, fast), deep = found, None
+            (way, why, haste), deep = found, None
             if not why:
-                made, count = plan(self.physique, replace(start, fast=fast), way, place, floor), count + 1
+                made, count = plan(self.physique, replace(start, haste=haste), way, place, floor), count + 1
                 made, why = self._down(made, around)
                 why = why or wrong(self.physique, made)
                 if not why:
@@ -111,10 +112,10 @@ class Reach:
 
     def touching(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, around: Sequence[Any] = ()) -> Touch | None:
         """What the usual jump to a place (3,) would touch, and how the body would lie in it; None if nothing, or if there is no such jump."""
-        way, _, fast = next(self.arcs(start, place, floor, airtime, around))
+        way, _, haste = next(self.arcs(start, place, floor, airtime, around))
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = plan(self.physique, replace(start, fast=fast), way, place, floor)
+        made = plan(self.physique, replace(start, haste=haste), way, place, floor)
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def footing(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> str:
@@ -132,28 +133,32 @@ class Reach:
         return ""
 
     def arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
-             around: Sequence[Any] = ()) -> Generator[tuple[Path, str, bool], float | None, None]:
-        """The paths to a place, why each can't be gone, if so, and whether it leaves fast, see `Start`: the usual one first; where something stands about then with
-        the legs drawn up and the arms down and, without an airtime, higher. Each is gone fast only if it can't be gone otherwise. Who is told (by `send`) how deep [m] something lay
+             around: Sequence[Any] = ()) -> Generator[tuple[Path, str, int], float | None, None]:
+        """The paths to a place, why each can't be gone, if so, and in which haste, see `Start`: the usual one first; where something stands about then with
+        the legs drawn up and the arms down and, without an airtime, higher. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
         in the plan along the last of them leaves out those along which it would as well."""
-        first, quick, hits = None, replace(start, fast=True), dict[bool, tuple[float, float]]()
+        first, hits = None, dict[bool, tuple[float, float]]()
         for higher in HEIGHTS:
             flight = airtime if first is None else first.airtime * higher
             for low, tucked in WAYS if len(around) else WAYS[:1]:
                 if first is not None and higher > 1.0 and (not tucked or low in hits and self._still(*hits[low], first.airtime * higher)):
                     continue
-                asked = place, floor, around, flight, low, tucked
+                arc = partial(self._arc, start, place, floor, around, flight, low, tucked)
+                quick, deep, slower = None, None, (0, 1)
                 if first is None or higher == 1.0:
-                    way, why = self._arc(start, *asked)
+                    (way, why), slower = arc(0), (1,)
                     first = first or way
-                    deep = yield way, why, False
-                    way, why = (way, why) if start.runs else self._arc(quick, *asked)
-                else:  # who can't go it fast is not asked whether he can otherwise
-                    way, why = self._arc(quick, *asked)
-                    slow = (way, why) if why or start.runs else self._arc(start, *asked)
-                    deep = (yield *slow, False) if not slow[1] else None
+                    deep = yield way, why, 0
+                if not slower[0] or why:  # who can't go it in all haste is not asked whether he can otherwise
+                    quick = arc(2)
+                    for haste in slower if not quick[1] else ():
+                        way, why = arc(haste)
+                        if not why:
+                            deep = yield way, why, haste
+                            break
                 if deep is None or deep < LITTLE:
-                    deep = yield way, why, True
+                    way, why = quick or arc(2)
+                    deep = yield way, why, 2
                 if deep is not None:
                     hits[low] = way.airtime, deep
                 if not way.strong or why.startswith(HARD):
@@ -165,8 +170,10 @@ class Reach:
         """Whether something that lay so deep [m] in a plan would still lie in one that flies longer [s], and so much higher."""
         return deep > RISES - 0.125 * float(self.gravity[1]) * (longer**2 - airtime**2)
 
-    def _arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], airtime: float | None, low_arms: bool, tucked: bool) -> tuple[Path, str]:
+    def _arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], airtime: float | None, low_arms: bool, tucked: bool,
+             haste: int) -> tuple[Path, str]:
         """One path to a place, and why it can't be gone, if so."""
+        start = replace(start, haste=haste)
         way = grounded(self.physique, start, self.path(start, place, floor, airtime, low_arms, tucked), floor)
         return way, fault(self.physique, way, around, floor)
 
@@ -218,7 +225,7 @@ class Reach:
                     self.gravity, airtime, low_arms, self.prior, tucked)
 
 
-def _next(arcs: Generator[tuple[Path, str, bool], float | None, None], deep: float | None) -> tuple[Path, str, bool] | None:
+def _next(arcs: Generator[tuple[Path, str, int], float | None, None], deep: float | None) -> tuple[Path, str, int] | None:
     """The next of some paths, told how deep something lay in the last one's plan; None where there is none."""
     try:
         return arcs.send(deep)
