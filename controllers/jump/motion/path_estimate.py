@@ -29,9 +29,9 @@ LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 TURN_SETTLES = 0.25
 """So long after it touched down [s] a body has made all of its turn."""
-KEEPS = (0.95, 2.5), (0.95, 1.4), (1.0, 1.0)
-"""A runner leaves with about the first of his speed: what he leaves faster or slower along the floor is so many times as dear as what he leaves faster upward; by
-`Start.haste`."""
+KEEPS = 0.95, 1.4
+"""Who runs fast enough to run on, and is in no haste, leaves with about the first of his speed: what he leaves faster or slower along the floor is so many times as
+dear as what he leaves faster upward."""
 SPINS = 6.0, 8.0
 """How fast a body turns in the air at most that chooses its airtime, and that was told one [rad/s]."""
 HIGHER = 0.14, 0.9
@@ -147,7 +147,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     across = float(np.sqrt(max(1.0 - along**2, 0.0)))
     runner = start.single if start.runs else None
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
-    keeps, dear = KEEPS[start.haste] if start.runs else (float(start.single is not None), 1.0)
+    keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
     stretched = np.array([dear, 1.0, dear])
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     heights, crouch = upright, 0.0

@@ -145,9 +145,8 @@ class Reach:
                     continue
                 arc = partial(self._arc, start, place, floor, around, flight, low, tucked)
                 quick, deep, slower = None, None, (0, 1)
-                if first is None or higher == 1.0:
+                if higher == 1.0:
                     (way, why), slower = arc(0), (1,)
-                    first = first or way
                     deep = yield way, why, 0
                 if not slower[0] or why:  # who can't go it in all haste is not asked whether he can otherwise
                     quick = arc(2)
@@ -156,9 +155,10 @@ class Reach:
                         if not why:
                             deep = yield way, why, haste
                             break
-                if deep is None or deep < LITTLE:
+                if deep is None or deep < LITTLE or start.runs and higher == 1.0:  # who runs flies lower then
                     way, why = quick or arc(2)
                     deep = yield way, why, 2
+                first = first or way
                 if deep is not None:
                     hits[low] = way.airtime, deep
                 if not way.strong or why.startswith(HARD):
