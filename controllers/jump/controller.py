@@ -34,7 +34,7 @@ SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
-DRAWN = 0.52
+DRAWN = 0.58
 """Who falls draws his arms in beside what he falls past, in so long [s]."""
 MOST_HITS = 3
 """A body that still touches something after so many hits slips by."""

@@ -9,14 +9,17 @@ from __future__ import annotations
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
-from .motion import (FADE, FREE, GROUND_RATE, HEEL, RUNNERS_HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel,
-                     heels_rise, settling, sinking)
+from .motion import (FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
+                     settling, sinking)
 from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
 GATHERS = 0.2
 """Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
+SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
+"""But none of its joints turns faster than the first as recorded ones do, nor by more than what is then left of the second as it comes to them, but with the third
+[rad/s] at least; which is at most so much of what it lacked over the half-life."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
 STRAIGHTEST = 0.06
@@ -100,12 +103,13 @@ class _Draft(Airborne):
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
         self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0], self.times)
         share = np.clip((self.times - self.off) / self.push.duration, 0.0, 1.0)
-        rising = heels_rise(start, self.planted, self.centres, share)
+        rising = heels_rise(start, self.planted, self.centres, share, self.push.duration)
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = np.ones((len(self.times), 2, 6))
+        self.feet[..., 5] += (start.haste < 2) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
-        risen = (RUNNERS_HEEL[1] if start.runs else start.heel_up) * late**2
+        risen = heels_up(start, self.planted, way.leave, self.push.duration, self.body) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()
         self.roots = np.empty((len(self.times), 3))
@@ -132,8 +136,20 @@ class _Draft(Airborne):
         start, rows = vectors(self.start.rotations[ids]), np.zeros((2 * BETWEEN + 1, 4, 3))
         rows[:, :EACH, 0] = self.way.keys[:2 * BETWEEN + 1, LEGS + side * EACH:LEGS + (side + 1) * EACH]
         due = self.due[:2 * BETWEEN + 1]
-        slopes = monotone(due, rows)
-        swung = hermite(due, rows, slopes, self.times) + faded(start - rows[0], self.start.rates[ids] - slopes[0], GATHERS * self.leave, self.times)
+        fastest = float(np.abs(np.diff(rows[:, :EACH, 0], axis=0) / np.diff(due)[:, None]).max())
+        # whoever has less time swings it less far, each joint between how it would begin and how it would end so that it begins as it is; but the knee is
+        # bent as far as recorded ones, so that the foot clears the floor
+        share = 1.0 if self.start.haste > 1 else min(SWINGS[0] / max(fastest, 1e-6), 1.0)
+        early, late = (rows[k] + (rows - rows[k]) * share for k in (0, -1))
+        apart = np.where(np.abs(late[0] - early[0]) > 1e-9, late[0] - early[0], 1e-9)
+        shifted = np.clip((start - early[0]) / apart, 0.0, 1.0)
+        shifted[1] = 1.0
+        rows = early + shifted * (late - early)
+        slopes, lacks = monotone(due, rows), start - rows[0]
+        lasts = GATHERS * self.leave
+        if self.start.haste < 2:
+            lasts = max(lasts, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
+        swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)
         swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)
         return turns(swung)
 

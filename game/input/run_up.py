@@ -40,14 +40,14 @@ RUNS = 1.8
 """Hands that ask for more than this [m/s] run [m/s]: a leap that they hold goes off by itself; who walks comes to rest before what is ahead, and aims."""
 AHEAD = 0.60, 0.53
 """How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
-NEARER = 0.0, 0.2, 0.4, -0.2, 0.6, 0.8
-"""A leap that goes off by itself lands where the ring is, or so much nearer than it [m]."""
+NEARER = 0.2, 0.0, 0.4, -0.2, 0.6, 0.8
+"""A leap that goes off by itself lands so much nearer than the ring is [m]: a little, if it can, where he need not become faster for it."""
 UP = 0.95
 """It lands no higher than this over the feet [m], and no lower than a step."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
-THINKS, WAITED, AT_LAST = 0.5, 0.5, 1 << 30
-"""He thinks of his leap so much sooner than he would brake [s]; nearer to what is ahead than this share of how far he looks for that he goes no farther without knowing: it is used at last."""
+THINKS, WAITED = 0.5, 0.5
+"""He thinks of his leap so much sooner than he would brake [s]; nearer to what is ahead than this share of how far he looks for that he hurries to know."""
 LATE, TURNED = 6, 0.35
 """It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
 
@@ -82,10 +82,10 @@ class RunUp:
         """The same a step later of somebody whose hands ask for a velocity (2,) [m/s]. None where no leap was found that goes off by itself, it did not, or he turned."""
         return None if self.leap is None or self.free <= -LATE or self.turned(velocity) else replace(self, free=self.free - 1)
 
-    def known(self, at_once: bool, halt: tuple[float, float] | None) -> RunUp:
-        """What he has thought of by now; the same a step later as long as he thinks, which he does no longer `at_once`. halt: where he is to come to rest if there is no leap."""
+    def known(self, hurried: bool, halt: tuple[float, float] | None) -> RunUp:
+        """What he has thought of by now; the same a step later as long as he thinks. hurried: he is near. halt: where he is to come to rest if there is no leap."""
         assert self.thought is not None
-        found = self.thought.after(AT_LAST if at_once else self.thinks)
+        found = self.thought.after(self.thinks, hurried)
         if found is None:
             return replace(self, thinks=self.thinks + 1)
         free = found.free - self.thinks

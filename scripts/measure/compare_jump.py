@@ -120,7 +120,7 @@ def compare(clip: Clip, one: Recorded, prior: Prior, plots: Path | None, number:
     low = down + int(all_ours.centre[down:, 1].argmin())
     rms |= {"knee off": ours.knee[0], "knee off theirs": theirs.knee[first], "trunk landed": all_ours.trunk[low], "trunk landed theirs": theirs.trunk[landed],
             "crouch": all_ours.centre[0, 1] - all_ours.centre[:off, 1].min(), "crouch theirs": one.depth,
-            "knee turns": fastest(jump, np.stack([p.rotations for p in whole[::2]]), 60.0),
+            "knee turns": fastest(jump, np.stack([p.rotations for p in whole[:int(120 * min(made.through, made.duration)):2]]), 60.0),
             "knee turns theirs": fastest(jump, clip.rotations[start:upright:thin], 1.0 / (thin * clip.frame_time)),
             "sinks": ours.centre[-1, 1] - all_ours.centre[low, 1], "sinks theirs": theirs.centre[last, 1] - theirs.centre[landed, 1]}
     print(f"{told}  RMS knee {rms['knee']:4.1f}°, hip {rms['hip']:4.1f}°, trunk {rms['trunk']:4.1f}°, arm {rms['arm']:4.1f}°; ours / theirs: knee at take-off {rms['knee off']:.0f} / "

@@ -64,6 +64,12 @@ def test_it_keeps_its_speed(played):
     assert pace[down - 6:down + 36].min() > 0.55 * PACE, "recorded jumpers keep 0.8; two feet together kept a fifth to two thirds"
 
 
+def test_a_runner_leaves_hardly_faster_than_he_runs(played):
+    """He flies higher instead: the least change of his velocity would be to leave with 3.8 m/s over a far ring."""
+    made, _ = played
+    assert np.hypot(*made.path.velocity[[0, 2]]) < 1.16 * PACE
+
+
 def test_who_comes_too_near_lands_beyond_the_ring(person, runner):
     """Asked for at every moment of a stride; whoever reaches the ring itself lands there, slack or none."""
     state, exact, beyond = runner, [], []

@@ -12,7 +12,7 @@ from gambol.controllers.body import end_positions, forward_kinematics, sole_corn
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump, Physique
 from gambol.controllers.jump.reach.feasibility import Refused
-from gambol.controllers.jump.reach.sweep import touches
+from gambol.controllers.jump.reach.sweep import touch
 from gambol.controllers.navigation import gap
 from gambol.game.scene.scene import Box
 
@@ -45,7 +45,7 @@ def test_no_plan_touches_what_stands_about_and_neither_does_what_is_offered_inst
         if reason.nearest is None:
             return
         made = jump.plan(standing, Intent(leap=Leap(reason.nearest), around=(thing,)))
-    assert deepest(jump, made, (thing,)) == 0.0 and not touches(jump.physique, made, (thing,))
+    assert deepest(jump, made, (thing,)) == 0.0 and touch(jump.physique, made, (thing,)) is None
 
 
 @pytest.mark.parametrize(("part", "joint"), [("head", "Head"), ("trunk", "Spine1"), ("hands", "LeftHand"), ("legs", "RightLeg")])
@@ -53,10 +53,10 @@ def test_the_sweep_tells_what_is_touched(jump, standing, part, joint):
     made = jump.plan(standing, Intent(leap=Leap(ahead(standing, 0.8))))
     pose = made.at(0.5 * (made.take_off + made.touch_down))
     at = forward_kinematics(jump.skeleton, pose.root, pose.rotations)[0][jump.skeleton.index(joint)]
-    touch = touches(jump.physique, made, (Box(tuple(at), (0.06, 0.06, 0.06)),))
-    said = re.fullmatch(r"its (\w+) would hit something (\d\.\d) m ahead", touch)
-    assert said is not None and said[1] == part and float(said[2]) == pytest.approx(0.4, abs=0.25)
-    assert not touches(jump.physique, made, (Box((3.0, 0.5, 0.0), (0.1, 1.0, 0.1)), Box((0.0, -0.5, 0.0), (9.0, 1.0, 9.0))))
+    found = touch(jump.physique, made, (Box(tuple(at), (0.06, 0.06, 0.06)),))
+    said = re.fullmatch(r"its (\w+) would hit something (\d\.\d) m ahead", found.reason)
+    assert 0.0 < found.deep < 0.2 and said is not None and said[1] == part and float(said[2]) == pytest.approx(0.4, abs=0.25)
+    assert touch(jump.physique, made, (Box((3.0, 0.5, 0.0), (0.1, 1.0, 0.1)), Box((0.0, -0.5, 0.0), (9.0, 1.0, 9.0)))) is None
 
 
 @settings(max_examples=60, deadline=None)

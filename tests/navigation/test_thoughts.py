@@ -25,6 +25,30 @@ def test_when_a_thought_is_used_is_told_by_what_it_asked():
     assert thought.after(17) is None, "whoever goes back finds it as it was"
 
 
+@pytest.mark.parametrize("questions, due", [(0, 1), (3, 4), (30, 6)])
+def test_who_hurries_waits_for_one_question_a_step_and_soon_for_all(questions, due):
+    thought = Thought(lambda ask: [ask() for _ in range(questions)], DT)
+    assert [steps for steps in range(40) if thought.after(steps, hurried=True) is not None][0] == due
+
+
+def test_no_step_of_who_hurries_waits_for_the_next_question():
+    """The second of three takes until it is let: what a step waits for is the first."""
+    begun, let = threading.Event(), threading.Event()
+
+    def act(ask):
+        ask()
+        ask()
+        begun.set()
+        let.wait()
+        ask()
+        return "there"
+    thought = Thought(act, DT)
+    begun.wait(5.0)
+    assert [thought.after(step, hurried=True) for step in range(3)] == [None] * 3
+    threading.Timer(0.05, let.set).start()
+    assert [thought.after(step, hurried=True) for step in (3, 4)] == [None, "there"]
+
+
 def test_a_thought_that_takes_its_time_is_waited_for():
     let = threading.Event()
 

@@ -16,6 +16,9 @@ from .dynamics import centre_kernel, place_kernel
 
 STRAIGHT = 0.992
 """A leg is straight at this share of its length: beyond, the heel rises, and then the jump is over."""
+SOFT = 0.012
+"""A leg that pushes straightens ever slower from so much of its length before that on, and its heel rises instead: near the end a knee would have to
+turn infinitely fast."""
 GAIN = 1.0 / 0.82
 """How far the pelvis moves for what the centre of mass lacks: part of the legs stays behind."""
 
@@ -49,24 +52,35 @@ def ankle_kernel(body, foot, turned, out):
 
 
 @kernel
+def nearest_kernel(body, hip, foot):
+    """With which pitch [rad] of a foot (6,) its ankle is nearest to a hip (3,): above the ball, seen from there. Beyond it a heel that rises is of no use."""
+    ahead = (hip[0] - foot[0]) * math.sin(foot[3]) + (hip[2] - foot[2]) * math.cos(foot[3])
+    return math.atan2(hip[1] - foot[1], -ahead) - math.atan2(-body.toe[1], body.toe[2])
+
+
+@kernel
 def leg_kernel(body, side, foot, flex, local, positions, orientations):
     """Pose one leg so that its foot is where `foot` (6,) says; the hip's placement is known.
 
     A planted heel (foot[5] > 0) rises where the leg is too short or the ankle would bend beyond
-    `flex` [rad]; foot[4] then becomes the pitch that this needs. Returns how far the ankle is from
-    where it should be [m].
+    `flex` [rad]; foot[4] then becomes the pitch that this needs. A leg whose foot[5] is 2 straightens softly, see SOFT; one whose is 1
+    does not. Returns how far the ankle is from where it should be [m].
     """
     hip = body.hip[side]
     knee, ankle, ball = hip + 1, hip + 2, hip + 3
-    turned, at, pole = np.empty((3, 3)), np.empty(3), np.empty(3)
-    reach = STRAIGHT * (body.thigh + body.shank)
+    turned, at, pole, heading = np.empty((3, 3)), np.empty(3), np.empty(3), np.array([math.sin(foot[3]), 0.0, math.cos(foot[3])])
+    soft = SOFT * max(foot[5] - 1.0, 0.0) * (body.thigh + body.shank)
     root = positions[hip]
     pelvis = orientations[0]
     for _ in range(4):
         foot_kernel(foot[3], foot[4], turned)
         ankle_kernel(body, foot, turned, at)
+        reach = STRAIGHT * (body.thigh + body.shank)
+        beyond = distance_kernel(root, at) - reach + soft
+        if soft > 0.0 and beyond > 0.0:
+            reach -= soft * math.exp(-beyond / soft)
         if foot[5] > 0.0 and distance_kernel(root, at) > reach:
-            low, high = foot[4], max(foot[4], 1.25)
+            low, high = foot[4], max(foot[4], min(nearest_kernel(body, root, foot), 1.25))
             for _ in range(40):
                 middle = 0.5 * (low + high)
                 foot_kernel(foot[3], middle, turned)
@@ -79,7 +93,7 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
             foot_kernel(foot[3], high, turned)
             ankle_kernel(body, foot, turned, at)
         for i in range(3):  # knees point between pelvis and foot
-            pole[i] = pelvis[i, 2] + 1.5 * turned[i, 2] + 0.5 * (positions[hip, i] - positions[0, i])
+            pole[i] = pelvis[i, 2] + 1.5 * heading[i] + 0.5 * (positions[hip, i] - positions[0, i])
         two_bone_kernel(root, body.thigh, body.shank, at, pole, (1.0 - STRAIGHT) * (body.thigh + body.shank),
                         positions[knee], positions[ankle])
         _frames(positions[hip], positions[knee], positions[ankle], pole, orientations[hip], orientations[knee])

@@ -48,7 +48,9 @@ class Start:
     or 1 right; None for both. ready: it crouches, or waits in the crouch, to push off as soon as it is told. low: it comes down from a
     jump, and its legs give until the centre of mass is so high [m]; None where it does not. acceleration: (3,) [m/s²] of the centre then.
     turn: how far to the left it turns until it lands [rad], looking where it goes; None where nobody told. springs: the landing was made to hop on
-    from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on.
+    from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on. haste: 0 it leaves hardly
+    faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
+    and a free leg as fast as it takes, too.
     """
 
     root: np.ndarray
@@ -66,6 +68,7 @@ class Start:
     turn: float | None = None
     springs: bool = False
     onto: int | None = None
+    haste: int = 0
 
     @property
     def runs(self) -> bool:
@@ -106,7 +109,7 @@ class Start:
 @dataclass(frozen=True, eq=False)
 class Measures:
     """Heights [m] of a body's centre of mass over the floor: standing; leaves: (L,) as it takes off so far ahead (L,) [m] of
-    the balls of its feet; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles.
+    the balls of its feet; touches: (T,) as it touches down so far behind (T,) [m] the middle of its soles, negative ahead of it.
 
     carried: (2,) how high the centre of mass lies over the pelvis for that, at take-off and at touch-down [m].
     """
@@ -118,9 +121,9 @@ class Measures:
     touches: np.ndarray
     carried: np.ndarray
 
-    def touch(self, trail: float) -> float:
-        """How high it touches down `trail` [m] behind its feet."""
-        return float(np.interp(trail, self.trails, self.touches))
+    def touch(self, trail: float, aside: float = 0.0) -> float:
+        """How high it touches down `trail` [m] behind its feet, and so far to a side of them."""
+        return over(float(np.interp(trail, self.trails, self.touches)), aside)
 
     def leave(self, lead: float, aside: float = 0.0) -> float:
         """How high it takes off `lead` [m] ahead of the balls of its feet, and so far to a side of them."""
@@ -144,7 +147,7 @@ def _measures(physique):
     leads = np.linspace(-0.2, MOST_LEAD, 9) * (body.thigh + body.shank)
     ball = feet[:, 2].mean()
     leaves = [_height(physique, carriage.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH, feet, ball + lead) for lead in leads]
-    trails = np.linspace(0.0, TRAIL[1], 5) * body.size
+    trails = np.linspace(-TRAIL[1], TRAIL[1], 9) * body.size
     touches = [_height(physique, carriage.TOUCH, TOES_DOWN, TOUCH_REACH, feet, -trail) for trail in trails]
     return Measures(_height(physique, carriage.STAND, 0.0, STAND_REACH, feet), leads, np.array(leaves), trails, np.array(touches),
                     np.array([carried(physique, carriage.TAKE_OFF), carried(physique, carriage.TOUCH)]))

@@ -5,7 +5,7 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 from .airborne import FADE, GROUND_RATE, HEEL, PLANT, SAME, Airborne
 from .descent import sinking
 from .fall import fall, over_nothing, struck
-from .footing import RUNNERS_HEEL, faded, heels_rise, settling
+from .footing import faded, heels_rise, heels_up, settling
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
 from .grounded import grounded
@@ -17,7 +17,7 @@ from .rolling import rolled, rolls, room, tumbled
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "PLANT", "ROLL_SPACED", "RUNNERS_HEEL", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
-    "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "BONES", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
+    "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sinking", "sole_places", "struck", "tumbled",
 ]

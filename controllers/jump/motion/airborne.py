@@ -30,6 +30,9 @@ DOWN = 0.34
 """And who can stop puts the other foot down beside it within so long from there [s]."""
 PLANT = 0.07
 """From the toes' landing to the heels' [s]."""
+POINTS = 0.08, 2.5, 0.2
+"""Who falls faster than the second [m/s] lands with feet that point down farther by the first for each m/s, and by the third at most [rad]; these take longer, too:
+ankles take over from knees."""
 HEEL = 0.03
 """A heel that is raised by more has left the floor [rad]."""
 MEET = 0.5, 14.0
@@ -222,4 +225,5 @@ class Airborne:
 
     def _toes_down(self, time) -> np.ndarray:
         """How far feet point down (...) [rad] so long after they touched [s]: toes first, but for strides, which are flat."""
-        return (self.way.lands is None or self.way.hops) * TOES_DOWN * np.clip(1.0 - np.asarray(time) / PLANT, 0.0, 1.0) ** 2
+        more = 1.0 + float(np.clip(POINTS[0] * (-self.way.falling[1] - POINTS[1]), 0.0, POINTS[2])) / TOES_DOWN
+        return (self.way.lands is None or self.way.hops) * TOES_DOWN * more * np.clip(1.0 - np.asarray(time) / (PLANT * np.sqrt(more)), 0.0, 1.0) ** 2

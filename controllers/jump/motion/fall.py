@@ -165,7 +165,7 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: 
                 if near < aside * size:  # a goal is infinitely far, and has no way out
                     place = place + (aside * size - near) * _out(foot[0], thing) * FLAT
         floor = floor_at(place[0], place[2], around, centre[1] - LOW * touch)
-        soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), size)
+        soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), physique.tables)
         time = max(until(floor + touch - soft), min(LEAST, until(floor + LOW * touch)), 0.03)
     return time, centre + time * velocity + 0.5 * time**2 * gravity, np.array([place[0], floor, place[2]])
 

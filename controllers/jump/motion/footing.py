@@ -8,7 +8,7 @@ import numpy as np
 
 from ...body import HALF_SOLE, hull_kernel, settle, yaw
 from ...compiled import kernel
-from ..body import FOOT_FADE, BodyTables, Start
+from ..body import FOOT_FADE, BodyTables, Start, nearest_kernel
 
 STANDS = 0.02
 """What is higher over the floor than this [m], at standard height, does not stand."""
@@ -16,10 +16,13 @@ HIPS = 0.09
 """How far below the centre of mass hips are that push [m], at standard height."""
 STRAIGHT, RAISED = 0.992, 0.05
 """A heel rises where the leg is longer than this share of its length, or where the ankle would bend by so much more than it can [rad]."""
-HEELS_RISE = (0.45, 0.90)
-"""When in the push a heel starts to rise, at the earliest and at the latest."""
-RUNNERS_HEEL = 0.2, 1.15
-"""When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body."""
+HEELS_RISE, RISES_FOR = (0.40, 0.90), 0.13
+"""When in the push a heel starts to rise, at the earliest and at the latest, and so long [s] before take-off if there is the time: no ankle is infinitely fast."""
+SHORT_PUSH, NEARER, LEAST_UP = 0.13, 0.8, 0.2
+"""It rises less in pushes that are shorter than the first [s]; and by no more than the second of what brings the ankle nearest to the hip, but by the third [rad] at
+least."""
+RUNNERS_HEEL, RUNS_FOR = (0.2, 1.15), 0.12
+"""When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body; less far where there is less time for it [s]."""
 
 
 def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndarray) -> np.ndarray:
@@ -30,14 +33,27 @@ def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndar
     return feet
 
 
-def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np.ndarray) -> float:
-    """When in the push (0 … 1) the heels rise: not before a standing jumper, its mass at centres (N, 3) when so much (N,) of the push is
-    over, is over the balls of the feet."""
+def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np.ndarray, lasts: float) -> float:
+    """When in the push (0 … 1), which lasts so long [s], the heels rise: if it can be not before a standing jumper, its mass at centres (N, 3) when so much
+    (N,) of the push is over, is over the balls of the feet."""
     if start.runs:
         return RUNNERS_HEEL[0]
     past = (centres[:, None] - start.pushing(planted)[:, :3]) @ yaw(start.heading)[:, 2]
     over = (past > 0.0).all(-1) & (share > 0.0)
-    return float(np.clip(share[int(np.argmax(over))], *HEELS_RISE)) if over.any() else HEELS_RISE[0]
+    earliest, latest = HEELS_RISE
+    latest = latest if start.haste > 1 else max(min(latest, 1.0 - RISES_FOR / lasts), earliest)
+    return float(np.clip(share[int(np.argmax(over))], earliest, latest)) if over.any() else earliest
+
+
+def heels_up(start: Start, planted: np.ndarray, leave: np.ndarray, pushes: float, body: BodyTables) -> float:
+    """How far feet (2, 5) point down [rad] as they leave the floor under a mass at leave (3,) [m], after a push of so long [s]: no farther than brings ankles
+    nearer to the hips, as it would backward, nor than a runner's comes to."""
+    if start.haste > 1:
+        return RUNNERS_HEEL[1] if start.runs else start.heel_up
+    if start.runs:
+        return RUNNERS_HEEL[1] * min((1.0 - RUNNERS_HEEL[0]) * pushes / RUNS_FOR, 1.0)
+    hips, foot = leave - [0.0, HIPS * body.size, 0.0], start.pushing(planted).mean(0)
+    return min(start.heel_up * min(pushes / SHORT_PUSH, 1.0), max(NEARER * float(nearest_kernel(body, hips, foot)), LEAST_UP))
 
 
 def heels_down(centres: np.ndarray, feet: np.ndarray, body: BodyTables, flex: float) -> np.ndarray:

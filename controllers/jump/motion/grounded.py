@@ -79,7 +79,7 @@ def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, fl
     flat = np.ones(feet.shape[:2], bool)
     if start.single is not None:  # whose hips are under his mass; who crouches on two feet sits back, heels down
         flat = heels_down(centres, feet, physique.tables, FLEX * physique.flexibility)
-    flat &= (share <= heels_rise(start, planted, centres, share))[:, None]
+    flat &= (share <= heels_rise(start, planted, centres, share, way.push.duration))[:, None]
     hulls, counts = standing_soles(feet, float(planted[0, 1]), flat, start.single, physique.tables)
     near = np.full(KNOTS, NEAR)
     near[0] = BEGINS
@@ -108,8 +108,9 @@ def _left(physique: Physique, start: Start, way: Path, planted: np.ndarray, cour
     """The path that leaves where the course does, as high as its legs then reach."""
     leave = way.leave.copy()
     leave[[0, 2]] = course.place[-1]
+    assert way.push is not None  # `grounded` has looked
     if not start.runs:
-        leave[1] = top(physique, start, way.keys[2 * BETWEEN, :LEGS], start.pushing(planted), start.heading, leave)
+        leave[1] = top(physique, start, way.keys[2 * BETWEEN, :LEGS], start.pushing(planted), start.heading, leave, way.velocity, way.push.duration)
     else:
         assert start.single is not None  # who runs pushes off one foot
         tall, ball = STRIDE * measures(physique).leave(0.0), planted[start.single, :3]

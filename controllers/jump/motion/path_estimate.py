@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...body import yaw
-from ..body import (FLAT, TRAIL, Physique, Start, apex_airtime, carriage, carried, hermite, least_effort, measures, monotone, soles,
+from ..body import (FLAT, TOUCH_REACH, TRAIL, BodyTables, Physique, Start, apex_airtime, carriage, carried, hermite, least_effort, measures, monotone, soles,
                     take_off_velocity, TURNED)
 from ..prior import BETWEEN, EACH, LEGS, Prior
 from .hopping import hopping
@@ -20,13 +20,18 @@ from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = (0.03, 2.5, 0.07)
-"""How much lower [m] a body touches down for each m/s that it falls faster than the second [m/s], and at most:
-bent legs give way without the knees flying. At standard height and what an adult falls."""
+SOFT = 0.85, 15.5, 0.07
+"""Whoever falls faster touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of the fall, and knees turn no
+faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
+TILTED = 0.7
+"""Whose legs trail behind him lands lower by so much of that than with legs that trail as straight as usual."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 TURN_SETTLES = 0.25
 """So long after it touched down [s] a body has made all of its turn."""
+KEEPS = 0.95, 1.4
+"""Who runs fast enough to run on, and is in no haste, leaves with about the first of his speed: what he leaves faster or slower along the floor is so many times as
+dear as what he leaves faster upward."""
 SPINS = 6.0, 8.0
 """How fast a body turns in the air at most that chooses its airtime, and that was told one [rad/s]."""
 HIGHER = 0.14, 0.9
@@ -138,16 +143,20 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     # where it leaves, how far behind its feet and how much lower it lands
     guess = np.array([middle[0], floor + upright.leave(0.0), middle[2], 0.0, 0.0])
     turn = start.turn or 0.0
+    along = float(towards @ yaw(start.lands)[:, 2])  # seen from how it lands
+    across = float(np.sqrt(max(1.0 - along**2, 0.0)))
     runner = start.single if start.runs else None
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
+    keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
+    stretched = np.array([dear, 1.0, dear])
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     heights, crouch = upright, 0.0
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
-        height = max(min(heights.touch(trail), heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
+        height = max(min(heights.touch(trail * along, trail * across) - TILTED * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
-            least_effort(leave, land, start.velocity * FLAT if start.single is not None else np.zeros(3), gravity),
+            least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
             (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.runs)
@@ -163,8 +172,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             pushing = Running(physique, start, heights, balls, floor, gravity)
         found = pushing.take_off(leave, land, velocity, flight)
         before, lacks = lacks, np.array([
-            *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
-            softened(g * flight - float(velocity[1]), size)]) - guess
+            *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]), body)]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation
@@ -225,6 +233,11 @@ def _tuck(keys: np.ndarray, flight: float, tucked: bool) -> np.ndarray:
     return keys
 
 
-def softened(fall: float, size: float) -> float:
-    """How much lower [m] a body of this size touches down that falls with `fall` [m/s], see SOFT."""
-    return size * min(SOFT[0] * max(fall / np.sqrt(size) - SOFT[1], 0.0), SOFT[2])
+def softened(fall: float, body: BodyTables) -> float:
+    """How much lower [m] a body touches down that falls with `fall` [m/s], see SOFT.
+
+    A leg of two bones of length a whose knee is bent by θ gets shorter by a sin θ/2 for each radian.
+    """
+    bone = 0.5 * (body.thigh + body.shank)
+    sine = min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)
+    return float(np.clip(2.0 * bone * (TOUCH_REACH - np.sqrt(1.0 - sine**2)), 0.0, SOFT[2] * body.size))

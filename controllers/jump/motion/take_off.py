@@ -16,8 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body import yaw
-from ..body import FLAT, Measures, Physique, Start, over, stretched
+from ..body import FLAT, TAKE_OFF_REACH, BodyTables, Measures, Physique, Start, over, stretched
 from ..muscles import crouch_depth, strength
+from .footing import heels_up
 from .pendulum import waiting_kernel
 from .thrust import MOMENTS, moments, risen, upward
 
@@ -62,6 +63,12 @@ SOONER, TIMES = 0.85, 5
 """How much sooner a runner leaves that could not come up so far ahead of the foot, at most so often."""
 
 
+EXTENDS, SHORTEST = (0.85, 0.35, 16.0, 0.07), 0.94
+"""Whoever leaves faster does so from knees bent more: legs lengthen by the first, as a share of the speed along them, and by the second more aside or
+backward, where heels that rise help less; knees turn no faster for that than the third [rad/s] when they are bent by twice the fourth [rad] more than at
+last. But legs are no shorter than this share of their length, and as straight as usual where the leap would be too far for the muscles then."""
+
+
 class TakeOff(NamedTuple):
     """Lowest point and take-off of the centre of mass (3,) [m], its velocity (3,) [m/s] at the lowest point, the time until
     there [s] and how much of that it goes down, whether the muscles are strong enough, and where (3,) the push begins to press."""
@@ -75,10 +82,23 @@ class TakeOff(NamedTuple):
     pressed: np.ndarray
 
 
-def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, heading: float, guess: np.ndarray) -> float:
-    """How high [m] the centre of mass is over `guess`'s (3,) place as feet (2, 5) leave the floor, the body carried by `angles` (11,)."""
-    lifted = 0.0 if start.single is None else LIFTED * physique.size
-    return stretched(physique, angles, feet, start.heel_up, start.straight, heading, guess) + lifted
+def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, heading: float, guess: np.ndarray, velocity: np.ndarray, pushes: float) -> float:
+    """How high [m] the centre of mass is over `guess`'s (3,) place as feet (2, 5) leave the floor with a velocity (3,) [m/s] after a push of so long [s], the body
+    carried by `angles` (11,)."""
+    lifted, body, reach = 0.0 if start.single is None else LIFTED * physique.size, physique.tables, start.straight
+    if not start.haste:
+        legs, facing = guess - feet[:, :3], yaw(heading)[:, 2]
+        astray = velocity * FLAT - max(float(velocity @ facing), 0.0) * facing
+        share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
+        reach = min(reach, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
+    return stretched(physique, angles, feet, heels_up(start, feet, guess, pushes, body), reach, heading, guess) + lifted
+
+
+def straightest(speed: float, body: BodyTables, astray: float) -> float:
+    """How straight a leg is that leaves with a speed [m/s] along it, as a share of its length, see EXTENDS. astray: how much of it is aside or backward."""
+    sine = (EXTENDS[0] + EXTENDS[1] * astray) * speed / (EXTENDS[2] * 0.5 * (body.thigh + body.shank))
+    bent = math.asin(min(max(sine, 0.0), 1.0)) - EXTENDS[3]  # half of how far its knee is
+    return max(min(math.cos(max(bent, 0.0)), TAKE_OFF_REACH), SHORTEST)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +169,7 @@ class Standing:
         lead = (ahead - self.balls) * FLAT
         lead *= min(1.0, self.heights.leads[-1] / max(float(np.linalg.norm(lead)), 1e-9))
         ahead = self.balls * FLAT + lead + [0.0, leave[1], 0.0]
-        ahead[1] = top(self.physique, start, self.angles, self.feet, start.leaves, ahead)
+        ahead[1] = top(self.physique, start, self.angles, self.feet, start.leaves, ahead, velocity, duration)
         leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf

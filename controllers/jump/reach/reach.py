@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,7 @@ from ..motion import Path, Plan, grounded, path, rolled, rolls, room
 from ..planner import plan
 from ..prior import Prior
 from .feasibility import HARD, STEEP, fault, stopped, wrong
-from .sweep import Touch, touch, touches
+from .sweep import Touch, touch
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
@@ -30,6 +32,8 @@ TRIES = 3
 """With so many plans at most: who was refused shall not wait for the reason."""
 CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
 """For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
+LITTLE, RISES = 0.06, 0.03
+"""Who leaves in haste is elsewhere by so much at most [m]; and a body that flies higher by no more than the rise of its arc and the second [m]."""
 FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 
@@ -63,17 +67,23 @@ class Reach:
         why = self.footing(start, place, floor, around)
         if why:
             return None, why
-        told, count = "", 0
-        for way, why in self.arcs(start, place, floor, airtime, around):
+        told, count, arcs = "", 0, self.arcs(start, place, floor, airtime, around)
+        found: tuple[Path, str, int] | None = next(arcs)
+        while found is not None:
+            (way, why, haste), deep = found, None
             if not why:
-                made, count = plan(self.physique, start, way, place, floor), count + 1
+                made, count = plan(self.physique, replace(start, haste=haste), way, place, floor), count + 1
                 made, why = self._down(made, around)
-                why = why or wrong(self.physique, made) or touches(self.physique, made, around)
+                why = why or wrong(self.physique, made)
                 if not why:
-                    return made, ""
+                    hit = touch(self.physique, made, around)
+                    if hit is None:
+                        return made, ""
+                    why, deep = hit.reason, hit.deep
             told = told or why
             if count == tries:
                 break
+            found = _next(arcs, deep)
         return None, told
 
     def _down(self, made: Plan, around: Sequence[Any]) -> tuple[Plan, str]:
@@ -93,7 +103,7 @@ class Reach:
         if why:
             return self.path(start, place, floor, airtime), why
         first = None
-        for way, why in self.arcs(start, place, floor, airtime, around):
+        for way, why, _ in self.arcs(start, place, floor, airtime, around):
             first = first or (way, why)
             if not why:
                 return way, ""
@@ -102,10 +112,10 @@ class Reach:
 
     def touching(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, around: Sequence[Any] = ()) -> Touch | None:
         """What the usual jump to a place (3,) would touch, and how the body would lie in it; None if nothing, or if there is no such jump."""
-        way, _ = next(self.arcs(start, place, floor, airtime, around))
+        way, _, haste = next(self.arcs(start, place, floor, airtime, around))
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = plan(self.physique, start, way, place, floor)
+        made = plan(self.physique, replace(start, haste=haste), way, place, floor)
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def footing(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> str:
@@ -123,23 +133,49 @@ class Reach:
         return ""
 
     def arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
-             around: Sequence[Any] = ()) -> Iterator[tuple[Path, str]]:
-        """The paths to a place, and why each can't be gone, if so: the usual one first; where something stands about then with the legs
-        drawn up and the arms down and, without an airtime, higher."""
-        first = None
+             around: Sequence[Any] = ()) -> Generator[tuple[Path, str, int], float | None, None]:
+        """The paths to a place, why each can't be gone, if so, and in which haste, see `Start`: the usual one first; where something stands about then with
+        the legs drawn up and the arms down and, without an airtime, higher. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
+        in the plan along the last of them leaves out those along which it would as well."""
+        first, hits = None, dict[bool, tuple[float, float]]()
         for higher in HEIGHTS:
             flight = airtime if first is None else first.airtime * higher
             for low, tucked in WAYS if len(around) else WAYS[:1]:
-                if first is not None and higher > 1.0 and not tucked:
+                if first is not None and higher > 1.0 and (not tucked or low in hits and self._still(*hits[low], first.airtime * higher)):
                     continue
-                way = grounded(self.physique, start, self.path(start, place, floor, flight, low, tucked), floor)
+                arc = partial(self._arc, start, place, floor, around, flight, low, tucked)
+                quick, deep, slower = None, None, (0, 1)
+                if higher == 1.0:
+                    (way, why), slower = arc(0), (1,)
+                    deep = yield way, why, 0
+                if not slower[0] or why:  # who can't go it in all haste is not asked whether he can otherwise
+                    quick = arc(2)
+                    for haste in slower if not quick[1] else ():
+                        way, why = arc(haste)
+                        if not why:
+                            deep = yield way, why, haste
+                            break
+                if deep is None or deep < LITTLE or start.runs and higher == 1.0:  # who runs flies lower then
+                    way, why = quick or arc(2)
+                    deep = yield way, why, 2
                 first = first or way
-                why = fault(self.physique, way, around, floor)
-                yield way, why
+                if deep is not None:
+                    hits[low] = way.airtime, deep
                 if not way.strong or why.startswith(HARD):
                     return
             if airtime is not None or not len(around):
                 return
+
+    def _still(self, airtime: float, deep: float, longer: float) -> bool:
+        """Whether something that lay so deep [m] in a plan would still lie in one that flies longer [s], and so much higher."""
+        return deep > RISES - 0.125 * float(self.gravity[1]) * (longer**2 - airtime**2)
+
+    def _arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], airtime: float | None, low_arms: bool, tucked: bool,
+             haste: int) -> tuple[Path, str]:
+        """One path to a place, and why it can't be gone, if so."""
+        start = replace(start, haste=haste)
+        way = grounded(self.physique, start, self.path(start, place, floor, airtime, low_arms, tucked), floor)
+        return way, fault(self.physique, way, around, floor)
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                 around: Sequence[Any] = ()) -> np.ndarray | None:
@@ -187,3 +223,11 @@ class Reach:
         pushing = feet if start.single is None else feet[start.single:start.single + 1]
         return path(self.physique, start, pushing, landing_feet(place, start.lands, body), floor,
                     self.gravity, airtime, low_arms, self.prior, tucked)
+
+
+def _next(arcs: Generator[tuple[Path, str, int], float | None, None], deep: float | None) -> tuple[Path, str, int] | None:
+    """The next of some paths, told how deep something lay in the last one's plan; None where there is none."""
+    try:
+        return arcs.send(deep)
+    except StopIteration:
+        return None

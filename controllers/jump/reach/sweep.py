@@ -39,18 +39,13 @@ def _bones(skeleton: Skeleton) -> tuple[tuple[str, int, int, bool, float], ...]:
 
 class Touch(NamedTuple):
     """What a body would hit in a plan, where it would lie deepest in it: in words, in which pose, root (3,) [m] and local rotations (J, 3, 3),
-    and where (3,) [m]."""
+    where (3,) [m] and how deep [m]."""
 
     reason: str
     root: np.ndarray
     local: np.ndarray
     place: np.ndarray
-
-
-def touches(physique: Physique, made: Plan, around: Sequence[Any]) -> str:
-    """What a body would hit in a plan, in words, where it would lie deepest in it; "" if nothing."""
-    found = touch(physique, made, around)
-    return "" if found is None else found.reason
+    deep: float
 
 
 def touch(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | None:
@@ -87,5 +82,5 @@ def touch(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | None
             part = parts[int(np.searchsorted(np.cumsum(widths), place, "right"))][0]
             ahead = float(np.linalg.norm((every[moment, place] - every[0, place])[[0, 2]]))
             pose = chosen[(moment + 1) // 2]
-            return Touch(f"its {part} would hit something {ahead:.1f} m ahead", made.roots[pose], made.local[pose], every[moment, place])
+            return Touch(f"its {part} would hit something {ahead:.1f} m ahead", made.roots[pose], made.local[pose], every[moment, place], float(deep[moment, place]))
     return None

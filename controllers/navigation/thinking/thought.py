@@ -22,6 +22,10 @@ EACH = 0.05
 """... and so much later for each leap that had to be planned for it [s]."""
 
 
+HURRIED = 5
+"""Who hurries waits in each step for one more question, and after so many for all of them."""
+
+
 def steps_of(questions: int, dt: float) -> int:
     """After how many steps of dt [s] a thought is used that asked so many questions."""
     return max(math.ceil((SOON + EACH * questions) / dt - 1e-6), 1)
@@ -50,19 +54,23 @@ class Thought(Generic[T]):
         if self._begun is not None:
             self._begun.cancel()
 
-    def after(self, steps: int) -> T | None:
-        """What was thought of, so many steps after it was begun; None before it is to be used. It raises what thinking did."""
+    def after(self, steps: int, hurried: bool = False) -> T | None:
+        """What was thought of, so many steps after it was begun; None before it is to be used. hurried: it is used as soon as can be. It raises what thinking did."""
         while True:
             with self._changed:
-                while self._working and steps >= steps_of(self._asked, self._dt):
+                while self._working and steps >= self._due(hurried):
                     self._changed.wait()
-                if steps < steps_of(self._asked, self._dt):
+                if steps < self._due(hurried):
                     return None
                 if self._done:
                     if self._error is not None:
                         raise self._error
                     return self._result
             self._work(False)  # nobody has begun with it, or ended it
+
+    def _due(self, hurried: bool) -> int:
+        """After how many steps it is to be used if it asks no more than it has asked."""
+        return 1 + min(self._asked, HURRIED) if hurried else steps_of(self._asked, self._dt)
 
     def _work(self, beside: bool) -> None:
         questions = 0
