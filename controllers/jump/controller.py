@@ -158,7 +158,8 @@ class Jump(Reach, Controller):
             state = self._followed(state, intent)
         if isinstance(state.memory, Crouching):
             after = crouched(self, state, intent.leap or intent.aim, dt)
-            return after, after.pose
+            pose = self._drawn_in(after.pose, after.ground, intent.around, after.memory.time)
+            return replace(after, pose=pose), pose
         jumping: Jumping = state.memory
         made, time = jumping.plan, min(jumping.time + dt, jumping.plan.duration)
         pose = made.at(time)
@@ -175,13 +176,19 @@ class Jump(Reach, Controller):
                         memory=replace(jumping, time=time), floor=floor)
         if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
             after = self._hit(after, intent.around, dt)
-        if jumping.fault and intent.around:  # a leap's sweep saw to its arms
-            near, share = drawn_in(self.skeleton, pose, after.ground, intent.around), min(time / DRAWN, 1.0)
-            root, local = np.empty(3), np.empty_like(pose.rotations)
-            between_kernel(pose.root, near.root, pose.rotations, near.rotations, share**2 * (3.0 - 2.0 * share), root, local)
-            pose = Pose(root, local)
+        if jumping.fault:  # a leap's sweep saw to its arms
+            pose = self._drawn_in(pose, after.ground, intent.around, time)
             after = replace(after, pose=pose)
         return after, pose
+
+    def _drawn_in(self, pose: Pose, ground: np.ndarray, around: Sequence[Any], time: float) -> Pose:
+        """A pose with its arms drawn in beside what stands about, the more the longer it has been so [s], up to DRAWN."""
+        if not around:
+            return pose
+        near, share = drawn_in(self.skeleton, pose, ground, around), min(time / DRAWN, 1.0)
+        root, local = np.empty(3), np.empty_like(pose.rotations)
+        between_kernel(pose.root, near.root, pose.rotations, near.rotations, share**2 * (3.0 - 2.0 * share), root, local)
+        return Pose(root, local)
 
     def _released(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state of who crouches at the beginning of the jump that is asked; as it is where none is, or it can't be made: then it

@@ -1,6 +1,7 @@
 """Who aims crouches: down by its springs, still as long as it waits, off at once when it is told, up again when it is not."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Crouching, Jump, Jumping, Physique
+from gambol.controllers.navigation import gap
 from gambol.controllers.supervisor import Supervisor
 
 from conftest import ahead
@@ -132,3 +134,13 @@ def test_it_is_the_same_to_the_bit_and_any_aim_is_borne(person, waiting):
         after = led(person, [Intent(aim=Leap(place))] * 30, states[-1])
         assert np.isfinite(after[-1].pose.root).all() and np.isfinite(after[-1].pose.rotations).all()
     assert isinstance(led(person, [Intent(leap=leap)], states[-1])[0].memory.memory, Jumping)
+
+
+def test_who_crouches_beside_a_box_draws_his_arms_in(person):
+    """They swing back as he goes down: hands were 15 cm in it."""
+    box = SimpleNamespace(centre=(-0.59, 0.3, 0.0), size=(0.8, 0.6, 2.0), heading=0.0)
+    states = led(person, [Intent(aim=Leap(ahead(person.start(), 1.0)), around=(box,))] * 70)
+    assert isinstance(states[-1].memory.memory, Crouching)
+    arms = [person.skeleton.index(name) for name in ("RightForeArm", "RightHand")]
+    placed = np.array([forward_kinematics(person.skeleton, s.pose.root, s.pose.rotations)[0][arms] for s in states])
+    assert gap(placed.reshape(-1, 3), box).min() > 0.0
