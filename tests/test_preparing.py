@@ -27,7 +27,7 @@ def told(monkeypatch, folder):
 
     def noted(name):
         return lambda *about, **more: order.append((name, {path.stem.partition("-")[0] for path in folder.glob("*.ready")}))
-    for name in ("feet", "strength", "rest", "place", "things", "measures", "rehearse"):
+    for name in ("feet", "weight", "strength", "rest", "place", "beside", "things", "measures", "rehearse"):
         monkeypatch.setattr(preparing, name, noted(name))
     return order
 
@@ -58,21 +58,21 @@ def test_what_is_compiled_ahead_is_what_a_step_calls(monkeypatch):
 
 
 def test_walking_is_ready_before_jumping(told, monkeypatch, folder):
-    monkeypatch.setattr(preparing.sys, "stdin", io.StringIO("feet\nstrength\n"))
+    monkeypatch.setattr(preparing.sys, "stdin", io.StringIO("feet\nweight\nstrength\n"))
     preparing.main("person")
-    assert told == [("rest", set()), ("place", set()), ("things", {"walk"}), ("measures", {"walk"}), ("rehearse", {"walk"})]
+    assert told == [("rest", set()), ("place", set()), ("beside", set()), ("weight", set()), ("things", {"walk"}), ("measures", {"walk"}), ("rehearse", {"walk"})]
     assert all(preparing.ready(part, Locomotion.load()) for part in preparing.PARTS)
 
 
 def test_nobody_waits_for_a_program_that_has_ended(told, monkeypatch):
     monkeypatch.setattr(preparing.sys, "stdin", io.StringIO(""))
     preparing.main("person")
-    assert [name for name, _ in told] == ["rest", "place", "things", "measures", "rehearse"]
+    assert [name for name, _ in told] == ["rest", "place", "beside", "weight", "things", "measures", "rehearse"]
 
 
 def test_what_comes_ahead_is_said_and_claims_nothing(told, capsys, folder):
     preparing.main("ahead")
-    assert capsys.readouterr().out.split() == ["feet", "strength"] and [name for name, _ in told] == ["feet", "strength"]
+    assert capsys.readouterr().out.split() == ["feet", "weight", "strength"] and [name for name, _ in told] == ["feet", "weight", "strength"]
     assert not list(folder.glob("*.ready"))
 
 

@@ -1,7 +1,7 @@
 """Compiling what a person needs, once, in programs beside a game, which finds it on disk afterwards.
 
-One program, `main("person")`, compiles all of a walk, then of a jump and of walks to goals. Two lumps of it come from another, `main("ahead")`,
-which it hears on its standard input, so that two cores walk in half the time: what places feet, and how strong a body is.
+One program, `main("person")`, compiles all of a walk, then of a jump and of walks to goals. Three lumps of it come from another, `main("ahead")`,
+which it hears on its standard input, so that two cores walk in half the time: what places feet, what weighs a body, and how strong it is.
 Compiling holds the interpreter's lock: threads would not do.
 """
 
@@ -19,7 +19,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from ..body import anatomy, centre_in_pose, forward_kinematics
+from ..body import Pose, anatomy, centre_in_pose, forward_kinematics
 from ..compiled import cache_folder, cache_home
 from ..contract import Intent
 from ..jump import Jump, rehearse
@@ -34,6 +34,11 @@ from ..struck import Struck, rehearse as rehearse_strike
 PARTS = ("walk", "jump")
 KERNELS = 334
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
+
+
+BOX = SimpleNamespace(centre=(0.0, 1.0, 0.6), size=(2.0, 2.0, 0.2), heading=0.0)
+POST = SimpleNamespace(foot=(0.2, 0.0, 0.3), radius=0.1, height=2.0)
+"""What stands about somebody for whom it is compiled."""
 
 
 def begun(walker: Locomotion, library: File | None = None) -> tuple[subprocess.Popen, ...]:
@@ -115,9 +120,20 @@ def place(walker: Locomotion) -> None:
             forward_kinematics(walker.skeleton, root, turns)
 
 
+def weight(walker: Locomotion) -> None:
+    """Compile, or load, what weighs a body as it stands."""
+    turns = np.tile(np.eye(3, dtype=np.float32), (len(walker.skeleton), 1, 1))
+    centre_in_pose(anatomy(walker.skeleton), walker.skeleton, Pose(np.zeros(3, np.float32), turns))
+
+
+def beside(walker: Locomotion) -> tuple[Any, Any]:
+    """Compile, or load, a step beside things, which a game's first one is. One, and its pose."""
+    return walker.step(walker.start(), Intent(np.array([1.0, 0.0, 0.0]), around=(BOX, POST)), 1.0 / 60.0)
+
+
 def things(walker: Locomotion) -> None:
-    """Compile, or load, what keeps somebody who walks from what stands about and from others, what weighs him, and what sets him down at a run."""
-    box, post = SimpleNamespace(centre=(0.0, 1.0, 0.6), size=(2.0, 2.0, 0.2), heading=0.0), SimpleNamespace(foot=(0.2, 0.0, 0.3), radius=0.1, height=2.0)
+    """Compile, or load, what keeps somebody who walks from what stands about and from others, and what sets him down at a run."""
+    box, post = BOX, POST
     for thing in (box, post):
         gap(np.zeros((1, 3)), thing)
     walls = walls_of((box, post))
@@ -126,9 +142,8 @@ def things(walker: Locomotion) -> None:
     follow(Path(np.array([[0.0, 0.0], [0.0, 1.0]])), np.zeros(3), np.float64(0.0), 1.0)
     grounds = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     avoid(grounds[:, :2], np.zeros((2, 2)), np.ones((2, 2)), 0.3, (box, post), grounds[:, 2])
+    state, pose = beside(walker)
     intent = Intent(np.array([1.0, 0.0, 0.0]), around=(box, post))
-    state, pose = walker.step(walker.start(), intent, 1.0 / 60.0)
-    centre_in_pose(anatomy(walker.skeleton), walker.skeleton, pose)
     drawn_in(walker.skeleton, pose, state.ground, (box, post))
     walker.enter(replace(state, memory=None, contacts=np.arange(4) < 2, velocity=np.array([2.0, 0.0, 0.0]), previous=pose, elapsed=1.0 / 60.0), intent)
 
@@ -162,12 +177,17 @@ def main(part: str, library: str = "") -> None:
     if part == "ahead":
         feet(walker)
         print("feet", flush=True)
+        weight(walker)
+        print("weight", flush=True)
         strength(jump.physique)
         print("strength", flush=True)
         return
     rest(walker)
     sys.stdin.readline()  # the other program has the feet, or has ended
     place(walker)
+    beside(walker)
+    sys.stdin.readline()  # and the weight
+    weight(walker)
     _note("walk", walker)
     things(walker)
     measures(jump.physique)

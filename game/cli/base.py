@@ -7,7 +7,7 @@ import gc
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -98,6 +98,12 @@ def unswept():
 def say(text: str) -> None:
     """Tell the user something that is no result: it goes to the standard error."""
     typer.echo(text, err=True)
+
+
+def say_refused(refused: Iterable[str]) -> None:
+    """Tell what a scenario asked for that nobody could do, and why."""
+    for line in refused:
+        say(f"gambol: {line}")
 
 
 def person_of(library: Path | None, character: Path | None = None) -> Any:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, known, learn, overlays_of, person_of, pixels_of, plainly,
-                   progress_bar, replayed, say)
+                   progress_bar, replayed, say, say_refused)
 from .motion import write_motion
 
 
@@ -71,8 +71,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
             refused.update(dict.fromkeys(frame.refused))
             yield made
     _draw(drawn(), film.frames, film.title, target, film.size, film.fps, preset, background)
-    for line in refused:
-        say(f"gambol: {line}")
+    say_refused(refused)
 
 
 def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,

@@ -77,7 +77,7 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
     reconstruction, walker = controller(None), Locomotion.load()
     someone = Supervisor({"locomotion": walker, "reconstruction": reconstruction})
     someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
-    poses, contacts, lost, skipped = [], [], 0, []
+    poses, contacts, lost, skipped, met = [], [], 0, [], np.zeros(len(source.controls.names), bool)
     with _stoppable():
         try:
             stand(source, height, calibration, posing, wait=None if seconds is None else max(seconds, _WAITED))
@@ -86,6 +86,7 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
             state = None
             for now in _times(source, seconds, sender is not None, skipped):
                 seen = source.at(now)
+                met |= np.isfinite(seen).all(-1)
                 if source.worn is not None and source.worn.known is not known:
                     if known is not None:
                         moved(source, calibration)
@@ -109,6 +110,9 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
         finally:
             if poses and out is not None:
                 write_take(out, out.stem, reconstruction.skeleton, poses, contacts)
+    unmet = [] if met.all() else [f"nothing was heard of {', '.join(_missing(source, met))}"]
+    for line in unmet + _amiss(source) if unmet or source.rivals else ():
+        say(line)
     if not poses and out is not None:
         raise Mistake(f"{out}: nothing was recorded")
     if lost:
@@ -119,8 +123,6 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
         say(f"{source.broken} packets were broken and left out")
     if source.foreign:
         say(f"{source.foreign} packets of another machine than the first were left out")
-    if source.rivals:
-        say(_twice(source))
     if sender is not None and sender.lost:
         say(f"{sender.lost} frames could not be sent")
 
@@ -154,6 +156,8 @@ def stand(source: Any, height: float | None, calibration: Path | None = None, po
     if calibration is not None and calibration.exists():
         source.worn = load(calibration, source.controls)
         say(source.worn.said(source.controls.names))
+        if tell is None and _live(source):
+            _met(source, say, wait)
         return
     if calibration is not None and not calibration.parent.is_dir():
         raise Mistake(f"{calibration}: there is no folder {calibration.parent}")
@@ -183,8 +187,7 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
     from gambol.controllers.reconstruction.calibration import CalibrationNetwork, Wearer, calibratable
     from gambol.controllers.reconstruction.live import Standing, placed
 
-    names = source.controls.names
-    live = not hasattr(source, "duration")
+    live = _live(source)
     if live:
         say(f"listening at {source.host}, port {source.port}: stand upright for a second, in T-pose or with the arms down")
     standing, told, began = Standing(), -_TELL / 2, None
@@ -210,19 +213,54 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
                 standing, told = Standing(), now
         over = live and wait is not None and now - began > wait
         if over or now - told > _TELL:
-            missing = [name for name, there in zip(names, np.isfinite(seen).all(-1)) if not there]
+            missing = _missing(source, np.isfinite(seen).all(-1))
             if over:
                 raise Mistake(f"nobody has stood still for {wait:g} s" + (f": nothing is heard of {', '.join(missing)}" if missing else "")
-                              + (f"; {_twice(source)}" if source.rivals else ""))
+                              + "".join(f"; {line}" for line in _amiss(source)))
             say(f"waiting for {', '.join(missing)}" if missing else "waiting for somebody who stands still")
-            if source.rivals:
-                say(_twice(source))
-            if live and not source.heard and source.local:
-                say("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
-            if source.unknown:
-                say(f"on no point: {', '.join(source.unknown)}; --map says where they are")
+            for line in _amiss(source):
+                say(line)
             told = now
     raise Mistake("nobody stands still in these packets, upright, in T-pose or with the arms down")
+
+
+def _met(source: Any, say: Callable[[str], None], wait: float | None) -> None:
+    """Wait until any tracker is heard, where it is known how they are worn. wait: as in `stand`."""
+    import numpy as np
+
+    say(f"listening at {source.host}, port {source.port}")
+    told = began = None
+    for now in _times(source, None, True, []):
+        began, told = (now, now - _TELL / 2) if began is None or told is None else (began, told)
+        there = np.isfinite(source.at(now)).all(-1)
+        if there.any():
+            return
+        if wait is not None and now - began > wait:
+            raise Mistake("; ".join([f"nothing is heard of {', '.join(_missing(source, there))} for {wait:g} s", *_amiss(source)]))
+        if now - told > _TELL:
+            for line in (f"waiting for {', '.join(_missing(source, there))}", *_amiss(source)):
+                say(line)
+            told = now
+
+
+def _live(source: Any) -> bool:
+    """Whether a source is heard as it comes, and is no file of packets."""
+    return not hasattr(source, "duration")
+
+
+def _missing(source: Any, there: Any) -> list[str]:
+    """The names of the points that are not there. there: (n,) bool."""
+    return [name for name, is_there in zip(source.controls.names, there) if not is_there]
+
+
+def _amiss(source: Any) -> list[str]:
+    """What is wrong with what is heard, or why nothing is: a line for each."""
+    lines = [_twice(source)] if source.rivals else []
+    if _live(source) and not source.heard and source.local:
+        lines.append("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
+    if source.unknown:
+        lines.append(f"on no point: {', '.join(source.unknown)}; --map says where they are")
+    return lines
 
 
 def _ticks(seconds: float | None, behind: float, skipped: list[float]) -> Iterator[float]:

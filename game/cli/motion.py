@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say
+from .base import Library, Mistake, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say, say_refused
 
 
 @app.command()
@@ -43,11 +43,17 @@ def write_motion(film: Any, out: str | Path, controller: Any) -> None:
 
     checked(out, [actor.name for actor in film.actors])
     learn(film.wanted, film.database)
+    refused: dict[str, None] = {}
+
+    def moments():
+        for frame in run(film, controller):
+            refused.update(dict.fromkeys(frame.refused))
+            yield frame.before, frame.after, frame.alpha
     with progress_bar() as bar:
-        done = takes((frame.before, frame.after, frame.alpha)
-                     for frame in bar.track(run(film, controller), film.frames, description=film.title))
+        done = takes(bar.track(moments(), film.frames, description=film.title))
     for path in write(out, done, film.fps):
         say(f"{path}: {film.frames} frames, {film.duration:g} s")
+    say_refused(refused)
 
 
 @app.command()

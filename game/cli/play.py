@@ -83,7 +83,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         if crowd and tape is None:
             game.do(f"crowd={crowd}")
         return game
-    show(Opening(begun, beside), pixels, preset, log, capture)
+    show(Opening(begun, beside), pixels, preset, log, capture, sending)
 
 
 def _own(network: Path, replay: Path | None) -> None:
@@ -99,7 +99,7 @@ def _own(network: Path, replay: Path | None) -> None:
     Network.load(network)
 
 
-def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None) -> None:
+def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, capture: Any = None, sending: Any = None) -> None:
     """Run a game, or what opens one, in a window until it is over; exit code NO_DISPLAY where none can be opened."""
     with unswept():
         from ..hosts import DisplayError, run_window
@@ -115,6 +115,8 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
             say(f"{log.path}: {log.ticks / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
         if capture is not None:
             capture.finish(say)
+        if sending is not None and sending.lost:
+            say(f"{sending.lost} frames could not be sent")
 
 
 def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
@@ -153,7 +155,7 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
             say(text)
             told(text)
         ask(tell=tell, say=both)
-    show(begun() if ask is None else Asking(asked, begun), pixels, preset, log, capture)
+    show(begun() if ask is None else Asking(asked, begun), pixels, preset, log, capture, sending)
 
 
 @app.command()

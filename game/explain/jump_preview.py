@@ -96,7 +96,7 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     up to half a second among things: until then it is seen without. sweeps: whether it is planned and swept where things stand about.
     """
     jump = jump_of(character.controller)
-    if jump is None or leaving(character.state):
+    if jump is None or not aim.wants or leaving(character.state):  # what is not aimed may still be being compiled
         return None
     leap = aim.target(landing(jump, character.state), props, -float(jump.gravity[1]), jump.longest)
     if leap is None:

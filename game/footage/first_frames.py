@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import load, retarget
-from gambol.controllers.tracking import Tracker, clicked, read_clicks
+from gambol.controllers.tracking import ClickError, Tracker, clicked, read_clicks
 from gambol.controllers.tracking.silhouettes import Surface
 from gambol.controllers.tracking.twists import Configuration, fitted
 
@@ -63,7 +63,11 @@ def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Pat
 
 def clicked_pose(footage: Footage, clicks: Path, level: str = "middle") -> tuple[Surface, Configuration]:
     """A body and its pose in the first frame, by a .toml file of joints in pictures. ClickError for one that says nothing sound."""
-    chain, pose = clicked(footage.lenses, read_clicks(clicks, footage.lenses))
+    seen = read_clicks(clicks, footage.lenses)
+    try:
+        chain, pose = clicked(footage.lenses, seen)
+    except ClickError as fault:
+        raise ClickError(f"{clicks}: {fault}") from None
     return surface_of(chain.skeleton, "full", level=level), pose
 
 

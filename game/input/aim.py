@@ -101,7 +101,7 @@ class Aim:
     @property
     def facing(self) -> float | None:
         """The heading [rad] that a body about to jump from a stand turns to, if any."""
-        if self.moving or self.heading is not None or not (self.aiming or self.waiting) or math.hypot(*self.offset) < NEAR:
+        if self.moving or self.heading is not None or not self.wants or math.hypot(*self.offset) < NEAR:
             return None
         return math.atan2(*self.offset)
 
@@ -115,12 +115,17 @@ class Aim:
     @property
     def stands(self) -> bool:
         """Whether the sticks move the ring and not the body."""
-        return (self.aiming or self.waiting > 0.0) and not self.moving
+        return self.wants and not self.moving
+
+    @property
+    def wants(self) -> bool:
+        """Whether a jump is aimed at, or waited for."""
+        return self.aiming or self.waiting > 0.0
 
     def target(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf, ahead: float = 0.0) -> Leap | None:
         """The jump that would be made now; None where nobody aims. gravity: [m/s²], downwards positive. longest: [s] that the body can be in
         the air straight up; ahead: as it would be made so many seconds later."""
-        if not (self.aiming or self.waiting > 0.0):
+        if not self.wants:
             return None
         floor = float(state.floor)
         if not self.moving and math.hypot(*self.offset) < NEAR:

@@ -120,7 +120,7 @@ def _comparing(moment: SessionState, wanted: Comparison | None, kept: Mapping[st
 
 
 def _joined(moment: SessionState) -> SessionState:
-    """One player more, beside the first; no more than there are tints."""
+    """One player more, beside the first; no more than there are tints. Bodies made of points that stand there go to the other side."""
     count, controller = len(moment.players), walker_of(moment.after.characters[0].controller)
     if count >= len(TINTS):
         return moment
@@ -132,8 +132,9 @@ def _joined(moment: SessionState) -> SessionState:
     late = after.characters[count]
     before = replace(moment.before, characters=moment.before.characters[:count] + (late,)
                      + moment.before.characters[count:])
-    return replace(moment, before=before, after=after, opening=add(moment.opening),
-                   players=(*moment.players, Player.behind(late)))
+    moment = replace(moment, before=before, after=after, opening=add(moment.opening), players=(*moment.players, Player.behind(late)))
+    open_ = moment.comparison
+    return moment if open_ is None or open_.pins is not None else _comparing(moment, replace(open_, beside=(0.0, 0.0, 0.0)))
 
 
 def _tuned(moment: SessionState, who: int, action: str) -> SessionState:

@@ -86,7 +86,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
             command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props, agility(character.controller))))
         known = run_up or RunUp()
         players[-1] = replace(players[-1], run_up=known)
-        leap, ready = (None, None) if jump is None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
+        # how long it can be in the air is not asked before somebody aims: on a first start that is still being compiled
+        leap, ready = (None, None) if jump is None or not aim.wants else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
         command = command if known.leap is None else replace(command, velocity=known.velocity)
         intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,
                          aim=known.leap or (ready if known.thought is None else Leap(ring(state, props))),
@@ -103,7 +104,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
 def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:
     """What is known of the run-up of somebody who aims at a run, or has let go: goes on as he does if his leap will go off, or until he can just still leap over
     what is ahead, and else comes to rest before it. None of who does neither."""
-    if not (aim.moving and (aim.aiming or aim.waiting > 0.0)):
+    if not (aim.moving and aim.wants):
         return None
     known, state, controller, jump = player.run_up, character.state, character.controller, jump_of(character.controller)
     onward = known.onward(command.velocity)

@@ -117,6 +117,13 @@ def test_motion(short, tmp_path):
     assert (tmp_path / "b-A.bvh").exists() and (tmp_path / "b-B.bvh").exists()
 
 
+@pytest.mark.parametrize("command", [("render", "a.mp4"), ("render", "a.bvh"), ("export", "a.glb")])
+def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, command):
+    short.write_text(SHORT.replace("duration = 0.5", "duration = 4").replace("{ for = 0.5, velocity = [1, 0, 0] }", "{ jump_to = [0, 40] }"))
+    done = gambol(command[0], short, "-o", tmp_path / command[1])
+    assert done.exit_code == 0 and done.output.count("gambol: A: no jump to (0, 0, 40): ") == 1
+
+
 @pytest.mark.parametrize(("arguments", "says"), [
     (("render", "nowhere", "-o", "a.mp4"), "no scenario is called 'nowhere'"),
     (("render", "demo", "-o", "a.gif"), "can't record .gif"),

@@ -58,6 +58,18 @@ def same(a, b):
         assert np.array_equal(x.told, y.told, equal_nan=True)
 
 
+def test_who_joins_stands_apart_from_bodies_of_points_whoever_came_first(walker):
+    study, join = Wish(pressed=("study=ours@4",)), Wish(pressed=("join",))
+    for wishes in ((study, WALK, WALK, join), (join, WALK, WALK, study)):
+        line = Timeline(opening(walker))
+        for wish in wishes:
+            line.advance((wish, Wish())[:len(line.now.players)])
+        first, second, body = line.now.after.characters
+        aside = [np.hypot(*(one.state.ground[:2] - first.state.ground[:2])) for one in (second, body)]
+        assert np.hypot(*(second.state.ground[:2] - body.state.ground[:2])) > 1.0 and max(aside) < 1.3
+        assert body.follows.performer == first.name and [c.name for c in line.now.before.characters] == [first.name, second.name, body.name]
+
+
 def test_a_log_with_hands_on_points_replays_to_the_bit(tmp_path, walker):
     path = tmp_path / "a.gambol"
     _, moments = played(walker, HANDS, path)

@@ -86,3 +86,44 @@ def test_a_recording_of_some_seconds_of_nobody_ends(clock, seconds, monkeypatch)
     with pytest.raises(Mistake, match="nobody has stood still"):
         live.record(Restless(False), lambda skeleton: follower, None, None, seconds)
     assert clock.now - 100.0 == pytest.approx(max(seconds, 30.0), abs=0.05)
+
+
+class Late(Restless):
+    """One of two trackers is heard from a time on, the other never; another one is on no point."""
+
+    unknown, broken, foreign = ["LHR-1"], 0, 0
+
+    def __init__(self, heard_from):
+        super().__init__()
+        self.heard_from = heard_from
+
+    def at(self, time):
+        return np.array([[time if time >= self.heard_from else np.nan] * 3, [np.nan] * 3])
+
+
+@pytest.fixture
+def worn(monkeypatch, tmp_path):
+    """A calibration that is there."""
+    monkeypatch.setattr("gambol.controllers.reconstruction.calibration.load", lambda *_: SimpleNamespace(said=lambda names: "worn so"))
+    file = tmp_path / "me.toml"
+    file.write_text("")
+    return file
+
+
+def test_whoever_is_calibrated_is_waited_for(clock, worn):
+    said = []
+    live.stand(Late(112.0), STATURE, worn, say=said.append, wait=40.0)
+    assert clock.now == pytest.approx(112.0, abs=0.05), "what is recorded begins with the first that is heard"
+    assert "listening at 127.0.0.1, port 9000" in said and "on no point: LHR-1; --map says where they are" in said
+    with pytest.raises(Mistake, match="nothing is heard of lwrist, rwrist for 40 s; .*on no point: LHR-1"):
+        live.stand(Late(1e9), STATURE, worn, say=said.append, wait=40.0)
+
+
+def test_who_was_never_heard_is_told_after_a_take(clock, worn, monkeypatch):
+    said = []
+    monkeypatch.setattr(live, "say", said.append)
+    monkeypatch.setattr(live, "stand", lambda *_, **__: None)
+    monkeypatch.setattr(live, "write_take", lambda *_: None)
+    follower = SimpleNamespace(skeleton=SKELETON, precondition=lambda *_: 0.0)
+    live.record(Late(1e9), lambda skeleton: follower, None, None, 1.0)
+    assert "nothing was heard of lwrist, rwrist" in said and "on no point: LHR-1; --map says where they are" in said

@@ -7,7 +7,9 @@ import pytest
 from hands import FRAME, press, release, text, wait
 from stand_in import Glide
 
+from gambol.controllers.jump import Jump
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.supervisor import Supervisor
 from gambol.game.app import preparing as beside
 from gambol.game.app.app import Play
 from gambol.game.hosts import KeyEvent
@@ -122,6 +124,18 @@ def test_the_game_begins_as_soon_as_one_can_walk(preparing):
     assert opening.game.now.after.characters[0].state.ground[1] > 0.1
     opening.handle(KeyEvent("F11", True))
     assert opening.full_screen == opening.game.full_screen
+
+
+def test_nothing_of_a_jump_is_asked_before_somebody_aims(preparing):
+    """How long a body can be in the air takes half a minute to compile: the game stood still for it, in its own thread."""
+    class Unready(Jump):
+        longest = property(lambda self: pytest.fail("halts the game"))
+    play = Play(Supervisor({"locomotion": Locomotion.load(), "jump": Unready()}), preparing=preparing)
+    for key in ("W", "SPACE"):  # who wants to jump is told that it is being prepared
+        press(play, key)
+        wait(play, 10 * FRAME)
+        play.scene((640, 360))
+    assert play.now.after.characters[0].state.ground[1] > 0.02
 
 
 def test_a_jump_that_is_not_ready_is_refused_with_a_word_and_no_log_has_it(preparing, tmp_path):

@@ -1,6 +1,7 @@
 """What is played is sent on as it moves: whom a program that listens hears of, and how sure."""
 
 import socket
+from types import SimpleNamespace
 
 import pytest
 from pythonosc.osc_packet import OscPacket
@@ -8,6 +9,9 @@ from pythonosc.osc_packet import OscPacket
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.live import SenderError
 
+from gambol.game import hosts
+from gambol.game.cli.base import Preset
+from gambol.game.cli.play import show
 from gambol.game.hosts import KeyEvent
 from gambol.game.app import Play, Sending
 from gambol.game.app.sending import shown
@@ -55,3 +59,10 @@ def test_a_body_made_of_points_goes_before_its_performer():
 def test_an_address_that_is_none_is_told():
     with pytest.raises(SenderError, match="HOST:PORT"):
         Sending("127.0.0.1:port")
+
+
+@pytest.mark.parametrize("lost", [0, 3])
+def test_frames_that_could_not_be_sent_are_told_after_a_game(lost, monkeypatch, capsys):
+    monkeypatch.setattr(hosts, "run_window", lambda *_: None, raising=False)
+    show(SimpleNamespace(close=lambda: None), (8, 8), Preset.fast, sending=SimpleNamespace(lost=lost))
+    assert ("3 frames could not be sent" in capsys.readouterr().err) == bool(lost)

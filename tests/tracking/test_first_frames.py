@@ -45,6 +45,8 @@ def test_clicks_are_read_and_mistakes_told(tmp_path):
     fails("[cam01]\nElbow = [1, 2]\n", "Elbow", "LeftForeArm")
     fails("[cam01]\nLeftArm = [1]\n", "cam01.LeftArm", "x and y")
     fails("[cam01]\nLeftArm = [nan, 1]\n", "cam01.LeftArm")
+    fails("[cam01]\nLeftArm = [1, 481]\n", "cam01.LeftArm", "640 × 480", "width")
+    fails("width = 320\n[cam01]\nLeftArm = [321, 1]\n", "cam01.LeftArm", "320 × 240")
     fails("width = 3\n", "width")
     fails("[cam01\n")
     file.unlink()
@@ -52,6 +54,24 @@ def test_clicks_are_read_and_mistakes_told(tmp_path):
         read_clicks(file, LENSES)
     with pytest.raises(ClickError, match="0 joints are seen by two cameras"):
         clicked(LENSES, {"cam01": {"LeftArm": (1.0, 2.0)}})
+
+
+@pytest.mark.parametrize("share", [0.5, 0.8, 1.25])
+def test_clicks_of_pictures_of_another_size_tell_no_body(share):
+    """They lie in the pictures, and a body can be found for them: it hangs where nobody is."""
+    chain = chain_of(human(), "paper")
+    told = clicks_of(chain, stride(chain, 0.2))
+    with pytest.raises(ClickError, match="no body has joints where they were clicked"):
+        clicked(LENSES, {camera: {joint: (share * x, share * y) for joint, (x, y) in table.items()} for camera, table in told.items()}, "paper")
+
+
+@pytest.mark.parametrize("joint", ["LeftFoot", "RightHand"])
+def test_a_click_that_slipped_is_named(joint):
+    chain = chain_of(human(), "paper")
+    told = clicks_of(chain, stride(chain, 0.2))
+    told["cam02"][joint] = (5.0, 5.0)
+    with pytest.raises(ClickError, match=f"cam02.{joint} is .* from where the other clicks have it"):
+        clicked(LENSES, told, "paper")
 
 
 def test_a_shape_is_as_tall_and_as_wide_as_asked():
