@@ -130,6 +130,7 @@ def played(intent, steps, state=None):
 
 somebody = person()
 preparing.place(somebody.parts["locomotion"])
+preparing.weight(somebody.parts["locomotion"])
 preparing.things(somebody.parts["locomotion"])
 rehearse(somebody)
 preparing.goals()

@@ -9,6 +9,7 @@ from followed import DT, bodies, build, clip, follower, known, points  # noqa: F
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.reconstruction import Reconstruction
+from gambol.controllers.reconstruction.follower import GLIDE
 from gambol.controllers.reconstruction.live.osc_packets import MOST_PARTS, understood
 from gambol.controllers.reconstruction.live.osc_stream import PINNED, Stream
 from gambol.controllers.supervisor import Supervisor
@@ -76,7 +77,7 @@ def test_a_performer_who_was_lost_is_found_again_however_far_and_no_joint_flies(
         states.append(state)
         seen.append(here)
     joints = bodies(wide.skeleton, states)
-    assert (np.linalg.norm(np.diff(joints, axis=0), axis=-1) / DT).max() < 10.0
+    assert (np.linalg.norm(np.diff(joints, axis=0), axis=-1) / DT).max() < GLIDE + 3.0  # a toe swings, too
     assert someone.active(states[-1])[0] == "reconstruction"
     late = 180 + round((0.8 + away / 4.0) / DT)
     off = np.linalg.norm(np.array([wide.follower.points(one.pose) for one in states[late:]]) - np.array(seen[late:]), axis=-1)
