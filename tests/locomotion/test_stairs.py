@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,9 @@ from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
 from gambol.controllers.contract import Intent  # noqa: E402
+from gambol.controllers.locomotion.memory import RUN  # noqa: E402
+from gambol.controllers.locomotion.tops import tops  # noqa: E402
+from gambol.controllers.locomotion.treads import most_speed  # noqa: E402
 from stairs import flight, ran, walked  # noqa: E402
 
 
@@ -57,3 +61,15 @@ def test_nobody_walks_into_what_is_too_high_for_a_step(locomotion, height, rise)
     """They come to a stop before it, as before a wall."""
     found = walked(locomotion, rise, 0.35, height, 1.4, seconds=6.0)
     assert found.deep.max() < 0.01 and not found.labels
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.12, 0.20), st.floats(0.22, 0.35), st.floats(-3.1, 3.1), st.floats(-3.1, 3.1), st.floats(0.05, 0.95), st.integers(2, 6), st.floats(0.8, 3.5))
+def test_who_stands_on_stairs_keeps_to_their_speed_whichever_way_he_turns(locomotion, rise, tread, heading, wish, share, step, speed):
+    """Along a tread there is no edge ahead, and askew they are far apart; so a runner who turned on stairs ran off them through the air."""
+    around = [SimpleNamespace(centre=(0.0, 0.5 * rise * (n + 1), (n + 0.5) * tread), size=(9.0, rise * (n + 1), tread), heading=0.0, slope=0.0) for n in range(8)]
+    memory = locomotion.start(np.array([0.0, (step + share) * tread, heading])).memory.copy().reshape(1)[0]
+    memory["level"], memory["wished"], memory["wanted"] = rise * (step + 1), (speed * np.sin(wish), speed * np.cos(wish)), RUN
+    memory["velocity"] = speed * np.cos(wish), 0.0, speed * np.sin(wish)
+    most = most_speed(memory, tops(around), 0.0)
+    assert 0.5 - 1e-6 <= most <= min(max(2.6 * tread * 1.1, 0.5), 1.0) or speed <= 1.0 and most == 0.0
