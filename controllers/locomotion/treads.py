@@ -153,7 +153,7 @@ def most_speed(m, tops, floor):
     sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
     ground = np.empty(3)
     ground_kernel(tops, m.ground[0] - BEHIND * along_x, m.ground[1] - BEHIND * along_z, floor, m.level, ground)
-    before, first, limit = ground[0], -9.0, _on_stairs(m, tops, floor, along_x, along_z) if goes > STAIRS[0] else 9.0
+    before, first, limit = ground[0], -9.0, m.stairs if m.stairs > 0.0 else 9.0
     for k in range(1, 2 + int((sees + BEHIND + FLIGHT) / LOOKS)):
         far = k * LOOKS - BEHIND
         ground_kernel(tops, m.ground[0] + far * along_x, m.ground[1] + far * along_z, floor, before, ground)
@@ -202,10 +202,11 @@ def _on_treads(tread, rise):
 
 
 @kernel
-def _on_stairs(m, tops, floor, along_x, along_z):
-    """How fast somebody may go in any direction who stands on stairs [m/s], much for others: between two edges, or just beyond them, that both rise or both fall
-    on a line ahead, aside or between. along: (2,) where he wishes to go."""
+def on_stairs(m, tops, floor):
+    """How fast somebody may go in any direction who stands on stairs [m/s], 0 for others: between two edges, or just beyond them, that both rise or both fall
+    on a line ahead, aside or between."""
     limit, ground, half = 9.0, np.empty(3), math.sqrt(0.5)
+    along_x, along_z = math.sin(m.ground[2]), math.cos(m.ground[2])
     for k in range(4):
         c, s = (1.0, half, 0.0, -half)[k], (0.0, half, 1.0, half)[k]
         x, z = c * along_x + s * along_z, c * along_z - s * along_x
@@ -221,4 +222,4 @@ def _on_stairs(m, tops, floor, along_x, along_z):
                     limit = min(limit, _on_treads(far - last, rise))
                 last, rose = far, rise
             before = before + rise
-    return limit
+    return limit if limit < 9.0 else 0.0
