@@ -52,6 +52,8 @@ BRAKES, BEFORE, LATE = 1.5, 0.45, 0.35
 follows a wish [s]."""
 BEHIND = 0.3
 """So far beyond the last edge one foot is still to come over it [m]."""
+ON, AROUND = 0.25, 0.6
+"""Who is no farther than the first beyond the end of a flight stands on it, whichever way he goes; its treads are looked for so far ahead, behind and beside [m]."""
 WALL = 0.2
 """Who comes to what is too high for a step stops so far before it [m]."""
 
@@ -151,7 +153,7 @@ def most_speed(m, tops, floor):
     sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
     ground = np.empty(3)
     ground_kernel(tops, m.ground[0] - BEHIND * along_x, m.ground[1] - BEHIND * along_z, floor, m.level, ground)
-    before, first, limit = ground[0], -9.0, 9.0
+    before, first, limit = ground[0], -9.0, m.stairs if m.stairs > 0.0 else 9.0
     for k in range(1, 2 + int((sees + BEHIND + FLIGHT) / LOOKS)):
         far = k * LOOKS - BEHIND
         ground_kernel(tops, m.ground[0] + far * along_x, m.ground[1] + far * along_z, floor, before, ground)
@@ -165,17 +167,10 @@ def most_speed(m, tops, floor):
             if far > 0.0:
                 limit = min(limit, math.sqrt(2.0 * BRAKES * max(far - WALL - LATE * goes, 0.0)))
             break
-        near = far - LOOKS
-        for _ in range(FINER):
-            middle = 0.5 * (near + far)
-            ground_kernel(tops, m.ground[0] + middle * along_x, m.ground[1] + middle * along_z, floor, before, ground)
-            if abs(ground[0] - before) > 0.5 * abs(rise):
-                far = middle
-            else:
-                near = middle
+        far = _edge(m, tops, floor, along_x, along_z, far, before, rise, before, ground)
         tread, at = far - first, far
         if tread < FLIGHT:
-            most, at = min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1]), first
+            most, at = _on_treads(tread, rise), first
         else:
             most = 9.0 if m.wanted == RUN and abs(rise) < RUN_OVER else KERB
         first, before = far, before + rise
@@ -183,3 +178,48 @@ def most_speed(m, tops, floor):
         if far > sees:
             break
     return max(limit, 1e-3) if limit < speed else 0.0
+
+
+@kernel
+def _edge(m, tops, floor, along_x, along_z, far, before, rise, level, ground):
+    """How far along a line from the body an edge is [m] that is no farther than `far` and less than a look nearer. before: how high the ground lies before it;
+    level: from where it is seen [m]."""
+    near = far - LOOKS
+    for _ in range(FINER):
+        middle = 0.5 * (near + far)
+        ground_kernel(tops, m.ground[0] + middle * along_x, m.ground[1] + middle * along_z, floor, level, ground)
+        if abs(ground[0] - before) > 0.5 * abs(rise):
+            far = middle
+        else:
+            near = middle
+    return far
+
+
+@kernel
+def _on_treads(tread, rise):
+    """How fast one may go over treads so long that rise by so much [m/s]."""
+    return min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1])
+
+
+@kernel
+def on_stairs(m, tops, floor):
+    """How fast somebody may go in any direction who stands on stairs [m/s], 0 for others: between two edges, or just beyond them, that both rise or both fall
+    on a line ahead, aside or between."""
+    limit, ground, half = 9.0, np.empty(3), math.sqrt(0.5)
+    along_x, along_z = math.sin(m.ground[2]), math.cos(m.ground[2])
+    for k in range(4):
+        c, s = (1.0, half, 0.0, -half)[k], (0.0, half, 1.0, half)[k]
+        x, z = c * along_x + s * along_z, c * along_z - s * along_x
+        ground_kernel(tops, m.ground[0] - AROUND * x, m.ground[1] - AROUND * z, floor, m.level, ground)
+        before, last, rose = ground[0], -9.0, 0.0
+        for i in range(1, 1 + int(2.0 * AROUND / LOOKS)):
+            far = i * LOOKS - AROUND
+            ground_kernel(tops, m.ground[0] + far * x, m.ground[1] + far * z, floor, m.level, ground)
+            rise = ground[0] - before
+            if abs(rise) >= EDGE:
+                far = _edge(m, tops, floor, x, z, far, before, rise, m.level, ground)
+                if max(abs(rise), abs(rose)) <= STEP and rise * rose > 0.0 and far - last < FLIGHT and last < ON and far > -ON:
+                    limit = min(limit, _on_treads(far - last, rise))
+                last, rose = far, rise
+            before = before + rise
+    return limit if limit < 9.0 else 0.0

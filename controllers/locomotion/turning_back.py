@@ -72,8 +72,8 @@ def turn_corner(m, wish, dt):
 
 @kernel
 def turn_back(m, turns, wish, settings, row):
-    """Brake and begin a turn where somebody is to go back; who runs brakes to a walk first. wish: (3,), which is changed meanwhile. row: (COLUMNS,) scratch."""
-    goes = not (m.settled or m.waits or m.turn != 0.0)
+    """Brake and begin a turn where somebody is to go back, but not on stairs, where his steps would find no treads; who runs brakes to a walk first. wish: (3,), which is changed meanwhile. row: (COLUMNS,) scratch."""
+    goes = not (m.settled or m.waits or m.turn != 0.0 or m.stairs > 0.0)
     asked = m.heads and m.towards[1] > GOES and turns.coefficients.shape[3] > 0
     turn, speed = short_way(m.towards[0] - m.ground[2]), math.hypot(m.command[0], m.command[2])
     if not (goes and asked) or (m.backs == 0 or m.family != WALK) and (abs(turn) < BACK or m.command[0] < LEAST):

@@ -110,7 +110,7 @@ def begin_turn(m, turns, wish, row):
         return
     m.spot = 1 if m.towards[1] < STANDS else 0
     turn = short_way(m.towards[0] - m.ground[2])
-    if abs(turn) < FROM[m.spot] or not m.spot and m.towards[1] < GOES:
+    if abs(turn) < FROM[m.spot] or not m.spot and (m.towards[1] < GOES or m.stairs > 0.0):
         return
     if abs(turn) > FARTHEST[m.spot]:
         turn *= 0.5

@@ -16,7 +16,7 @@ from ..navigation.passing import STEP
 from .foot_points import shown_kernel
 from .swing import smooth
 from .tops import SAME, ground_kernel
-from .treads import FOOT, TOE, come_down, most_speed, under_kernel
+from .treads import FOOT, TOE, come_down, most_speed, on_stairs, under_kernel
 
 ASTRAY = 0.06
 """A foot that came down farther than this from where it was to stands on what lies there [m]."""
@@ -108,6 +108,7 @@ def follow_ground(m, tops, floor, swing, dt):
         m.level = before + 0.5 * (rate + m.level_rate) * dt
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
+    m.stairs = on_stairs(m, tops, floor)
     m.most = 0.0 if m.alert else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto
 
 

@@ -71,6 +71,13 @@ class Bench:
         return replace(self.locomotion.start(memory["ground"]), memory=memory, ground=np.zeros((PHASES, 3)))
 
 
+    def up_to_speed(self, speed: float) -> float:
+        """From where on somebody has a speed straight on [m/s]: nine tenths of it, or what the mass centre of a steady gait falls to, where that is less."""
+        state = self.at_all_phases((speed, 0, 0))
+        steady = self.motion(self.played(state, [(speed, 0, 0)] * FPS))
+        return min(0.9 * speed, steady.com_velocity[5:-5, :, 2].min() - 0.01)
+
+
 def pairs(bench: Bench):
     """Every pair of wishes at every phase: figures by pair, and the worst moments."""
     print(f"Changes: {PHASES} phases each. Mass centre: lowest speed along the old way (mean, worst phase) m/s · peak acceleration "

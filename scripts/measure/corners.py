@@ -3,7 +3,8 @@
     python scripts/measure/corners.py [--recordings DIR] [--only SPEED ...]
 
 The corner is where he is as the stick is thrown. Of every one: how far he goes beyond the new line, which leads on from that corner, until he is under way on it; when
-the heading is within 0.1 rad of it; when the mass centre has nine tenths of its speed along it; steps until he faces it; its lowest speed. Recorded ones, who knew
+the heading is within 0.1 rad of it; from when on the mass centre has nine tenths of its speed along it, or what a steady gait's falls to where that is less; steps until
+he faces it; its lowest speed. Recorded ones, who knew
 beforehand, begin when heading or speed is a seventh off what it was; DIR is the folder of motion capture.
 """
 
@@ -29,19 +30,19 @@ GRAZE = 0.2
 CORNERS = "woody2/walk_*_90degree*", "woody2/wd2_*_turn.bvh", "cmu/16/16_17.amc", "cmu/16/16_18.amc", "cmu/16/16_19.amc", "cmu/16/16_2[0789].amc", "cmu/16/16_30.amc", "cmu_30fps/69/69_2[0-9].bvh", "cmu_30fps/69/69_3[0-3].bvh"
 
 
-def row_of(way, velocity, heading, strikes, angle, speed, rate) -> tuple[float, ...]:
-    """What is told of one corner: way (T, 2) [m] from it and velocity (T, 2) [m/s] with the old line along z, heading (T,) [rad] from that, frames of strikes."""
+def row_of(way, velocity, heading, strikes, angle, enough, rate) -> tuple[float, ...]:
+    """What is told of one corner: way (T, 2) [m] from it and velocity (T, 2) [m/s] with the old line along z, heading (T,) [rad] from that, frames of strikes, which speed is enough [m/s]."""
     new, side = np.array([np.sin(angle), np.cos(angle)]), np.sign(angle)
     beyond = np.abs(way @ [new[1], -new[0]]) if abs(angle) > 3.1 else -side * (way @ [new[1], -new[0]])
     faces = int(np.flatnonzero(np.abs((heading - angle + np.pi) % (2 * np.pi) - np.pi) > NEAR)[-1]) + 1
-    slow = int(np.flatnonzero(velocity[:faces + rate] @ new < 0.9 * speed)[-1]) + 1
+    slow = int(np.flatnonzero(velocity[:faces + rate] @ new < enough)[-1]) + 1
     return beyond[:faces + rate].max(), faces / rate, slow / rate, float((strikes < faces).sum()), np.linalg.norm(velocity[:faces + rate // 2], axis=-1).min()
 
 
 def ours(bench: Bench, speed: float, degrees: float) -> None:
     """Print the figures of one speed [m/s] and angle."""
     state = bench.at_all_phases((speed, 0, 0))
-    rows, told_rows = [], []
+    rows, told_rows, enough = [], [], bench.up_to_speed(speed)
     for side in (1, -1):
         now, states, angle = state, [], side * np.radians(degrees)
         for _ in range(round(SECONDS * FPS)):
@@ -54,7 +55,7 @@ def ours(bench: Bench, speed: float, degrees: float) -> None:
         told_rows.append(figures(motion))
         for n in range(PHASES):
             way = (motion.com[:, n] - motion.com[0, n])[:, [0, 2]]
-            rows.append(row_of(way, motion.com_velocity[:, n][:, [0, 2]], heading[:, n], np.flatnonzero(strikes[:, n]), angle, speed, FPS))
+            rows.append(row_of(way, motion.com_velocity[:, n][:, [0, 2]], heading[:, n], np.flatnonzero(strikes[:, n]), angle, enough, FPS))
     say(f"{speed:.1f} m/s, {degrees:3.0f}°", rows)
     print("    " + told(told_rows), flush=True)
 
@@ -91,7 +92,7 @@ def recorded(folder: Path, library: Library) -> None:
         turned = np.array([[np.cos(before), np.sin(before)], [-np.sin(before), np.cos(before)]])
         until = b + half
         way = (motion.com[begin:until, 0][:, [0, 2]] - motion.com[begin, 0][[0, 2]]) @ turned
-        rows.append(row_of(way, velocity[begin:until] @ turned, heading[begin:until] - before, strikes[strikes > begin] - begin, after - before, later, rate))
+        rows.append(row_of(way, velocity[begin:until] @ turned, heading[begin:until] - before, strikes[strikes > begin] - begin, after - before, 0.9 * later, rate))
         speeds.append(speed)
         angles.append(abs(np.degrees(after - before)))
     say(f"recorded ({len(rows)}), {min(speeds):.1f}–{max(speeds):.1f} m/s, {min(angles):.0f}–{max(angles):.0f}°", rows)

@@ -2,8 +2,8 @@
 
     python scripts/measure/turns_back.py [--recordings DIR]
 
-Of every one: when the heading is within 0.1 rad of the way back, when the mass centre has nine tenths of its speed that way, steps until then,
-how far it goes on and aside, its lowest speed on average. Recorded ones begin when heading or speed is a seventh off what it was; DIR is the folder of motion capture.
+Of every one: when the heading is within 0.1 rad of the way back, from when on the mass centre has nine tenths of its speed that way, or what a steady
+gait's falls to where that is less, steps until then, how far it goes on and aside, its lowest speed on average. Recorded ones begin when heading or speed is a seventh off what it was; DIR is the folder of motion capture.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BEGINS = 0.15
 def ours(bench: Bench, speed: float) -> None:
     """Print the figures of one speed [m/s]."""
     angle, new = np.pi, np.array([0.0, -1.0])
-    state, states = bench.at_all_phases((speed, 0, 0)), []
+    state, states, enough = bench.at_all_phases((speed, 0, 0)), [], bench.up_to_speed(speed)
     for _ in range(round(SECONDS * FPS)):
         state, _ = bench.locomotion.step(state, steer(state.ground, speed * new, None, state.velocity[:, 1]), 1 / FPS)
         states.append(state)
@@ -37,7 +37,7 @@ def ours(bench: Bench, speed: float) -> None:
     heading = np.array([s.ground[:, 2] for s in states])
     for n in range(heading.shape[1]):
         faces = int(np.flatnonzero(np.abs((heading[:, n] - angle + np.pi) % (2 * np.pi) - np.pi) > NEAR)[-1]) + 1
-        slow = int(np.flatnonzero(motion.com_velocity[:faces + FPS, n][:, [0, 2]] @ new < 0.9 * speed)[-1]) + 1
+        slow = int(np.flatnonzero(motion.com_velocity[:faces + FPS, n][:, [0, 2]] @ new < enough)[-1]) + 1
         way = motion.com[:, n] - motion.com[0, n]
         rows.append((faces / FPS, slow / FPS, strikes[:faces, n].sum(), way[:, 2].max(), np.abs(way[:faces, 0]).max()))
     lowest = np.linalg.norm(motion.com_velocity[..., [0, 2]], axis=-1).min(0)

@@ -1,7 +1,9 @@
 """Stairs of all kinds, bodies of all sizes, as fast as anybody asks: feet stand on treads, and pass over edges."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +12,10 @@ from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
 from gambol.controllers.contract import Intent  # noqa: E402
+from gambol.controllers.locomotion.memory import RUN  # noqa: E402
+from gambol.controllers.locomotion.tops import tops  # noqa: E402
+from gambol.controllers.locomotion.treads import most_speed, on_stairs  # noqa: E402
+from gambol.controllers.navigation import steer  # noqa: E402
 from stairs import flight, ran, walked  # noqa: E402
 
 
@@ -57,3 +63,32 @@ def test_nobody_walks_into_what_is_too_high_for_a_step(locomotion, height, rise)
     """They come to a stop before it, as before a wall."""
     found = walked(locomotion, rise, 0.35, height, 1.4, seconds=6.0)
     assert found.deep.max() < 0.01 and not found.labels
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.12, 0.20), st.floats(0.22, 0.35), st.floats(-3.1, 3.1), st.floats(-3.1, 3.1), st.floats(0.05, 0.95), st.integers(2, 6), st.floats(0.8, 3.5))
+def test_who_stands_on_stairs_keeps_to_their_speed_whichever_way_he_turns(locomotion, rise, tread, heading, wish, share, step, speed):
+    """Along a tread there is no edge ahead, and askew they are far apart; so a runner who turned on stairs ran off them through the air."""
+    around = [SimpleNamespace(centre=(0.0, 0.5 * rise * (n + 1), (n + 0.5) * tread), size=(9.0, rise * (n + 1), tread), heading=0.0, slope=0.0) for n in range(8)]
+    memory = locomotion.start(np.array([0.0, (step + share) * tread, heading])).memory.copy().reshape(1)[0]
+    memory["level"], memory["wished"], memory["wanted"] = rise * (step + 1), (speed * np.sin(wish), speed * np.cos(wish)), RUN
+    memory["velocity"] = speed * np.cos(wish), 0.0, speed * np.sin(wish)
+    memory["stairs"] = on_stairs(memory, tops(around), 0.0)
+    most = most_speed(memory, tops(around), 0.0)
+    assert 0.5 - 1e-6 <= most <= min(max(2.6 * tread * 1.1, 0.5), 1.0) or speed <= 1.0 and most == 0.0
+
+
+def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
+    """Aside, back and between: steps of turns that know no treads led down the air for a second."""
+    around = tuple(SimpleNamespace(centre=(0.0, 0.085 * (n + 1), 2.0 + (n + 0.5) * 0.29), size=(8.0, 0.17 * (n + 1), 0.29), heading=0.0, slope=0.0) for n in range(8))
+    turn = np.radians([90, 135, 160, 180, -90, -120, -135, -160])
+    state, turned, aloft, longest = locomotion.start(np.zeros((len(turn), 3))), np.zeros(len(turn), bool), np.zeros(len(turn)), 0.0
+    for _ in range(480):
+        turned |= state.ground[:, 1] > 2.0 + 3.5 * 0.29
+        goes = np.where(turned, turn, 0.0)
+        wish = steer(state.ground, 3.0 * np.stack([np.sin(goes), np.cos(goes)], -1), None, state.velocity[:, 1])
+        state, _ = locomotion.step(state, replace(wish, around=around), 1 / 60)
+        on = turned & (np.abs(state.ground[:, 0]) < 3.7) & (state.ground[:, 1] > 2.0) & (state.ground[:, 1] < 2.0 + 8 * 0.29)
+        aloft = np.where(state.contacts.any(-1), 0, aloft + 1)
+        longest = max(longest, (aloft * on).max() / 60)
+    assert turned.all() and longest < 0.5

@@ -32,6 +32,14 @@ def test_who_is_nearest_goes_on_and_the_rest_wait():
     assert np.allclose(found[0], wishes[0]) and np.hypot(*found[4]) < 0.1 and np.allclose(found[5], wishes[5])
 
 
+def test_who_goes_on_behind_another_keeps_behind_him():
+    door = doors_of(WALL)
+    for gap, share in ((0.1, 0.0), (0.6, 0.5), (1.0, 1.0)):
+        places = np.array([[0.0, -0.3], [0.1, -0.3 - gap]])
+        found = queued(places, np.array([[0.0, 1.2]] * 2), places + [0.0, 1.2], door)
+        assert np.allclose(found[:, 1], [1.2, 1.2 * share], atol=1e-9)
+
+
 def test_one_side_at_a_time():
     places, wishes = np.array([[0.1, -0.5], [0.0, 2.5], [0.3, 1.4]]), np.array([[0.0, 1.2], [0.0, -1.2], [0.0, -1.2]])
     found = queued(places, wishes, places + wishes, doors_of(WALL))
@@ -52,10 +60,12 @@ def walked(walker, places, goals, seconds, around=(), groups=None):
     return np.array(trails)
 
 
-def test_four_of_each_side_get_through_a_door(walker):
-    some = np.array([[x, z] for x in (-0.5, 0.6) for z in (-3.0, -2.0)])
+@pytest.mark.parametrize("shift", [0.0, 0.1, -0.2])
+def test_four_of_each_side_get_through_a_door(walker, shift):
+    """Two who come to it together go one behind the other, where they pressed into it side by side for six seconds."""
+    some = np.array([[x + shift * z, z] for x in (-0.5, 0.6) for z in (-3.0, -2.0)])
     places = np.concatenate([some, -some])
-    trails = walked(walker, places, -places * [1.0, 1.3], 27.0, WALL)
+    trails = walked(walker, places, -places * [1.0, 1.3], 19.0, WALL)
     apart = np.linalg.norm(trails[:, :, None] - trails[:, None], axis=-1) + np.eye(8)
     assert apart.min() > 0.42
     assert np.all(np.sign(trails[-1][:, 1]) == -np.sign(places[:, 1])), "everybody is through"

@@ -29,6 +29,8 @@ EASE = 0.6
 """Over so long a way [m] people slow down behind those who wait."""
 SLIPS, FREE = 0.62, 1.6
 """One goes on for each such width of a door [m], however many are there; the others stay so far from it [m], lest they press into it from all sides."""
+ABREAST, BEHIND = 0.9, 0.3
+"""People go through a door abreast if it has such a width [m] for each; who goes on behind another keeps at least so far farther from it [m]."""
 KEPT = 1.5
 """Those who let others out stay so far from the door [m] ..."""
 LANE = 0.5
@@ -184,11 +186,13 @@ def queued(places, wishes, aims, doors: Sequence[Door], going=None, turns: Turns
         turn = met.nearer() if turns is None or turns.sides[d] == 0.0 else float(turns.sides[d])
         within, blocked = met.within(turn) & (turns is not None), turns is not None and turns.waited[d] < 0.0 and met.blocked(turn)
         mine = np.flatnonzero(met.comes & (met.side == turn))
-        rank = np.argsort(np.argsort(met.far[mine] + met.aside[mine], kind="stable"), kind="stable")
+        order = np.argsort(met.far[mine] + met.aside[mine], kind="stable")
+        rank, abreast = np.argsort(order, kind="stable"), max(int(2.0 * door.half / ABREAST), 1)
         slips = max(round(2.0 * door.half / SLIPS), 1)
+        before = np.where(rank < abreast, -np.inf, met.far[mine[order[np.maximum(rank - abreast, 0)]]]) if len(mine) else rank
         room = np.sqrt(FREE**2 + 2.0 * np.maximum(rank - slips, 0) / (np.pi * DENSE))
         if not blocked:
-            found[mine] *= np.where(rank < slips, 1.0, np.clip((met.far[mine] - room) / EASE, 0.0, 1.0))[:, None]
+            found[mine] *= np.clip((met.far[mine] - np.where(rank < slips, before + BEHIND, room)) / EASE, 0.0, 1.0)[:, None]
         if not np.isfinite(min(first)):
             continue
         keeps = (met.side != turn) | blocked
