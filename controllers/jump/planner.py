@@ -22,6 +22,8 @@ SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
+SWINGS_ON = 0.15
+"""So long at most [s] legs go on in the air as the push swung them, and begin to give before they touch down."""
 STRAIGHTEST = 0.06
 """Knees in the air are bent by this at least [rad]."""
 ROUNDS, CLOSE = 8, 0.02
@@ -246,9 +248,11 @@ class _Draft(Airborne):
         values[:, bent, 0] = rows + LEAVES[:, None] * (last[bent, 0] - rows[0]) + LEAVES[::-1, None] * (reach[bent, 0] - rows[-1])
         values[:, [1, 5], 0] = np.maximum(values[:, [1, 5], 0], STRAIGHTEST)
         values[0], values[-1] = last, reach
-        slopes = monotone(keys, values)
-        slopes[0], slopes[-1] = (last - before) / step, bending
+        slopes, rates, lasts = monotone(keys, values), np.stack([(last - before) / step, bending]), min(SWINGS_ON, keys[1])
         for knee in (1, 5):  # that does not bend back
-            slopes[0, knee, 0] = max(slopes[0, knee, 0], -3.0 * (last[knee, 0] - 0.5 * STRAIGHTEST) / keys[1])
-            slopes[-1, knee, 0] = min(slopes[-1, knee, 0], 3.0 * (reach[knee, 0] - 0.5 * STRAIGHTEST) / keys[1])
-        return turns(hermite(keys, values, slopes, times))
+            rates[0, knee, 0] = max(rates[0, knee, 0], -3.0 * (last[knee, 0] - 0.5 * STRAIGHTEST) / lasts)
+            rates[1, knee, 0] = min(rates[1, knee, 0], 3.0 * (reach[knee, 0] - 0.5 * STRAIGHTEST) / lasts)
+        # what is faster than the way to the next row is spent soon, and gained late, however long a flight takes: a cubic without a value at either end
+        gone, left = (np.minimum(part / lasts, 1.0)[:, None, None] for part in (times, self.way.airtime - times))
+        more = (rates[0] - slopes[0]) * gone * (1.0 - gone)**2 - (rates[1] - slopes[-1]) * left * (1.0 - left)**2
+        return turns(hermite(keys, values, slopes, times) + lasts * more)

@@ -1,0 +1,40 @@
+"""No plan throws a body about: neighbouring leaps move alike, and long flights do not carry the push's swing on."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Jump
+
+
+def fastest(jump, made, *parts):
+    """How fast [m/s] one of these joints moves at most."""
+    times = np.arange(0.0, made.duration, 1 / 120)
+    poses = [made.at(t) for t in times]
+    places = forward_kinematics(jump.skeleton, np.stack([p.root for p in poses]), np.stack([p.rotations for p in poses]))[0]
+    return float(np.linalg.norm(np.diff(places[:, [jump.skeleton.index(part) for part in parts]], axis=0), axis=-1).max() * 120)
+
+
+@pytest.mark.parametrize("aside", [0, 30, 60, 120, 180])
+def test_a_standing_leap_a_little_farther_moves_hardly_otherwise(jump, standing, aside):
+    way, found = np.radians(aside), []
+    for far in np.arange(0.1, 1.0, 0.04):
+        place = np.array([standing.ground[0] + far * np.sin(way), standing.floor, standing.ground[1] + far * np.cos(way)])
+        made = jump.plan(standing, Intent(leap=Leap(place)))
+        found.append((fastest(jump, made, "Head"), fastest(jump, made, "LeftLeg", "RightLeg", "LeftFoot", "RightFoot")))
+    steps = np.array(found)
+    assert (np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]) < 1.25).all()
+    assert steps[:, 0].max() < 3.2, "heads"
+
+
+@pytest.mark.parametrize("airtime", [1.5, 2.2, 3.0])
+def test_legs_hang_below_who_flies_long(standing, airtime):
+    """On the Moon, where one leaves the floor as fast as ever and has the time to keep on swinging."""
+    jump = Jump(gravity=(0.0, -1.62, 0.0))
+    made = jump.plan(standing, Intent(leap=Leap(None, airtime)))
+    for time in np.arange(made.take_off, made.take_off + 0.5 * airtime, 1 / 30):
+        pose = made.at(time)
+        places = forward_kinematics(jump.skeleton, pose.root, pose.rotations)[0]
+        toes = places[[jump.skeleton.index(side + "Toe") for side in ("Left", "Right")]] - places[0]
+        assert (np.abs(toes[:, 2]) < 0.3).all()
