@@ -1,11 +1,14 @@
 """No plan throws a body about: neighbouring leaps move alike, and long flights do not carry the push's swing on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jump
+from gambol.controllers.locomotion import Locomotion
 
 
 def fastest(jump, made, *parts):
@@ -38,3 +41,20 @@ def test_legs_hang_below_who_flies_long(standing, airtime):
         places = forward_kinematics(jump.skeleton, pose.root, pose.rotations)[0]
         toes = places[[jump.skeleton.index(side + "Toe") for side in ("Left", "Right")]] - places[0]
         assert (np.abs(toes[:, 2]) < 0.3).all()
+
+
+def test_who_idles_on_the_moon_does_not_hop_as_he_winds_up():
+    """Weight comes over both feet for seconds before he goes down, and his soles stay on the floor."""
+    jump, locomotion = Jump(gravity=(0.0, -1.62, 0.0)), Locomotion.load()
+    state = locomotion.start()
+    toes = [jump.skeleton.index(side + "Toe") for side in ("Left", "Right")]
+    for n in range(18 * 60):
+        before = state.pose
+        state, _ = locomotion.step(state, Intent(), 1 / 60)
+        state = replace(state, previous=before, elapsed=1 / 60)
+        if n % 180 == 90 or n == 1050:
+            for airtime in (1.5, 3.0):
+                made = jump.plan(state, Intent(leap=Leap(None, airtime)))
+                poses = [made.at(time) for time in np.arange(0.0, made.push_off, 1 / 15)]
+                high = [forward_kinematics(jump.skeleton, pose.root, pose.rotations)[0][toes, 1].max() for pose in poses]
+                assert max(high) < 0.04

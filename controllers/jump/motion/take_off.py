@@ -173,8 +173,9 @@ class Standing:
         leave = ahead
         low = low * FLAT + [0.0, self.floor + low_height, 0.0]
         dip = math.inf
-        if abs(start.velocity[1]) < STILL and start.low is None:  # if it took longer it would rise first
-            dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), 0.5 * wind_up, least)
+        # if it took longer it would rise first, and hop where little gravity makes it wait for seconds
+        if start.low is None and (abs(start.velocity[1]) < STILL or wind_up > MOST * usual):
+            dip = max(math.sqrt(RISES * sinks / min(max(level - g, 1e-6), MEETS * g)), min(0.5 * wind_up, usual), least)
         return TakeOff(low, leave, passing, wind_up, dip, strong, pressed)
 
 
