@@ -153,7 +153,8 @@ def most_speed(m, tops, floor):
     sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
     ground = np.empty(3)
     ground_kernel(tops, m.ground[0] - BEHIND * along_x, m.ground[1] - BEHIND * along_z, floor, m.level, ground)
-    before, first, limit = ground[0], -9.0, m.stairs if m.stairs > 0.0 else 9.0
+    before = ground[0] if ground[0] > m.level - 2.0 * STEP else m.level  # what one has the brink of behind one is no ground
+    first, limit = -9.0, m.stairs if m.stairs > 0.0 else 9.0
     for k in range(1, 2 + int((sees + BEHIND + FLIGHT) / LOOKS)):
         far = k * LOOKS - BEHIND
         ground_kernel(tops, m.ground[0] + far * along_x, m.ground[1] + far * along_z, floor, before, ground)

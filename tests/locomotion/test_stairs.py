@@ -67,6 +67,7 @@ def test_nobody_walks_into_what_is_too_high_for_a_step(locomotion, height, rise)
 
 @settings(max_examples=40, deadline=None)
 @given(st.floats(0.12, 0.20), st.floats(0.22, 0.35), st.floats(-3.1, 3.1), st.floats(-3.1, 3.1), st.floats(0.05, 0.95), st.integers(2, 6), st.floats(0.8, 3.5))
+@example(0.125, 0.234375, 0.0, 3.0, 0.75, 6, 1.5)
 def test_who_stands_on_stairs_keeps_to_their_speed_whichever_way_he_turns(locomotion, rise, tread, heading, wish, share, step, speed):
     """Along a tread there is no edge ahead, and askew they are far apart; so a runner who turned on stairs ran off them through the air."""
     around = [SimpleNamespace(centre=(0.0, 0.5 * rise * (n + 1), (n + 0.5) * tread), size=(9.0, rise * (n + 1), tread), heading=0.0, slope=0.0) for n in range(8)]
