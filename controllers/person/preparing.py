@@ -133,18 +133,17 @@ def beside(walker: Locomotion) -> tuple[Any, Any]:
 
 def things(walker: Locomotion) -> None:
     """Compile, or load, what keeps somebody who walks from what stands about and from others, and what sets him down at a run."""
-    box, post = BOX, POST
-    for thing in (box, post):
+    for thing in (BOX, POST):
         gap(np.zeros((1, 3)), thing)
-    walls = walls_of((box, post))
+    walls = walls_of((BOX, POST))
     slow_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 0.0, 1.0, 0.0)
     way_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 1.0, np.empty(3))
     follow(Path(np.array([[0.0, 0.0], [0.0, 1.0]])), np.zeros(3), np.float64(0.0), 1.0)
     grounds = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    avoid(grounds[:, :2], np.zeros((2, 2)), np.ones((2, 2)), 0.3, (box, post), grounds[:, 2])
+    avoid(grounds[:, :2], np.zeros((2, 2)), np.ones((2, 2)), 0.3, (BOX, POST), grounds[:, 2])
     state, pose = beside(walker)
-    intent = Intent(np.array([1.0, 0.0, 0.0]), around=(box, post))
-    drawn_in(walker.skeleton, pose, state.ground, (box, post))
+    intent = Intent(np.array([1.0, 0.0, 0.0]), around=(BOX, POST))
+    drawn_in(walker.skeleton, pose, state.ground, (BOX, POST))
     walker.enter(replace(state, memory=None, contacts=np.arange(4) < 2, velocity=np.array([2.0, 0.0, 0.0]), previous=pose, elapsed=1.0 / 60.0), intent)
 
 
