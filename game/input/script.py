@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -90,8 +91,10 @@ class Script:
         move, refused = self.moves[self.index], self.refused
         if move.jump is not None and not self.now.jumped:
             kind = "hop" if move.jump.hop is not None else "jump"
-            where = "" if kind == "hop" else " up" if move.jump.place is None else " to ({:g}, {:g}, {:g})".format(*move.jump.place)
-            refused = (*refused, f"no {kind}{where}: {state.refused or 'it never came to where it could jump from'}")
+            place = move.jump.place
+            where = "" if kind == "hop" else " up" if place is None else " to ({:g}, {:g}, {:g})".format(*place)
+            away = "" if place is None else f", and its run-up ended {math.dist(place[::2], state.ground[:2]):.1f} m away"
+            refused = (*refused, f"no {kind}{where}: {state.refused or f'it never came to where it could jump from{away}'}")
         way = way_of(move, state)
         if move.goal is not None and way is not None and way.reason:
             refused = (*refused, "no way to ({:g}, {:g}): {}".format(*move.goal.floor, way.reason))

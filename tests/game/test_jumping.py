@@ -117,6 +117,14 @@ def test_a_jump_that_nobody_can_make_is_told_and_the_run_goes_on(played):
     assert not frames[200].refused
 
 
+def test_a_run_up_that_ends_too_early_tells_how_far_away(tmp_path, somebody):
+    text = 'title = "Short"\nduration = 3\n[[actors]]\nname = "A"\nmoves = [{ velocity = [3, 0, 0], for = 1.5, jump_to = [0, 8] }, { for = 1, stop = true }]'
+    frames = list(film.run(load(written(tmp_path, text)), somebody))
+    line, = frames[-1].refused
+    ended = next(frame for frame in frames if frame.refused).before.characters[0].state.ground
+    assert line.endswith(f"it never came to where it could jump from, and its run-up ended {8.0 - ended[1]:.1f} m away")
+
+
 def test_a_run_with_jumps_is_the_same_to_the_bit(played, somebody):
     scenario, frames = played
     for frame, again in zip(frames[::20], list(film.run(scenario, person()))[::20], strict=True):

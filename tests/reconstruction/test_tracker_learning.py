@@ -8,7 +8,7 @@ from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.pose_vector import encode
 from gambol.controllers.reconstruction.trackers import INPUTS, Learner, Moments, Network, bodies, standing
-from gambol.controllers.reconstruction.trackers.learning import loss
+from gambol.controllers.reconstruction.trackers.learning import MEAN, adam_kernel, loss
 from gambol.controllers.reconstruction.trackers.network import OUTPUTS
 from dolls import shipped, strides
 
@@ -63,6 +63,23 @@ def test_learning_goes_on_from_a_checkpoint_the_same(known, tmp_path):
     assert all(np.array_equal(a, b) for a, b in zip(whole.means, second.means, strict=True))
     with pytest.raises(ValueError, match="another seed, batch size or width"):
         Learner(moments, 4, 4, (24,), 16).resume(tmp_path / "first.npz")
+
+
+def test_it_is_adam_and_the_mean_of_what_it_learnt():
+    """Kingma & Ba 2015, algorithm 1, and the running mean of its values, which is what ships."""
+    random, rate = np.random.default_rng(3), 1e-3
+    value = random.standard_normal(7).astype(np.float32)
+    first, second, mean = np.zeros(7, np.float32), np.zeros(7, np.float32), value.copy()
+    theirs, m, v, left = value.astype(float), np.zeros(7), np.zeros(7), value.astype(float)
+    for t in range(1, 30):
+        slope = random.standard_normal(7).astype(np.float32)
+        adam_kernel(value, slope, first, second, np.float32(rate / (1.0 - 0.9 ** t)), np.float32(1.0 / (1.0 - 0.999 ** t)), mean)
+        m, v = 0.9 * m + 0.1 * slope, 0.999 * v + 0.001 * slope.astype(float) ** 2
+        theirs = theirs - rate * m / (1.0 - 0.9 ** t) / (np.sqrt(v / (1.0 - 0.999 ** t)) + 1e-8)
+        left = MEAN * left + (1.0 - MEAN) * theirs
+    np.testing.assert_allclose(value, theirs, rtol=1e-4)
+    np.testing.assert_allclose(mean, left, rtol=1e-4)
+    assert 1e-4 < np.abs(mean - value).max() < np.abs(value).max()
 
 
 def test_it_learns(known):
