@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -40,14 +40,14 @@ def heard(worn: Mapping[str, str], packets: Path | None, port: int | None, host:
 
 
 @contextmanager
-def sent(to: str | None) -> Iterator[Any]:
-    """A sender to a program that shows bodies; None where nobody asks for one."""
-    if to is None:
+def sent(to: Sequence[str]) -> Iterator[Any]:
+    """A sender to programs that show bodies; None where nobody asks for one."""
+    if not to:
         yield None
         return
-    from gambol.controllers.reconstruction.live import Sender, address
+    from gambol.controllers.reconstruction.live import Senders
 
-    sender = Sender(*address(to))
+    sender = Senders(to)
     try:
         yield sender
     finally:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,7 +27,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
          footage: Annotated[Path | None, typer.Option(help="A folder of footage, of `gambol film` or `gambol footage`: the first who is seen in it moves as a tracker makes them, and is whom you watch.")] = None,
          network: Annotated[Path | None, typer.Option(help="A network that gambol database tune taught, .npz, in the place of the one that ships.")] = None,
-         send: Annotated[str | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539.")] = None,
+         send: Annotated[list[str] | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539; named several times, to each.")] = None,
          crowd: Annotated[int, typer.Option(min=0, max=50, help="So many passers-by walk about, past each other and you.")] = 0,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
@@ -34,10 +35,10 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
 
     pixels, hands, body = pixels_of(size), load_bindings(bindings), body_of(character)
     sending = None
-    if send is not None:
+    if send:
         from ..app import Sending
 
-        sending = Sending(send)
+        sending = Sending(*send)
     if network is not None:
         _own(network, replay)
     if replay is not None:  # what can't be is told of before anything is compiled
@@ -120,10 +121,10 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
 
 
 def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
-          size: str = "1280x720", preset: Preset = Preset.full, send: str | None = None, ask: Any = None) -> None:
+          size: str = "1280x720", preset: Preset = Preset.full, send: Sequence[str] = (), ask: Any = None) -> None:
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
-    send: HOST:PORT that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
+    send: HOST:PORT of each program that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
     ask: asks whoever wears the stream's trackers how they stand (`live.stand`), in the window, before the game begins.
     """
     from gambol.controllers.reconstruction import SETS
@@ -143,7 +144,7 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
     capture = Capture(OUT)
-    sending = None if send is None else Sending(send)
+    sending = Sending(*send) if send else None
 
     def begun() -> Play:
         game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream, sending=sending)
