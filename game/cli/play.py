@@ -31,9 +31,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          crowd: Annotated[int, typer.Option(min=0, max=50, help="So many passers-by walk about, past each other and you.")] = 0,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    from ..input import load as load_bindings
-
-    pixels, hands, body = pixels_of(size), load_bindings(bindings), body_of(character)
+    pixels, hands, body = pixels_of(size), _hands(bindings), body_of(character)
     sending = None
     if send:
         from ..app import Sending
@@ -87,6 +85,16 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
     show(Opening(begun, beside), pixels, preset, log, capture, sending)
 
 
+def _hands(file: Path | None) -> Any:
+    """The keys and buttons of a file, or the user's own; keys that do two things are told of. BindingsError."""
+    from ..input import load, shared, user_file
+
+    found = load(file)
+    for line in shared(found):
+        say(f"gambol: {file or user_file()}: {line}")
+    return found
+
+
 def _own(network: Path, replay: Path | None) -> None:
     """ArraysError for a file that is no network; Mistake for another kind of file, and where a log says which one it is."""
     from gambol.controllers.reconstruction.trackers import Network
@@ -130,14 +138,13 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     from gambol.controllers.reconstruction import SETS
 
     points = next((name for name, some in SETS.items() if points == ",".join(some)), points)
-    pixels = pixels_of(size)
+    pixels, hands = pixels_of(size), _hands(None)
     # beside what ships nobody waits for others to be learnt
     wanted = tuple(dict.fromkeys([method, *(() if stream is not None or method == "trackers" else ("lpcr", "lpca"))]))
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
     from ..app import OUT, Asking, Capture, Play, Sending, log_file
-    from ..input import load as load_bindings
     from ..session import Comparison, LogWriter
     from ..world import Recorded, methods
 
@@ -147,7 +154,7 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     sending = Sending(*send) if send else None
 
     def begun() -> Play:
-        game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream, sending=sending)
+        game = Play(performer, bindings=hands, log=log, capture=capture, learnt=methods(database), stream=stream, sending=sending)
         game.open(Comparison(wanted, points))
         return game
 
@@ -165,9 +172,9 @@ def bindings(file: Hands = None,
              write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
     """Print the keys, buttons and sticks in force, as a file to edit."""
     from ..files import output_file, whole
-    from ..input import as_toml, load
+    from ..input import as_toml
 
-    text = as_toml(load(file))
+    text = as_toml(_hands(file))
     if write is None:
         typer.echo(text, nl=False)
         return
