@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from . import live
-from .base import Mistake, app, learn, plainly, progress_bar
+from .base import Mistake, app, learn, plainly, progress_bar, say
 from .live import FPS, SUFFIX, write_take
 from .play import watch
 
@@ -88,6 +88,8 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     with live.heard(worn_on, clip, port, host, keep, own_time=not shown) as source:
         if shown:
             watch(method, names, database, stream=source, send=send or (), ask=partial(live.stand, source, height, calibration, poses))
+            for line in live.another(source):
+                say(line)
         else:
             with live.sent(send or ()) as sender:
                 live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration, poses)
