@@ -104,17 +104,23 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
     from ..footage import checked as complete
-    from ..footage import clicked_pose, first_poses, person_in, read_footage, seen_in, settled
+    from ..footage import clicked_pose, exchanged_clicks, first_poses, lost_frames, person_in, read_footage, seen_in, settled
     from ..studio import error_of, followed, late, overlaid
 
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
-    complete(film, masks)
+    film = complete(film, masks)
+    if masks and overlay is not None:
+        film = complete(film)
+    for line in lost_frames(film):
+        say(f"gambol: {line}; what others saw, and how somebody moved before, tells of them")
     who, clicks = person_in(film, person), start is not None and start.suffix.lower() == ".toml"
     checked(out, [film.people[who]])
     if clicks and start is not None:
         surface, pose = clicked_pose(film, start)
+        for line in exchanged_clicks(film, start):
+            say(f"gambol: {line}")
         if fit:
             say("finding how tall and how wide somebody is: a minute")
             shape = fitted_shape(Tracker(surface, film.lenses, float(film.fps)), pose, pose,

@@ -58,11 +58,14 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         tape, controller = replayed(replay, controller)
         players, clip, database = tape.players, tape.clip or None, tape.database or None
     elif footage is not None:
+        from ..footage import lost_frames
         from ..world import Filmed
 
         if players != 1 or character is not None:
             raise Mistake("--footage: shows one person, in the mannequin: leave out " + ("--players" if players != 1 else "--character"))
         controller, clip = Filmed.load(footage, controller), footage
+        for line in lost_frames(controller.footage):
+            say(f"gambol: {line}")
     log = LogWriter(log_file(record), controller, players, clip, database)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
