@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say
-from .film_jobs import at_once, count_of, frames, jobs_of, on_cluster
+from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say, say_refused
+from .film_jobs import Job, at_once, count_of, frames, jobs_of, on_cluster
 
 
 @app.command()
@@ -46,22 +47,29 @@ def film(scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO…", h
         person_of(library, person)  # compiled once, and told of
     total, made, begun = sum(map(count_of, jobs)), 0, time.perf_counter()
     many = workers or min(cores(), len(jobs))
+    refused: dict[str, None] = {}
+
+    def told(job: Job, line: str) -> None:
+        refused[line if len(jobs) == 1 else f"{Path(job.folder).name}: {line}"] = None
     try:
         with progress_bar() as bar:
             if cluster is None and many == 1:
                 for job in jobs:
-                    for drawn in bar.track(frames(job), count_of(job), description=Path(job.folder).name):
+                    for drawn in bar.track(frames(job, partial(told, job)), count_of(job), description=Path(job.folder).name):
                         made += drawn
             else:
                 task = bar.add_task(f"{len(jobs)} films", total=total)
-                for job, drawn in on_cluster(jobs, cluster) if cluster is not None else at_once(jobs, many):
+                for job, drawn, lines in on_cluster(jobs, cluster) if cluster is not None else at_once(jobs, many):
                     made += drawn
+                    for line in lines:
+                        told(job, line)
                     bar.advance(task, count_of(job))
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     spent, kept = time.perf_counter() - begun, total * len(lenses) - made
     say(f"{out}: {'' if len(jobs) == 1 else f'{len(jobs)} films, '}{len(lenses)} cameras, {total} frames"
         + (f", {made / len(lenses) / spent:.2f} a second" if made else "") + (f"; {kept} pictures were there already" if kept else ""))
+    say_refused(refused)
 
 
 @app.command()

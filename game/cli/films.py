@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -142,14 +143,16 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     pixels = (2400, min(480 * rows, 8192)) if size is None else pixels_of(size)
     controller = person_of(library, character)
     learn(film.wanted, film.database)
+    refused: dict[str, None] = {}
     made = poses(film, controller, count, overlays(overlays_of(overlay)), pixels,
-                 start, end, actor)
+                 start, end, actor, lambda line: refused.setdefault(line))
     try:
         with Offscreen(pixels, Preset.full.value) as stage, whole(out) as part:
             Image.fromarray(stage.frame(made)[..., :3]).save(part)
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     say(f"{out}: {count} poses, {pixels[0]} × {pixels[1]}")
+    say_refused(refused)
 
 
 def _told(scenes, frames: int, every: int):
@@ -197,17 +200,21 @@ def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scen
 
     from ..hosts import GraphicsError, Offscreen
 
-    done = 0
+    done, refused = 0, dict[str, None]()
+
+    def told(name: str, line: str) -> None:
+        refused[f"{name}: {line}"] = None
     try:
         with progress_bar() as bar:
             task = bar.add_task("", total=sum(one.film.frames for one in todo), visible=bool(todo))
             for one in todo:
                 bar.update(task, description=one.film.title)
                 with Offscreen(one.film.size, preset.value) as stage:
-                    make(one, out, controller, stage, lambda: bar.advance(task))
+                    make(one, out, controller, stage, lambda: bar.advance(task), partial(told, one.name))
                 done += 1
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     finally:
         kept = len(plans) - len(todo)
         say(f"{out / PAGE}: {done} of {len(todo)} films made" + (f", {kept} up to date" if kept else ""))
+        say_refused(refused)
