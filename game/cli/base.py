@@ -106,6 +106,14 @@ def say_refused(refused: Iterable[str]) -> None:
         say(f"gambol: {line}")
 
 
+def say_doubts(file: str, film: Any) -> None:
+    """Tell what a scenario hardly means."""
+    from ..scenario import doubts
+
+    for line in doubts(film):
+        say(f"gambol: {file}: {line}")
+
+
 def person_of(library: Path | None, character: Path | None = None) -> Any:
     """Who moves, with a gait library (the shipped one by default), in a character's body if one is named; all of it
     is compiled first, where it never was."""

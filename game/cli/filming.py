@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say, say_refused
+from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say, say_doubts, say_refused
 from .film_jobs import Job, at_once, count_of, frames, jobs_of, on_cluster
 
 
@@ -40,6 +40,8 @@ def film(scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO…", h
     names = [name if name in tables.shipped() else str(tables.locate(name).absolute()) for name in scenarios]
     jobs = jobs_of(names, out, seeds, people, cameras=str(Path(cameras).absolute()), width=width, fps=fps, preset=preset.value,
                    library=None if library is None else str(library.absolute()))
+    for name in dict.fromkeys(names):
+        say_doubts(name, tables.load(name))
     for job in jobs:
         run = tables.load(job.scenario)
         learn(run.wanted, run.database)

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, known, learn, overlays_of, person_of, pixels_of, plainly,
-                   progress_bar, replayed, say, say_refused)
+                   progress_bar, replayed, say, say_doubts, say_refused)
 from .motion import write_motion
 
 
@@ -50,6 +50,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     if scenario.lower().endswith(SUFFIX):
         raise Mistake(f"{scenario}: is an input log; film it by --replay {scenario}")
     film = scenarios.load(scenario)
+    say_doubts(scenario, film)
     film = film if fps is None else film.at_fps(fps)
     if out.lower().endswith(".bvh"):
         for option, given in (("--size", size), ("--preset", preset), ("--overlay", overlay)):
@@ -139,6 +140,7 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     if start is not None and end is not None and not start < end:
         raise Mistake(f"--from {start:g} --to {end:g}: nothing lies between")
     film = scenarios.load(scenario)
+    say_doubts(scenario, film)
     rows = len(film.actors) if actor is None else 1
     pixels = (2400, min(480 * rows, 8192)) if size is None else pixels_of(size)
     controller = person_of(library, character)
@@ -195,6 +197,7 @@ def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scen
     plans = plan(names or shipped(), out, controller, preset.value, None if size is None else pixels_of(size), force)
     todo = [one for one in plans if not one.fresh]
     for one in todo:
+        say_doubts(one.name, one.film)
         learn(one.film.wanted, one.film.database)
     write_page(out)
 
