@@ -200,7 +200,7 @@ def _twisted(at: Mapping[str, np.ndarray]) -> Iterator[str]:
         if there(upper, lower) and all(over("Right" + part, "Left" + part) @ across < -ACROSS * size for part in (upper, lower)):
             yield f"Left{upper} and Right{upper} seem exchanged, and what is below them: each is on the other's side"
             return
-    backward = [-float((over(side + "Foot", side + "Toe") @ ahead)) for side in ("Left", "Right") if there("Foot", "Toe")]
+    backward = [-float(over(side + "Foot", side + "Toe") @ ahead) for side in ("Left", "Right") if there("Foot", "Toe")]
     backward += [-float((at[side + "Leg"] - 0.5 * (at[side + "UpLeg"] + at[side + "Foot"])) @ ahead) for side in ("Left", "Right") if there("Leg", "Foot")]
     if backward and sum(backward) > BACKWARD * size * len(backward):
         yield "all of left and right seems exchanged: knees bend and toes point backward"

@@ -188,9 +188,9 @@ def read_footage(folder: str | Path) -> Footage:
                 isinstance(one, list) and all(type(n) is int and n >= 0 for n in one) for one in value.values()):
             raise FootageError(f"{folder / ABOUT}: {field}: needs lists of frames by camera; film it anew")
         return {name: tuple(one) for name, one in value.items()}
-    for field, most in (("fps", 1000), ("frames", 10**7)):
-        if type(told.get(field)) is not int or not 1 <= told[field] <= most:
-            raise FootageError(f"{folder / ABOUT}: {field}: needs a whole number from 1 to {most}; film it anew")
+    for what, most in (("fps", 1000), ("frames", 10**7)):
+        if type(told.get(what)) is not int or not 1 <= told[what] <= most:
+            raise FootageError(f"{folder / ABOUT}: {what}: needs a whole number from 1 to {most}; film it anew")
     people = told.get("people")
     if not isinstance(people, list) or not all(isinstance(name, str) for name in people):
         raise FootageError(f"{folder / ABOUT}: people: needs a list of names; film it anew")

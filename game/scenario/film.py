@@ -23,7 +23,7 @@ from ..explain import broken, explained, led, pointed, rows, stepping, with_came
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
-from ..world import DT, RATE, Character, Recorded, World, avoiding, beginning, figures, follower_of, methods, stopped, tracked_of
+from ..world import DT, RATE, Character, Filmed, Recorded, World, avoiding, beginning, figures, follower_of, methods, stopped, tracked_of
 from .actor_table import ActorTable
 from .camera_operator import Operator
 from .scenario import Scenario
@@ -118,8 +118,11 @@ class Act:
 
 
 def ended(scenario: Scenario, act: Act) -> tuple[str, ...]:
-    """What a run has refused by its last frame, and which moves never had their turn."""
-    lines = []
+    """What a run has refused by its last frame, which moves never had their turn, and which pictures somebody was followed without."""
+    from ..footage import lost_frames  # slow to load, for those only who follow footage
+
+    filmed = [character.controller.footage for character in act.world.characters if isinstance(character.controller, Filmed)]
+    lines = [line for footage in filmed for line in lost_frames(footage)]
     for character, script in zip(act.world.characters, act.scripts):
         left = sum(move.runs or move.jump is not None or move.goal is not None for move in script.moves[script.index + 1:])
         if left:

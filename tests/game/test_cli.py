@@ -248,6 +248,10 @@ def test_help_comes_without_loading_the_rest():
     assert done.returncode == 0 and "render" in done.stdout
 
 
+def test_a_size_is_read_as_it_is_told():
+    assert cli.pixels_of("1280x720") == cli.pixels_of("1280 × 720") == cli.pixels_of("1280X720") == (1280, 720)
+
+
 @pytest.mark.parametrize("name", [field.name for field in fields(Build)])
 def test_a_build_is_refused_in_the_words_that_were_typed(name, tmp_path):
     done = CliRunner().invoke(cli.app, ["character", "-o", str(tmp_path / "a.glb"), f"--{name}", "nan"])

@@ -56,7 +56,8 @@ class Wearer:
         self._before: Calibration | None = None
         self._eased = 0
         self.seems: float | None = None
-        self._heads: deque[float] | None = deque(maxlen=4 * MOVING) if kept and JOINTS[_HEAD] in controls.joints else None
+        self._measured = kept and JOINTS[_HEAD] in controls.joints
+        self._heads: deque[float] = deque(maxlen=4 * MOVING)
         self._counted = 0
 
     @staticmethod
@@ -93,7 +94,7 @@ class Wearer:
         (n, 3, 3); NaN where not known. A point is not known while its tracker's turn is not. Call it 60 times a second."""
         wide = _wide(self._slots, self.level, places, turns)
         self._hear(*wide)
-        if self._heads is not None:
+        if self._measured:
             self._measure(*wide)
         points, turned = self._joints(self.known, *wide)
         if self._before is not None:
