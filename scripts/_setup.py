@@ -38,9 +38,12 @@ def ready(extra: str = "") -> Path:
     """
     if sys.version_info < (3, 11):  # noqa: UP036, who has an older one is told so
         sys.exit(f"Gambol needs Python 3.11 or newer; this is {platform.python_version()}")
-    _install(extra)
-    if platform.system() == "Linux":
-        _need_libraries()
+    try:
+        _install(extra)
+        if platform.system() == "Linux":
+            _need_libraries()
+    except KeyboardInterrupt:
+        sys.exit(130)
     return PYTHON
 
 

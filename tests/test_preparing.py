@@ -110,6 +110,22 @@ def test_a_program_runs_in_a_process_of_its_own_wherever_one_is(tmp_path, monkey
     assert "LibraryError: there is no such library" in capfd.readouterr().err
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="has no groups of processes")
+def test_ctrl_c_is_for_who_began_a_program_and_the_program_ends_with_it(monkeypatch):
+    program = preparing._program("ahead", ("there is no such library",), None, subprocess.DEVNULL)
+    assert os.getpgid(program.pid) != os.getpgid(0)
+    program.wait()
+    begins = """if True:
+        import subprocess, sys
+        from gambol.controllers.person import preparing
+        begun = subprocess.Popen
+        preparing.subprocess.Popen = lambda words, **more: begun([sys.executable, "-c", "import time; time.sleep(60)"], **more)
+        preparing._program("person", (), None, None)
+        raise KeyboardInterrupt
+    """  # whoever still runs holds its output, which is read to the end
+    subprocess.run([sys.executable, "-c", begins], capture_output=True, timeout=30)
+
+
 PLAYED = '''
 import sys
 from types import SimpleNamespace

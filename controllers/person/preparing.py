@@ -7,6 +7,7 @@ Compiling holds the interpreter's lock: threads would not do.
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import subprocess
@@ -58,8 +59,12 @@ def begun(walker: Locomotion, library: File | None = None) -> tuple[subprocess.P
 
 def _program(part: str, arguments: tuple[str, ...], heard: Any, said: Any) -> subprocess.Popen:
     code = f"import sys; from {__package__} import preparing; preparing.main(*sys.argv[1:])"
-    return subprocess.Popen([sys.executable, "-P", "-c", code, part, *arguments], stdin=heard, stdout=said,
-                            env=os.environ | {"GAMBOL_CACHE": str(cache_home()), "OPENBLAS_NUM_THREADS": "1"})
+    # Ctrl-C is for whoever began it, who ends it; what was compiled by then is kept
+    apart: Any = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP} if sys.platform == "win32" else {"process_group": 0}
+    program = subprocess.Popen([sys.executable, "-P", "-c", code, part, *arguments], stdin=heard, stdout=said, **apart,
+                               env=os.environ | {"GAMBOL_CACHE": str(cache_home()), "OPENBLAS_NUM_THREADS": "1"})
+    atexit.register(program.terminate)  # which does nothing to one that has ended
+    return program
 
 
 def ready(part: str, walker: Locomotion) -> bool:

@@ -2,11 +2,11 @@
 capture". What is known of a camera, what a body looks like in it, and the pose that fits.
 """
 
-from .clicks import ClickError, clicked, read_clicks
+from .clicks import ClickError, clicked, exchanged, read_clicks
 from .controller import Tracking, Watching
 from .shape_fit import Shape, fitted_shape
 from .tracker import Track, Tracker, TrackerSettings
 
 __all__ = [
-    "ClickError", "Shape", "Track", "Tracker", "TrackerSettings", "Tracking", "Watching", "clicked", "fitted_shape", "read_clicks",
+    "ClickError", "Shape", "Track", "Tracker", "TrackerSettings", "Tracking", "Watching", "clicked", "exchanged", "fitted_shape", "read_clicks",
 ]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from ..body import STATURE, Skeleton, human
-from ..files import contents, printable, reason
+from ..files import printable, reason, tables as read_tables
 from .cameras import Lens
 from .twists import Chain, Configuration, chain_of, posed, retract_kernel
 
@@ -26,6 +27,10 @@ SHORTEST, TALLEST = 1.0, 2.4
 ASTRAY, SLIP = 0.03, 0.15
 """So far off a body that has joints where they were clicked, over the picture's height, are clicks that tell no body, by their median, and a
 single one that slipped. Of clicks by hand the median is 0.007, the worst 0.03; of those 25 % too far apart it is 0.04."""
+LIMBS = (("Arm", "ForeArm"), ("ForeArm", "Hand"), ("UpLeg", "Leg"), ("Leg", "Foot"), ("Foot", "Toe"))
+"""Bones of either side, from the trunk outwards."""
+ACROSS, BACKWARD = 0.05, 0.04
+"""Elbows, or knees and feet, that are so far [m] on each other's side are crossed; knees that bend and toes that point so far [m] backward are nobody's."""
 
 
 class ClickError(ValueError):
@@ -37,8 +42,8 @@ def read_clicks(path: str | Path, lenses: Sequence[Lens], skeleton: Skeleton | N
     size. ClickError, in one line."""
     path, skeleton = Path(path), skeleton or human()
     try:
-        tables = tomllib.loads(contents(path, 1 << 20).decode("utf-8"))
-    except (OSError, ValueError) as fault:
+        tables = read_tables(path)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
         raise ClickError(f"{path}: {reason(fault) if isinstance(fault, OSError) else printable(str(fault))}") from None
     known, width = {lens.name: lens.size for lens in lenses}, tables.pop("width", None)
     if width is not None and not (type(width) is int and 16 <= width <= 16384):
@@ -113,6 +118,92 @@ def clicked(lenses: Sequence[Lens], clicks: Clicks, freedom: str = "full") -> tu
     pose, size = unpacked(found.x)
     body = chain_of(human(float(np.clip(STATURE * size, SHORTEST, TALLEST))), freedom)  # type: ignore[arg-type]
     return body, pose
+
+
+def exchanged(lenses: Sequence[Lens], clicks: Clicks) -> list[str]:
+    """What makes left and right seem exchanged by whoever clicked, in words: of a camera where its rays miss the others', of all where bones or bends
+    are nobody's. A person may stand so after all; who is seen to bend or turn nothing may be exchanged unseen."""
+    rays = {camera: {joint: (lens, np.array(at, float)) for joint, at in clicks.get(camera, {}).items()} for camera, lens in ((one.name, one) for one in lenses)}
+    lines = []
+    for part in sorted({joint[4:] for seen in rays.values() for joint in seen if joint.startswith("Left")}):
+        left, right = f"Left{part}", f"Right{part}"
+        both = [camera for camera, seen in rays.items() if left in seen and right in seen]
+        if not (wrong := _exchanged_in([(rays[one][left], rays[one][right]) for one in both])):
+            continue
+        for camera in (both[one] for one in wrong):
+            rays[camera][left], rays[camera][right] = rays[camera][right], rays[camera][left]
+
+        where = ", ".join(both[one] for one in wrong) if 2 * len(wrong) < len(both) else "in some cameras"
+        lines.append(f"{where}: {left} and {right} seem exchanged")
+    if lines:  # which once mended leave little else
+        return lines
+    at = {}
+    for joint in {joint for seen in rays.values() for joint in seen}:
+        if (place := _crossing([seen[joint] for seen in rays.values() if joint in seen])) is not None:
+            at[joint] = place
+    return list(_twisted(at))
+
+
+def _exchanged_in(pairs: Sequence[tuple[tuple[Lens, np.ndarray], tuple[Lens, np.ndarray]]]) -> list[int]:
+    """In which of the cameras left and right have to be exchanged for their rays to meet, the fewer; none where they meet, or never do."""
+    def miss(flips: Sequence[bool]) -> float:
+        sides = zip(*((right, left) if flip else (left, right) for flip, (left, right) in zip(flips, pairs)), strict=True)
+        return max(_miss(side) for side in sides)
+    if len(pairs) < 2 or (now := miss([False] * len(pairs))) < ASTRAY:
+        return []
+    some = product([False, True], repeat=len(pairs) - 1) if len(pairs) <= 8 else np.eye(len(pairs), dtype=bool)[:, 1:].tolist()
+    best = min(([False, *flips] for flips in some), key=miss)
+    if miss(best) > 0.5 * now:
+        return []
+    wrong = [number for number, flip in enumerate(best) if flip]
+    return wrong if 2 * len(wrong) <= len(pairs) else [number for number, flip in enumerate(best) if not flip]
+
+
+def _miss(rays: Sequence[tuple[Lens, np.ndarray]]) -> float:
+    """How far rays miss the place that is nearest to all, over their pictures' heights."""
+    place = _crossing(rays)
+    return 0.0 if place is None else max(float(np.linalg.norm(lens.project(place)[0] - at)) / lens.size[1] for lens, at in rays)
+
+
+def _twisted(at: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """What no body has of joints at places (3,) [m]: left and right exchanged for all cameras."""
+    skeleton = human()
+
+    def there(*parts: str) -> bool:
+        return all(side + part in at for side in ("Left", "Right") for part in parts)
+
+    def over(one: str, other: str) -> np.ndarray:
+        return at[other] - at[one]
+    if not there("UpLeg", "Arm"):
+        return
+    size = float(np.median([np.linalg.norm(over(side + upper, side + lower)) / np.linalg.norm(skeleton.offsets[skeleton.index(side + lower)])
+                            for upper, lower in LIMBS if there(upper, lower) for side in ("Left", "Right")] or [1.0]))
+    hips, shoulders = over("RightUpLeg", "LeftUpLeg"), over("RightArm", "LeftArm")
+    up = 0.5 * (at["LeftArm"] + at["RightArm"] - at["LeftUpLeg"] - at["RightUpLeg"])
+    up /= np.linalg.norm(up)
+    across = hips - up * (hips @ up)
+    across /= np.linalg.norm(across)
+    ahead = np.cross(across, up)
+    if shoulders @ across < 0.0:
+        yield "LeftArm and RightArm, or LeftUpLeg and RightUpLeg, seem exchanged: the trunk is turned round between them"
+        return
+    for upper, lower in LIMBS[:4]:
+        if not there(upper, lower):
+            continue
+        bone = size * float(np.linalg.norm(skeleton.offsets[skeleton.index("Left" + lower)]))
+        own, crossed = (max(abs(float(np.linalg.norm(over("Left" + upper, one + lower))) - bone), abs(float(np.linalg.norm(over("Right" + upper, other + lower))) - bone))
+                        for one, other in (("Left", "Right"), ("Right", "Left")))
+        if own > 0.3 * bone and crossed < 0.5 * own:
+            yield f"Left{lower} and Right{lower} seem exchanged: to them it is {100 * own:.0f} cm more or less than bones are long"
+            return
+    for upper, lower in (("ForeArm", "ForeArm"), ("Leg", "Foot")):
+        if there(upper, lower) and all(over("Right" + part, "Left" + part) @ across < -ACROSS * size for part in (upper, lower)):
+            yield f"Left{upper} and Right{upper} seem exchanged, and what is below them: each is on the other's side"
+            return
+    backward = [-float(over(side + "Foot", side + "Toe") @ ahead) for side in ("Left", "Right") if there("Foot", "Toe")]
+    backward += [-float((at[side + "Leg"] - 0.5 * (at[side + "UpLeg"] + at[side + "Foot"])) @ ahead) for side in ("Left", "Right") if there("Leg", "Foot")]
+    if backward and sum(backward) > BACKWARD * size * len(backward):
+        yield "all of left and right seems exchanged: knees bend and toes point backward"
 
 
 def _crossing(rays: Sequence[tuple[Lens, np.ndarray]]) -> np.ndarray | None:

@@ -23,13 +23,13 @@ def shown(world: World) -> Character:
 class Sending:
     """Sends a world's body on, frame by frame. SenderError for an address that is none.
 
-    to: HOST:PORT. lost: how many frames could not be sent.
+    to: HOST:PORT of each program. lost: how many frames could not be sent.
     """
 
-    def __init__(self, to: str):
-        from gambol.controllers.reconstruction.live import Sender, address
+    def __init__(self, *to: str):
+        from gambol.controllers.reconstruction.live import Senders
 
-        self._sender = Sender(*address(to))
+        self._sender = Senders(to)
 
     @property
     def lost(self) -> int:

@@ -106,6 +106,14 @@ def say_refused(refused: Iterable[str]) -> None:
         say(f"gambol: {line}")
 
 
+def say_doubts(file: str, film: Any) -> None:
+    """Tell what a scenario hardly means."""
+    from ..scenario import doubts
+
+    for line in doubts(film):
+        say(f"gambol: {file}: {line}")
+
+
 def person_of(library: Path | None, character: Path | None = None) -> Any:
     """Who moves, with a gait library (the shipped one by default), in a character's body if one is named; all of it
     is compiled first, where it never was."""
@@ -190,7 +198,7 @@ def replayed(file: Path, controller: Any) -> tuple[Any, Any]:
 
 def pixels_of(text: str) -> tuple[int, int]:
     """Width and height from "WIDTHxHEIGHT". Mistake for anything else."""
-    width, _, height = text.lower().partition("x")
+    width, _, height = text.lower().replace(" ", "").replace("×", "x").partition("x")
     if not (re.fullmatch("[0-9]{2,4}", width) and re.fullmatch("[0-9]{2,4}", height) and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
         raise Mistake(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
     return int(width), int(height)

@@ -6,7 +6,8 @@ A job is plain names and numbers, and what it makes depends on nothing else: the
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+import signal
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -44,8 +45,8 @@ def jobs_of(scenarios: Sequence[str], out: Path, seeds: int, characters: Sequenc
     return made
 
 
-def frames(job: Job) -> Iterator[int]:
-    """Make a job's film: how many pictures were drawn for each frame, as it is done."""
+def frames(job: Job, tell: Callable[[str], None]) -> Iterator[int]:
+    """Make a job's film: how many pictures were drawn for each frame, as it is done. tell: see `shoot`."""
     from gambol.controllers.tracking.cameras import read_cameras
 
     from ..hosts import Offscreen
@@ -60,7 +61,7 @@ def frames(job: Job) -> Iterator[int]:
     controller = somebody(job.library, job.character)
     with Offscreen((16, 16), job.preset) as stage:
         yield from shoot(Plan(run, lenses, sensor, job.preset, f"{controller.kind} {'' if job.character is None else Path(job.character).name}"),
-                         job.folder, controller, stage)
+                         job.folder, controller, stage, tell)
 
 
 @lru_cache(4)
@@ -82,17 +83,19 @@ def count_of(job: Job) -> int:
     return (run if job.fps is None else run.at_fps(job.fps)).frames
 
 
-def done(job: Job) -> tuple[Job, int]:
-    """A job done: it, and how many pictures were drawn."""
-    return job, sum(frames(job))
+def done(job: Job) -> tuple[Job, int, list[str]]:
+    """A job done: it, how many pictures were drawn, and what nobody could do."""
+    refused: list[str] = []
+    return job, sum(frames(job, refused.append)), refused
 
 
-def at_once(jobs: Sequence[Job], workers: int) -> Iterator[tuple[Job, int]]:
+def at_once(jobs: Sequence[Job], workers: int) -> Iterator[tuple[Job, int, list[str]]]:
     """Jobs done by so many programs, in the order in which they end. Whatever goes wrong ends all of them."""
     from concurrent.futures import ProcessPoolExecutor, as_completed  # slow to load, and no game films so
     from multiprocessing import get_context
 
-    with ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn")) as crew:
+    # Ctrl-C ends a worker without a word: whoever sent it hears of it from here
+    with ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn"), signal.signal, (signal.SIGINT, signal.SIG_DFL)) as crew:
         waiting = [crew.submit(done, job) for job in jobs]
         try:
             for one in as_completed(waiting):
@@ -102,7 +105,7 @@ def at_once(jobs: Sequence[Job], workers: int) -> Iterator[tuple[Job, int]]:
             raise
 
 
-def on_cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[Job, int]]:
+def on_cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[Job, int, list[str]]]:
     """Jobs done by a Dask cluster whose workers see the same disk. Mistake where there is none."""
     try:
         from distributed import Client

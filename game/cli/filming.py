@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say
-from .film_jobs import at_once, count_of, frames, jobs_of, on_cluster
+from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say, say_doubts, say_refused
+from .film_jobs import Job, at_once, count_of, frames, jobs_of, on_cluster
 
 
 @app.command()
@@ -39,6 +40,8 @@ def film(scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO…", h
     names = [name if name in tables.shipped() else str(tables.locate(name).absolute()) for name in scenarios]
     jobs = jobs_of(names, out, seeds, people, cameras=str(Path(cameras).absolute()), width=width, fps=fps, preset=preset.value,
                    library=None if library is None else str(library.absolute()))
+    for name in dict.fromkeys(names):
+        say_doubts(name, tables.load(name))
     for job in jobs:
         run = tables.load(job.scenario)
         learn(run.wanted, run.database)
@@ -46,22 +49,29 @@ def film(scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO…", h
         person_of(library, person)  # compiled once, and told of
     total, made, begun = sum(map(count_of, jobs)), 0, time.perf_counter()
     many = workers or min(cores(), len(jobs))
+    refused: dict[str, None] = {}
+
+    def told(job: Job, line: str) -> None:
+        refused[line if len(jobs) == 1 else f"{Path(job.folder).name}: {line}"] = None
     try:
         with progress_bar() as bar:
             if cluster is None and many == 1:
                 for job in jobs:
-                    for drawn in bar.track(frames(job), count_of(job), description=Path(job.folder).name):
+                    for drawn in bar.track(frames(job, partial(told, job)), count_of(job), description=Path(job.folder).name):
                         made += drawn
             else:
                 task = bar.add_task(f"{len(jobs)} films", total=total)
-                for job, drawn in on_cluster(jobs, cluster) if cluster is not None else at_once(jobs, many):
+                for job, drawn, lines in on_cluster(jobs, cluster) if cluster is not None else at_once(jobs, many):
                     made += drawn
+                    for line in lines:
+                        told(job, line)
                     bar.advance(task, count_of(job))
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     spent, kept = time.perf_counter() - begun, total * len(lenses) - made
     say(f"{out}: {'' if len(jobs) == 1 else f'{len(jobs)} films, '}{len(lenses)} cameras, {total} frames"
         + (f", {made / len(lenses) / spent:.2f} a second" if made else "") + (f"; {kept} pictures were there already" if kept else ""))
+    say_refused(refused)
 
 
 @app.command()
@@ -104,17 +114,23 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
     from ..footage import checked as complete
-    from ..footage import clicked_pose, first_poses, person_in, read_footage, seen_in, settled
+    from ..footage import clicked_pose, exchanged_clicks, first_poses, lost_frames, person_in, read_footage, seen_in, settled
     from ..studio import error_of, followed, late, overlaid
 
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
-    complete(film, masks)
+    film = complete(film, masks)
+    if masks and overlay is not None:
+        film = complete(film)
+    for line in lost_frames(film):
+        say(f"gambol: {line}; what others saw, and how somebody moved before, tells of them")
     who, clicks = person_in(film, person), start is not None and start.suffix.lower() == ".toml"
     checked(out, [film.people[who]])
     if clicks and start is not None:
         surface, pose = clicked_pose(film, start)
+        for line in exchanged_clicks(film, start):
+            say(f"gambol: {line}")
         if fit:
             say("finding how tall and how wide somebody is: a minute")
             shape = fitted_shape(Tracker(surface, film.lenses, float(film.fps)), pose, pose,

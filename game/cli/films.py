@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, known, learn, overlays_of, person_of, pixels_of, plainly,
-                   progress_bar, replayed, say, say_refused)
+                   progress_bar, replayed, say, say_doubts, say_refused)
 from .motion import write_motion
 
 
@@ -49,6 +50,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     if scenario.lower().endswith(SUFFIX):
         raise Mistake(f"{scenario}: is an input log; film it by --replay {scenario}")
     film = scenarios.load(scenario)
+    say_doubts(scenario, film)
     film = film if fps is None else film.at_fps(fps)
     if out.lower().endswith(".bvh"):
         for option, given in (("--size", size), ("--preset", preset), ("--overlay", overlay)):
@@ -138,18 +140,21 @@ def strip(scenario: Annotated[str, typer.Argument(help="A shipped scenario or a 
     if start is not None and end is not None and not start < end:
         raise Mistake(f"--from {start:g} --to {end:g}: nothing lies between")
     film = scenarios.load(scenario)
+    say_doubts(scenario, film)
     rows = len(film.actors) if actor is None else 1
     pixels = (2400, min(480 * rows, 8192)) if size is None else pixels_of(size)
     controller = person_of(library, character)
     learn(film.wanted, film.database)
+    refused: dict[str, None] = {}
     made = poses(film, controller, count, overlays(overlays_of(overlay)), pixels,
-                 start, end, actor)
+                 start, end, actor, lambda line: refused.setdefault(line))
     try:
         with Offscreen(pixels, Preset.full.value) as stage, whole(out) as part:
             Image.fromarray(stage.frame(made)[..., :3]).save(part)
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     say(f"{out}: {count} poses, {pixels[0]} × {pixels[1]}")
+    say_refused(refused)
 
 
 def _told(scenes, frames: int, every: int):
@@ -192,22 +197,27 @@ def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scen
     plans = plan(names or shipped(), out, controller, preset.value, None if size is None else pixels_of(size), force)
     todo = [one for one in plans if not one.fresh]
     for one in todo:
+        say_doubts(one.name, one.film)
         learn(one.film.wanted, one.film.database)
     write_page(out)
 
     from ..hosts import GraphicsError, Offscreen
 
-    done = 0
+    done, refused = 0, dict[str, None]()
+
+    def told(name: str, line: str) -> None:
+        refused[f"{name}: {line}"] = None
     try:
         with progress_bar() as bar:
             task = bar.add_task("", total=sum(one.film.frames for one in todo), visible=bool(todo))
             for one in todo:
                 bar.update(task, description=one.film.title)
                 with Offscreen(one.film.size, preset.value) as stage:
-                    make(one, out, controller, stage, lambda: bar.advance(task))
+                    make(one, out, controller, stage, lambda: bar.advance(task), partial(told, one.name))
                 done += 1
     except GraphicsError as error:
         raise Mistake(str(error)) from None
     finally:
         kept = len(plans) - len(todo)
         say(f"{out / PAGE}: {done} of {len(todo)} films made" + (f", {kept} up to date" if kept else ""))
+        say_refused(refused)

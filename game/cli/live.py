@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -40,14 +40,14 @@ def heard(worn: Mapping[str, str], packets: Path | None, port: int | None, host:
 
 
 @contextmanager
-def sent(to: str | None) -> Iterator[Any]:
-    """A sender to a program that shows bodies; None where nobody asks for one."""
-    if to is None:
+def sent(to: Sequence[str]) -> Iterator[Any]:
+    """A sender to programs that show bodies; None where nobody asks for one."""
+    if not to:
         yield None
         return
-    from gambol.controllers.reconstruction.live import Sender, address
+    from gambol.controllers.reconstruction.live import Senders
 
-    sender = Sender(*address(to))
+    sender = Senders(to)
     try:
         yield sender
     finally:
@@ -81,7 +81,7 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
     with _stoppable():
         try:
             stand(source, height, calibration, posing, wait=None if seconds is None else max(seconds, _WAITED))
-            known = None
+            known, told = None, []
             say("recording; Ctrl-C ends it" if out is not None else "sending; Ctrl-C ends it")
             state = None
             for now in _times(source, seconds, sender is not None, skipped):
@@ -93,6 +93,8 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
                     known = source.worn.known
                     reconstruction = controller(source.worn.skeleton)
                     someone = Supervisor({"locomotion": walker, "reconstruction": reconstruction})
+                if not told and _live(source) and (told := another(source)):
+                    say(*told)
                 if state is None:
                     if np.isnan(seen).all():  # silent since they stood still: there is nothing to begin with yet
                         continue
@@ -112,6 +114,8 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
                 write_take(out, out.stem, reconstruction.skeleton, poses, contacts)
     unmet = [] if met.all() else [f"nothing was heard of {', '.join(_missing(source, met))}"]
     for line in unmet + _amiss(source) if unmet or source.rivals else ():
+        say(line)
+    for line in another(source):
         say(line)
     if not poses and out is not None:
         raise Mistake(f"{out}: nothing was recorded")
@@ -261,6 +265,14 @@ def _amiss(source: Any) -> list[str]:
     if source.unknown:
         lines.append(f"on no point: {', '.join(source.unknown)}; --map says where they are")
     return lines
+
+
+def another(source: Any) -> list[str]:
+    """A line where the calibration that was kept seems to be of somebody of another size."""
+    if (seems := getattr(source.worn, "seems", None)) is None:
+        return []
+    return [f"the calibration is of somebody {source.worn.known.height:.2f} m tall; whoever wears the trackers seems to be {seems:.2f} m, or never stands "
+            "upright: to name another file by --calibration, and stand anew, tells how they are worn"]
 
 
 def _ticks(seconds: float | None, behind: float, skipped: list[float]) -> Iterator[float]:

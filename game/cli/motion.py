@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say, say_refused
+from .base import Library, Mistake, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say, say_doubts, say_refused
 
 
 @app.command()
@@ -25,6 +25,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
         from ..scenario import scenario as scenarios
 
         film = scenarios.load(what)
+        say_doubts(what, film)
         write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character))
         return
     known(Path(what))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,18 +27,16 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
          cameras: Annotated[bool, typer.Option("--cameras", help="Four cameras see you, and a tracker moves a body beside you; Z: with its penalty on jitter or without.")] = False,
          footage: Annotated[Path | None, typer.Option(help="A folder of footage, of `gambol film` or `gambol footage`: the first who is seen in it moves as a tracker makes them, and is whom you watch.")] = None,
          network: Annotated[Path | None, typer.Option(help="A network that gambol database tune taught, .npz, in the place of the one that ships.")] = None,
-         send: Annotated[str | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539.")] = None,
+         send: Annotated[list[str] | None, typer.Option(help="Send whoever you play on by the VMC protocol to a program that shows them: HOST:PORT, such as 127.0.0.1:39539; named several times, to each.")] = None,
          crowd: Annotated[int, typer.Option(min=0, max=50, help="So many passers-by walk about, past each other and you.")] = 0,
          hints: Annotated[bool | None, typer.Option("--hints/--no-hints", show_default=False, help="Show the hints of the first minute again, or none; by default those that were never followed.")] = None) -> None:
     """Open the game: WASD or a gamepad moves, F1 shows every control."""
-    from ..input import load as load_bindings
-
-    pixels, hands, body = pixels_of(size), load_bindings(bindings), body_of(character)
+    pixels, hands, body = pixels_of(size), _hands(bindings), body_of(character)
     sending = None
-    if send is not None:
+    if send:
         from ..app import Sending
 
-        sending = Sending(send)
+        sending = Sending(*send)
     if network is not None:
         _own(network, replay)
     if replay is not None:  # what can't be is told of before anything is compiled
@@ -59,11 +58,14 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         tape, controller = replayed(replay, controller)
         players, clip, database = tape.players, tape.clip or None, tape.database or None
     elif footage is not None:
+        from ..footage import lost_frames
         from ..world import Filmed
 
         if players != 1 or character is not None:
             raise Mistake("--footage: shows one person, in the mannequin: leave out " + ("--players" if players != 1 else "--character"))
         controller, clip = Filmed.load(footage, controller), footage
+        for line in lost_frames(controller.footage):
+            say(f"gambol: {line}")
     log = LogWriter(log_file(record), controller, players, clip, database)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
@@ -84,6 +86,16 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
             game.do(f"crowd={crowd}")
         return game
     show(Opening(begun, beside), pixels, preset, log, capture, sending)
+
+
+def _hands(file: Path | None) -> Any:
+    """The keys and buttons of a file, or the user's own; keys that do two things are told of. BindingsError."""
+    from ..input import load, shared, user_file
+
+    found = load(file)
+    for line in shared(found):
+        say(f"gambol: {file or user_file()}: {line}")
+    return found
 
 
 def _own(network: Path, replay: Path | None) -> None:
@@ -120,33 +132,32 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
 
 
 def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
-          size: str = "1280x720", preset: Preset = Preset.full, send: str | None = None, ask: Any = None) -> None:
+          size: str = "1280x720", preset: Preset = Preset.full, send: Sequence[str] = (), ask: Any = None) -> None:
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
-    send: HOST:PORT that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
+    send: HOST:PORT of each program that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
     ask: asks whoever wears the stream's trackers how they stand (`live.stand`), in the window, before the game begins.
     """
     from gambol.controllers.reconstruction import SETS
 
     points = next((name for name, some in SETS.items() if points == ",".join(some)), points)
-    pixels = pixels_of(size)
+    pixels, hands = pixels_of(size), _hands(None)
     # beside what ships nobody waits for others to be learnt
     wanted = tuple(dict.fromkeys([method, *(() if stream is not None or method == "trackers" else ("lpcr", "lpca"))]))
     controller = person_of(None)
     learn([(name, points) for name in wanted], database)
 
     from ..app import OUT, Asking, Capture, Play, Sending, log_file
-    from ..input import load as load_bindings
     from ..session import Comparison, LogWriter
     from ..world import Recorded, methods
 
     performer = controller if clip is None else Recorded.load(clip, controller)
     log = LogWriter(log_file(None), performer, 1, clip, database)
     capture = Capture(OUT)
-    sending = None if send is None else Sending(send)
+    sending = Sending(*send) if send else None
 
     def begun() -> Play:
-        game = Play(performer, bindings=load_bindings(), log=log, capture=capture, learnt=methods(database), stream=stream, sending=sending)
+        game = Play(performer, bindings=hands, log=log, capture=capture, learnt=methods(database), stream=stream, sending=sending)
         game.open(Comparison(wanted, points))
         return game
 
@@ -164,9 +175,9 @@ def bindings(file: Hands = None,
              write: Annotated[Path | None, typer.Option(help="Write them into this new .toml file instead.")] = None) -> None:
     """Print the keys, buttons and sticks in force, as a file to edit."""
     from ..files import output_file, whole
-    from ..input import as_toml, load
+    from ..input import as_toml
 
-    text = as_toml(load(file))
+    text = as_toml(_hands(file))
     if write is None:
         typer.echo(text, nl=False)
         return

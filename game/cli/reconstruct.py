@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from . import live
-from .base import Mistake, app, learn, plainly, progress_bar
+from .base import Mistake, app, learn, plainly, progress_bar, say
 from .live import FPS, SUFFIX, write_take
 from .play import watch
 
@@ -35,7 +35,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 poses: Annotated[bool, typer.Option("--poses", help="With --calibration: be asked to stand in eight poses, which tells most of how trackers are worn.")] = False,
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long from when somebody has stood still, and wait as long for that, half a minute at least; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
-                send: Annotated[str | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539.")] = None,
+                send: Annotated[list[str] | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539; named several times, to each.")] = None,
                 window: Annotated[bool, typer.Option("--window", help="Show the body in a window, too, while it is sent on.")] = False) -> None:
     """Make a whole body's motion from the way of two to six points on it."""
     if (clip is None) == (stream is None):
@@ -44,7 +44,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         raise Mistake(f"--stream {stream!r}: only osc is understood")
     heard_again = clip is not None and clip.suffix.lower() == SUFFIX
     listening = (("--port", port), ("--host", host), ("--keep", keep))
-    worn = (("--map", trackers), ("--seconds", seconds), ("--height", height), ("--calibration", calibration), ("--send", send))
+    worn = (("--map", trackers), ("--seconds", seconds), ("--height", height), ("--calibration", calibration), ("--send", send or None))
     recorded = (("--noise", noise or None), ("--seed", seed or None), ("--turns", turns or None))
     for option, given in recorded if stream is not None else listening + (recorded if heard_again else worn):
         if given is not None:
@@ -55,13 +55,13 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         raise Mistake("--poses goes with --calibration FILE" + (f": {calibration} is there already, and says how trackers are worn" if calibration else ""))
     if points is not None and trackers is not None:
         raise Mistake("--points and --map both say which points there are: give one of them")
-    if window and (send is None or out is not None or heard_again):
+    if window and (not send or out is not None or heard_again):
         raise Mistake("--window goes with --stream and --send: without --send a window opens by itself, and none with -o")
     if out is None:
         for option, given in (*recorded, *(() if send and not window else (("--seconds", seconds),))):
             if given is not None:
                 raise Mistake(f"{option} goes with -o")
-        if heard_again and send is None:
+        if heard_again and not send:
             raise Mistake(f"{clip}: packets are heard again into a motion, -o FILE, or for another program, --send HOST:PORT")
     else:
         from ..output import checked
@@ -84,12 +84,14 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     worn_on = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn_on.values())
     method = method or _usual(names, database)
-    shown = out is None and (send is None or window)
+    shown = out is None and (not send or window)
     with live.heard(worn_on, clip, port, host, keep, own_time=not shown) as source:
         if shown:
-            watch(method, names, database, stream=source, send=send, ask=partial(live.stand, source, height, calibration, poses))
+            watch(method, names, database, stream=source, send=send or (), ask=partial(live.stand, source, height, calibration, poses))
+            for line in live.another(source):
+                say(line)
         else:
-            with live.sent(send) as sender:
+            with live.sent(send or ()) as sender:
                 live.record(source, lambda skeleton: _controller(method, database, names, skeleton), out, height, seconds, sender, calibration, poses)
 
 

@@ -2,10 +2,10 @@
 somebody in it begins.
 """
 
-from .first_frames import clicked_pose, first_poses, person_in, seen_in, settled
-from .footage import Footage, FootageError, begun, checked, complete, file_of, fingerprint, read_footage
+from .first_frames import clicked_pose, exchanged_clicks, first_poses, person_in, seen_in, settled
+from .footage import Footage, FootageError, begun, checked, complete, file_of, fingerprint, lost_frames, read_footage
 
 __all__ = [
-    "Footage", "FootageError", "begun", "checked", "clicked_pose", "complete", "file_of", "fingerprint", "first_poses", "person_in",
+    "Footage", "FootageError", "begun", "checked", "clicked_pose", "complete", "exchanged_clicks", "file_of", "fingerprint", "first_poses", "lost_frames", "person_in",
     "read_footage", "seen_in", "settled",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import load, retarget
-from gambol.controllers.tracking import ClickError, Tracker, clicked, read_clicks
+from gambol.controllers.tracking import ClickError, Tracker, clicked, exchanged, read_clicks
 from gambol.controllers.tracking.silhouettes import Surface
 from gambol.controllers.tracking.twists import Configuration, fitted
 
@@ -67,8 +67,13 @@ def clicked_pose(footage: Footage, clicks: Path, level: str = "middle") -> tuple
     try:
         chain, pose = clicked(footage.lenses, seen)
     except ClickError as fault:
-        raise ClickError(f"{clicks}: {fault}") from None
+        raise ClickError("; ".join([f"{clicks}: {fault}", *exchanged(footage.lenses, seen)])) from None
     return surface_of(chain.skeleton, "full", level=level), pose
+
+
+def exchanged_clicks(footage: Footage, clicks: Path) -> list[str]:
+    """A line for each pair of joints that whoever clicked seems to have exchanged. ClickError as of `clicked_pose`."""
+    return [f"{clicks}: {line}" for line in exchanged(footage.lenses, read_clicks(clicks, footage.lenses))]
 
 
 def settled(footage: Footage, tracker: Tracker, pose: Configuration, person: int = 0, masks: bool = False) -> Configuration:

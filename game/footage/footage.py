@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,8 @@ ABOUT, CAMERAS, TRUTH = "footage.json", "cameras.toml", "truth.npz"
 KINDS = ("frame", "mask", "depth")
 """What there is of each frame: the picture, who is where (0 nobody, 1 the first, …), and how far [mm], 0 for nothing."""
 VERSION = 1
+UNSEEN = 0.3
+"""So long [s] may no camera see somebody."""
 
 
 class FootageError(ValueError):
@@ -28,7 +30,8 @@ class FootageError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Footage:
-    """A folder of footage. people: whom it shows. dropped, corrupted: camera → numbers of its frames."""
+    """A folder of footage. people: whom it shows. dropped, corrupted: camera → numbers of its frames. lost: (camera, kind) → numbers of frames whose
+    pictures are not there, though they should be: see `checked`."""
 
     path: Path
     lenses: tuple[Lens, ...]
@@ -37,17 +40,18 @@ class Footage:
     people: tuple[str, ...]
     dropped: dict[str, tuple[int, ...]]
     corrupted: dict[str, tuple[int, ...]]
+    lost: Mapping[tuple[str, str], tuple[int, ...]] = field(default_factory=dict)
 
     def file(self, camera: str, kind: str, number: int) -> Path:
         """Where a camera's frame is, one of `KINDS`."""
         return file_of(self.path, camera, kind, number)
 
     def picture(self, camera: str, kind: str, number: int) -> np.ndarray | None:
-        """A frame, (H, W, 3) uint8, a mask, (H, W) uint8, or depths, (H, W) float32 [m], infinite for nothing; None for a dropped frame."""
+        """A frame, (H, W, 3) uint8, a mask, (H, W) uint8, or depths, (H, W) float32 [m], infinite for nothing; None for a dropped frame, and a lost one."""
         from PIL import Image, UnidentifiedImageError
 
         path = self.file(camera, kind, number)
-        if number in self.dropped.get(camera, ()) and kind == "frame":
+        if number in self.dropped.get(camera, ()) and kind == "frame" or number in self.lost.get((camera, kind), ()):
             return None
         try:
             with Image.open(path) as image:
@@ -74,13 +78,23 @@ class Footage:
 
 
 def checked(footage: Footage, masks: bool = False) -> Footage:
-    """The footage, with a picture of its camera's size, or a mask, of every frame that was not dropped. FootageError, naming the file."""
+    """The footage, with a picture of its camera's size, or a mask, of every frame that was neither dropped nor is `lost`, which is filled in.
+
+    FootageError, naming file or frames, for another picture, and where too much is lost: all of a camera, of a first frame, or of so many frames
+    after each other that nobody can tell where somebody went meanwhile.
+    """
     from PIL import Image, UnidentifiedImageError
 
+    kind = "mask" if masks else "frame"
+    lost, there = dict(footage.lost), np.zeros(footage.frames, bool)
     for lens in footage.lenses:
-        gone = () if masks else footage.dropped.get(lens.name, ())
+        gone, missing = () if masks else footage.dropped.get(lens.name, ()), []
         for number in (n for n in range(footage.frames) if n not in gone):
-            path = footage.file(lens.name, "mask" if masks else "frame", number)
+            path = footage.file(lens.name, kind, number)
+            if not path.exists():
+                missing.append(number)
+                continue
+            there[number] = True
             try:
                 with Image.open(path) as image:  # its head alone
                     size = image.size
@@ -88,7 +102,34 @@ def checked(footage: Footage, masks: bool = False) -> Footage:
                 raise FootageError(f"{path}: {reason(fault)}") from None
             if size != lens.size:
                 raise FootageError(f"{path}: {size[0]} × {size[1]} pixels, but {lens.name} has {lens.size[0]} × {lens.size[1]}")
-    return footage
+        if missing:
+            if len(missing) + len(gone) == footage.frames:
+                raise FootageError(f"{footage.file(lens.name, kind, missing[0])}: is not there, nor is any {kind} of {lens.name}")
+            lost[lens.name, kind] = tuple(missing)
+    blind, longest = runs(np.flatnonzero(~there)), max(round(UNSEEN * footage.fps), 1)
+    if lost:
+        for first, last in blind:
+            if first == 0:
+                raise FootageError(f"{footage.path}: no camera has the first {kind}, and a track begins with it")
+            if last - first >= longest:
+                raise FootageError(f"{footage.path}: no camera has {kind}s {first} to {last}: where somebody went meanwhile, for more than "
+                                   f"{UNSEEN:g} s, nobody can tell")
+    return replace(footage, lost=lost)
+
+
+def lost_frames(footage: Footage) -> list[str]:
+    """A line for each camera some of whose pictures are not there."""
+    return [f"{footage.path / camera}: {len(numbers)} of {footage.frames} {kind}s are not there: "
+            + ", ".join(str(first) if first == last else f"{first}–{last}" for first, last in runs(numbers))
+            for (camera, kind), numbers in footage.lost.items()]
+
+
+def runs(numbers: Sequence[int] | np.ndarray) -> list[tuple[int, int]]:
+    """Growing numbers as (first, last) of those that follow each other."""
+    found: list[tuple[int, int]] = []
+    for number in map(int, numbers):
+        found[-1:] = [(found[-1][0], number)] if found and number == found[-1][1] + 1 else [*found[-1:], (number, number)]
+    return found
 
 
 def file_of(folder: Path, camera: str, kind: str, number: int) -> Path:
@@ -147,9 +188,9 @@ def read_footage(folder: str | Path) -> Footage:
                 isinstance(one, list) and all(type(n) is int and n >= 0 for n in one) for one in value.values()):
             raise FootageError(f"{folder / ABOUT}: {field}: needs lists of frames by camera; film it anew")
         return {name: tuple(one) for name, one in value.items()}
-    for field, most in (("fps", 1000), ("frames", 10**7)):
-        if type(told.get(field)) is not int or not 1 <= told[field] <= most:
-            raise FootageError(f"{folder / ABOUT}: {field}: needs a whole number from 1 to {most}; film it anew")
+    for what, most in (("fps", 1000), ("frames", 10**7)):
+        if type(told.get(what)) is not int or not 1 <= told[what] <= most:
+            raise FootageError(f"{folder / ABOUT}: {what}: needs a whole number from 1 to {most}; film it anew")
     people = told.get("people")
     if not isinstance(people, list) or not all(isinstance(name, str) for name in people):
         raise FootageError(f"{folder / ABOUT}: people: needs a list of names; film it anew")

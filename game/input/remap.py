@@ -35,6 +35,9 @@ ABOUT = {
     "turn": "how far a drag over the window's height turns the camera [rad]",
 }
 
+OPPOSITE = ({"forward", "back"}, {"left", "right"}, {"turn_left", "turn_right"}, {"scrub_back", "scrub_on"})
+"""Actions that undo each other."""
+
 
 class BindingsError(ValueError):
     """A bindings file that cannot be used; the message names file, action and key, a line for each fault."""
@@ -88,16 +91,16 @@ def remapped(bindings: Bindings, keys: Mapping[str, tuple[str, ...]], buttons: M
 def clashes(bindings: Bindings, kind: str = "keys", blamed: Iterable[str] = ()) -> list[str]:
     """A line for each key (or button) that would do two things at once in one mode.
 
-    Two things that last while it is held may share it. blamed: the actions to name first.
+    Two things that last while it is held may share it, unless one undoes the other. blamed: the actions to name first.
     """
-    blamed, faults, seen = set(blamed), [], {}
-    for row in sorted(bindings, key=lambda row: row.action in blamed):
-        for name in getattr(row, kind):
-            other = seen.setdefault((name, row.mode), row)
-            if other is not row and not (row.held and other.held):
-                faults.append(f"{kind}.{row.action}: {name} already does {other.action!r}; "
-                              f"choose another, or give {other.action} another")
-    return faults
+    return [f"{kind}.{row.action}: {name} already does {other.action!r}; choose another, or give {other.action} another"
+            for name, row, other in _twice(bindings, kind, blamed) if not _go_together(row, other)]
+
+
+def shared(bindings: Bindings) -> list[str]:
+    """A line for each key (or button) that does two things while it is held, which may be meant, or be a slip."""
+    return [f"{kind}.{other.action} and {kind}.{row.action} share {name}: it does both"
+            for kind in KINDS for name, row, other in _twice(bindings, kind) if _go_together(row, other)]
 
 
 def as_toml(bindings: Bindings) -> str:
@@ -122,6 +125,21 @@ def as_toml(bindings: Bindings) -> str:
             lines.append(f"{f'{field.name} = {text}':<48}  # {ABOUT[field.name]}")
         lines.append("")
     return "\n".join(lines)
+
+
+def _twice(bindings: Bindings, kind: str, blamed: Iterable[str] = ()) -> Iterable[tuple[str, Binding, Binding]]:
+    """Each key (or button) of a row that is another row's, too, in the same mode; the other one before it. blamed: actions that come last."""
+    blamed, seen = set(blamed), {}
+    for row in sorted(bindings, key=lambda row: row.action in blamed):
+        for name in dict.fromkeys(getattr(row, kind)):
+            other = seen.setdefault((name, row.mode), row)
+            if other is not row:
+                yield name, row, other
+
+
+def _go_together(one: Binding, other: Binding) -> bool:
+    """Whether a key may do both."""
+    return one.held and other.held and {one.action, other.action} not in OPPOSITE
 
 
 def _unknown(kind: str, table: Mapping[str, tuple[str, ...]]) -> Iterable[str]:

@@ -110,11 +110,12 @@ def _stamps(paths: Sequence[Path]) -> list[str]:
     return [f"{file} {file.stat().st_size} {file.stat().st_mtime_ns}" for file in files]
 
 
-def make(plan: Plan, folder: str | Path, controller: Any, stage: Any, drawn: Callable[[], None] = lambda: None) -> Entry:
+def make(plan: Plan, folder: str | Path, controller: Any, stage: Any, drawn: Callable[[], None] = lambda: None,
+         tell: Callable[[str], None] = lambda line: None) -> Entry:
     """Make one film with its poster and figures, and the page that shows it too.
 
     stage: draws scenes as frames of the film's size, as `gambol.game.hosts.Offscreen`. drawn: is called
-    after every frame. OutputError where something can't be written.
+    after every frame. tell: hears of each jump that was not made and each place not reached. OutputError where something can't be written.
     """
     folder, film, poster = Path(folder), plan.film, None
     moment = 0.5 * film.duration if film.poster is None else film.poster
@@ -126,6 +127,8 @@ def make(plan: Plan, folder: str | Path, controller: Any, stage: Any, drawn: Cal
                 poster = picture[..., :3].copy()
             drawn()
     assert poster is not None  # a film has a frame at least
+    for line in frame.refused:
+        tell(line)
     _save_poster(poster, folder / f"{plan.name}.png")
     entry = Entry(plan.name, plan.key, film.title, film.under, film.duration, film.size, len(film.actors),
                   figures(film, controller))

@@ -5,7 +5,7 @@ Each actor has a row of its own, all to one scale.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,11 +25,13 @@ UPRIGHT = 0.94
 
 
 def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size: tuple[int, int],
-          start: float | None = None, end: float | None = None, actor: str | None = None) -> tuple[Scene, ...]:
+          start: float | None = None, end: float | None = None, actor: str | None = None,
+          tell: Callable[[str], None] = lambda line: None) -> tuple[Scene, ...]:
     """`count` moments of an actor, or of each in its row, in equal steps from `start` to `end` [s].
 
     By default those of the first jump, from before the wind-up until the body stands or walks again, or all of the
-    scenario if there is none. size: of the whole picture in pixels. ScenarioError for an actor or a time that
+    scenario if there is none. size: of the whole picture in pixels. tell: hears of each
+    jump that was not made and each place not reached. ScenarioError for an actor or a time that
     there is not.
     """
     names = [one.name for one in scenario.actors]
@@ -38,6 +40,8 @@ def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size
     cast = range(len(names)) if actor is None else [names.index(actor)]
     _check(scenario, start or 0.0, scenario.duration if end is None else end)
     frames = list(run(scenario.at_fps(60), controller))
+    for line in frames[-1].refused:
+        tell(line)
     if start is None and end is None:
         start, end = _first_jump(frames, cast)
     start, end = start or 0.0, frames[-1].time if end is None else min(end, frames[-1].time)

@@ -23,7 +23,7 @@ from ..explain import broken, explained, led, pointed, rows, stepping, with_came
 from ..input import Script
 from ..scene import Caption, Overlays, Scene
 from ..session import GHOST
-from ..world import DT, RATE, Character, Recorded, World, avoiding, beginning, figures, follower_of, methods, stopped, tracked_of
+from ..world import DT, RATE, Character, Filmed, Recorded, World, avoiding, beginning, figures, follower_of, methods, stopped, tracked_of
 from .actor_table import ActorTable
 from .camera_operator import Operator
 from .scenario import Scenario
@@ -47,7 +47,7 @@ T = TypeVar("T")
 class Frame:
     """One frame of a run: it shows the moment `alpha` (0 … 1) of the way from `before` to `after`.
 
-    refused: the jumps that were not made so far, and why.
+    refused: the jumps that were not made so far, and why; of the last frame also which moves never began.
     """
 
     number: int
@@ -117,6 +117,19 @@ class Act:
                      for why in script.refused)
 
 
+def ended(scenario: Scenario, act: Act) -> tuple[str, ...]:
+    """What a run has refused by its last frame, which moves never had their turn, and which pictures somebody was followed without."""
+    from ..footage import lost_frames  # slow to load, for those only who follow footage
+
+    filmed = [character.controller.footage for character in act.world.characters if isinstance(character.controller, Filmed)]
+    lines = [line for footage in filmed for line in lost_frames(footage)]
+    for character, script in zip(act.world.characters, act.scripts):
+        left = sum(move.runs or move.jump is not None or move.goal is not None for move in script.moves[script.index + 1:])
+        if left:
+            lines.append(f"{character.name}: the film is over after {scenario.duration:g} s, before {left} of {len(script.moves)} moves begin")
+    return (*act.refused, *lines)
+
+
 def acts(scenario: Scenario, controller: Any) -> Iterator[Act]:
     """The run before the first step and after every one, without end."""
     world, props = opening(scenario, controller), scenario.stage()
@@ -145,7 +158,8 @@ def worlds(scenario: Scenario, controller: Any) -> Iterator[World]:
 def run(scenario: Scenario, controller: Any) -> Iterator[Frame]:
     """Every frame of a scenario, in order."""
     for number, before, after, alpha in _sampled(acts(scenario, controller), scenario):
-        yield Frame(number, number / scenario.fps, before.world, after.world, alpha, before.refused)
+        refused = before.refused if number < scenario.frames - 1 else ended(scenario, before)
+        yield Frame(number, number / scenario.fps, before.world, after.world, alpha, refused)
 
 
 def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
@@ -159,7 +173,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
     lately: deque[World] = deque(maxlen=PLOTTED if any(shot.panels for shot in scenario.shots) else 1)
     for number, (first, old), (second, new), alpha in _sampled(_kept(takes(scenario, controller), lately), scenario):
         before, after = first.world, second.world
-        frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused)
+        frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused if number < scenario.frames - 1 else ended(scenario, first))
         for line in first.refused:
             told.setdefault(line, frame.time)
         why = tuple(part for line, since in told.items() if frame.time < since + REFUSED for part in broken(line))

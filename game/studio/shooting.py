@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,8 +44,9 @@ class Plan:
                    for what in ("dropped", "corrupted")}}
 
 
-def shoot(plan: Plan, folder: str | Path, controller: Any, stage: Any) -> Iterator[int]:
-    """Film a plan into a folder, with a `gambol.game.hosts.Offscreen`; the number of pictures drawn for each frame as it is done.
+def shoot(plan: Plan, folder: str | Path, controller: Any, stage: Any, tell: Callable[[str], None] = lambda line: None) -> Iterator[int]:
+    """Film a plan into a folder, with a `gambol.game.hosts.Offscreen`; the number of pictures drawn for each frame as it is done. tell: hears
+    of each jump that was not made and each place not reached, in the end.
 
     FootageError where the folder holds anything else, or a lens can't be drawn; OutputError where nothing can be written.
     """
@@ -78,6 +79,8 @@ def shoot(plan: Plan, folder: str | Path, controller: Any, stage: Any) -> Iterat
     truth.write(path, film.fps)
     write(path / "motion.bvh", takes(moments), film.fps)
     complete(path, truth.people)
+    for line in frame.refused:
+        tell(line)
 
 
 def _there(path: Path, lens: Lens, number: int, fate: str) -> bool:

@@ -58,7 +58,7 @@ class Filmed(Controller):
 
         footage = read_footage(folder)
         who = person_in(footage, person)
-        checked(footage, masks)
+        footage = checked(footage, masks)
         if start is not None and start.suffix.lower() == ".toml":
             surface, pose = clicked_pose(footage, start)
             begun = (settled(footage, Tracker(surface, footage.lenses, float(footage.fps)), pose, who, masks),)

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from gambol.game.cli import app
 from gambol.game.hosts.events import PadState
 from gambol.game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, key_names
-from gambol.game.input.remap import BindingsError, as_toml, clashes, load, remapped, user_file
+from gambol.game.input.remap import BindingsError, as_toml, clashes, load, remapped, shared, user_file
 
 
 def read(tmp_path, text):
@@ -66,6 +66,8 @@ def test_a_file_changes_only_what_it_names(tmp_path):
     ('keys.pause = "R"', "keys.pause: R already does 'reset'"),
     ('keys.pause = "W"', "keys.pause: W already does 'forward'"),
     ('buttons.step = "X"', "buttons.step: X already does 'rewind'"),
+    ('keys.forward = "I"\nkeys.back = "i"', "keys.back: I already does 'forward'"),
+    ('buttons.turn_right = "LEFT"', "buttons.turn_right: LEFT already does 'turn_left'"),
     ("keys.forward = [3]", "keys.forward: needs names of keys in quotes"),
     ("keys = 3", "keys: needs to be a table"),
     ("[mouze]", "mouze: unknown; choose from keys, buttons, sticks, mouse"),
@@ -91,6 +93,15 @@ def test_no_file_a_folder_and_no_text(tmp_path):
 def test_what_lasts_may_share_a_key_and_so_may_two_modes(tmp_path):
     assert read(tmp_path, 'keys.slow = "F"').row("slow").keys == ("F",)  # F also keeps facing
     assert read(tmp_path, 'keys.resume = "P"').pressed_by("P", mode=REWOUND) == ("resume",)
+
+
+def test_a_key_that_does_two_things_is_told_of(tmp_path):
+    assert not shared(DEFAULT)
+    mine = tmp_path / "mine.toml"
+    mine.write_text('keys.run = ["I", "I"]\nkeys.strafe = "I"\nbuttons.slow = "RT"')
+    said = CliRunner().invoke(app, ["bindings", "--bindings", str(mine)])
+    assert said.exit_code == 0 and said.stderr.splitlines() == [
+        f"gambol: {mine}: keys.run and keys.strafe share I: it does both", f"gambol: {mine}: buttons.run and buttons.slow share RT: it does both"]
 
 
 some = st.lists(st.sampled_from(sorted(key_names.KEYS)), max_size=3, unique=True).map(tuple)

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from gambol.game import hosts
 from gambol.game import cli
+from gambol.game.cli import film_jobs
 from gambol.game.app.hints import remember
 from gambol.game.character import Build
 from gambol.game.scenario.scenario import load
@@ -40,6 +41,9 @@ class Stage:
 
     def __exit__(self, *error):
         pass
+
+    def resize(self, size):
+        self.size = size
 
     def frame(self, scene):
         Stage.scenes.append(scene)
@@ -117,11 +121,14 @@ def test_motion(short, tmp_path):
     assert (tmp_path / "b-A.bvh").exists() and (tmp_path / "b-B.bvh").exists()
 
 
-@pytest.mark.parametrize("command", [("render", "a.mp4"), ("render", "a.bvh"), ("export", "a.glb")])
-def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, command):
+@pytest.mark.parametrize("command", [("render", "a.mp4"), ("render", "a.bvh"), ("export", "a.glb"), ("strip", "a.png"), ("film", "footage"),
+                                     ("gallery", "page")])
+def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, command, monkeypatch):
+    monkeypatch.setattr(film_jobs, "somebody", lambda *_: Glide())
     short.write_text(SHORT.replace("duration = 0.5", "duration = 4").replace("{ for = 0.5, velocity = [1, 0, 0] }", "{ jump_to = [0, 40] }"))
-    done = gambol(command[0], short, "-o", tmp_path / command[1])
-    assert done.exit_code == 0 and done.output.count("gambol: A: no jump to (0, 0, 40): ") == 1
+    done = gambol(command[0], short, "-o", tmp_path / command[1], *(["--width", 32, "--fps", 5] if command[0] == "film" else []))
+    said = f"gambol: {short.stem}: A: " if command[0] == "gallery" else "gambol: A: "
+    assert done.exit_code == 0 and done.output.count(f"{said}no jump to (0, 0, 40): ") == 1, done.output
 
 
 @pytest.mark.parametrize(("arguments", "says"), [
@@ -239,6 +246,10 @@ def test_help_comes_without_loading_the_rest():
     assert done.stdout.strip() == ""
     done = subprocess.run([sys.executable, "-m", "gambol.game.cli", "--help"], capture_output=True, text=True)
     assert done.returncode == 0 and "render" in done.stdout
+
+
+def test_a_size_is_read_as_it_is_told():
+    assert cli.pixels_of("1280x720") == cli.pixels_of("1280 × 720") == cli.pixels_of("1280X720") == (1280, 720)
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(Build)])

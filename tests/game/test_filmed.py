@@ -125,14 +125,15 @@ def test_fields_of_footage_and_of_actors_do_not_mix(shots, tmp_path):
     tells(tmp_path, SCENE, "Filmed", "Filmed", "cameras.toml: cam0")
 
 
-def test_broken_footage_is_told_before_anything_is_played(shots):
+def test_broken_footage_is_told_before_anything_is_played_and_lost_frames_after_it(shots, tmp_path):
     frame = shots / "cam1" / "frame_00003.png"
     Image.new("RGB", (96, 80)).save(frame)
     with pytest.raises(FootageError, match=r"frame_00003.png: 96 × 80 pixels, but cam1 has 96 × 96"):
         Filmed.load(shots, Glide())
     frame.unlink()
-    with pytest.raises(FootageError, match=r"frame_00003.png: No such file"):
-        Filmed.load(shots, Glide())
+    assert Filmed.load(shots, Glide()).footage.lost == {("cam1", "frame"): (3,)}
+    told = [frame.refused for frame in film.run(load(written(tmp_path, SCENE)), Glide())]
+    assert not any(told[:-1]) and told[-1] == (f"{shots / 'cam1'}: 1 of 6 frames are not there: 3",)
     assert Filmed.load(shots, Glide(), masks=True).masks
     (shots / "truth.npz").unlink()
     with pytest.raises(FootageError, match=r"truth.npz.*--start"):

@@ -127,8 +127,6 @@ def test_what_cannot_be_tracked_is_told_in_a_line(footage, tmp_path):
     np.savez(broken / "truth.npz", joints=np.zeros((6, 1, 22, 3)))
     one_line(run(broken, "-o", out), "truth.npz", "name a motion file")
     broken = copied(footage, tmp_path / "two")
-    (broken / "cam1" / "frame_00003.png").unlink()
-    one_line(run(broken, "-o", out), "frame_00003.png")
     whole = (footage.path / "cam1" / "frame_00003.png").read_bytes()
     (broken / "cam1" / "frame_00003.png").write_bytes(whole[:len(whole) // 2])
     one_line(run(broken, "-o", out), "frame_00003.png", "truncated")
@@ -144,7 +142,7 @@ def test_what_cannot_be_tracked_is_told_in_a_line(footage, tmp_path):
     for old, new, says in (("matrix = [[", "matrix = [[nan, 0, 0], [", "cam0.matrix: needs 3 × 3 finite numbers"),
                            ("translation = [", "translation = [nan, ", "cam0.translation: needs 3 finite numbers"),
                            ("[96, 96]", "[96, 95]", "frame_00000.png: 96 × 96 pixels, but cam0 has 96 × 95"),
-                           ('name = "cam2"', 'name = "left"', "No such file")):
+                           ('name = "cam2"', 'name = "left"', "is not there, nor is any frame of left")):
         broken = copied(footage, tmp_path / str(len(list(tmp_path.iterdir()))))
         (broken / "footage.json").write_text(json.dumps(about | {"people": ["Ann"], "complete": True, "dropped": {}, "corrupted": {}}))
         text = (broken / "cameras.toml").read_text()
@@ -168,6 +166,36 @@ def test_dropped_frames_are_none(footage, tmp_path):
     about = json.loads((broken / "footage.json").read_text())
     (broken / "footage.json").write_text(json.dumps(about | {"dropped": {"cam2": [2]}}))
     assert [one is None for one in seen_in(read_footage(broken), 2)] == [False, False, True]
+
+
+@pytest.mark.parametrize("kind", ["frame", "mask"])
+def test_lost_frames_are_told_and_gone_over_as_far_as_others_tell(footage, tmp_path, kind):
+    broken, words = copied(footage, tmp_path / "one"), ["--masks"] if kind == "mask" else []
+    for camera, numbers in (("cam0", [2]), ("cam1", [2, 3, 5]), ("cam2", [2])):  # in frame 2 nobody sees anything
+        for number in numbers:
+            (broken / camera / f"{kind}_{number:05d}.png").unlink()
+    done = run(broken, "-o", tmp_path / "a.bvh", *words)
+    told = [line for line in done.output.splitlines() if "not there" in line]
+    assert done.exit_code == 0 and len(told) == 3 and f"cam1: 3 of 6 {kind}s are not there: 2–3, 5" in told[1], done.output
+    clip = load_motion(tmp_path / "a.bvh")
+    assert len(clip) == 6
+    np.testing.assert_allclose(clip.root, footage.truth()["joints"][:, 0, 0], atol=0.05)
+    for camera in ("cam0", "cam1", "cam2"):
+        (broken / camera / f"{kind}_00000.png").unlink()
+    one_line(run(broken, "-o", tmp_path / "b.bvh", *words), f"no camera has the first {kind}")
+    for number in range(6):
+        (broken / "cam0" / f"{kind}_{number:05d}.png").unlink(missing_ok=True)
+    one_line(run(broken, "-o", tmp_path / "b.bvh", *words), f"{kind}_00000.png: is not there, nor is any {kind} of cam0")
+
+
+def test_nobody_is_foretold_for_long(footage, tmp_path):
+    broken = copied(footage, tmp_path / "one")
+    about = json.loads((broken / "footage.json").read_text())
+    (broken / "footage.json").write_text(json.dumps(about | {"fps": 5}))  # 3 frames are longer than 0.3 s
+    for camera in ("cam0", "cam1", "cam2"):
+        for number in (2, 3, 4):
+            (broken / camera / f"frame_{number:05d}.png").unlink()
+    one_line(run(broken, "-o", tmp_path / "a.bvh"), "no camera has frames 2 to 4")
 
 
 def mp4(path, pictures, fps=30):

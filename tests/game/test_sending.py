@@ -5,11 +5,13 @@ from types import SimpleNamespace
 
 import pytest
 from pythonosc.osc_packet import OscPacket
+from typer.main import get_command
 
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.live import SenderError
 
 from gambol.game import hosts
+from gambol.game.cli import app, live
 from gambol.game.cli.base import Preset
 from gambol.game.cli.play import show
 from gambol.game.hosts import KeyEvent
@@ -47,6 +49,23 @@ def test_whoever_is_played_is_sent_frame_by_frame(listener):
     game.close()
     game.sending.send(game.now.after)  # nobody listens any more, and nothing breaks
     assert game.sending.lost == 1
+
+
+def test_every_program_that_is_named_is_sent_to_once(listener):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        other.settimeout(5.0)
+        first, second = (f"127.0.0.1:{one.getsockname()[1]}" for one in (listener, other))
+        with live.sent([first, second, first]) as sender:
+            one = Character("P", Glide(), Glide().start())
+            sender.send(one.controller.skeleton, one.state.pose, one.state.ground, 0.5, 1.0)
+        assert [said(each)["/VMC/Ext/T"][0] for each in (listener, other)] == [0.5, 0.5]
+        listener.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            listener.recv(8)
+    for command in ("play", "reconstruct"):  # as they are named on the command line
+        named = next(one for one in get_command(app).commands[command].params if one.name == "send")
+        assert named.multiple
 
 
 def test_a_body_made_of_points_goes_before_its_performer():

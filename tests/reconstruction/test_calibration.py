@@ -171,10 +171,26 @@ def test_the_next_day_all_is_known(tmp_path):
     assert again.skeleton.names == SKELETON.names and again.known.height == pytest.approx(somebody.known.height, abs=1e-3)
 
 
+@pytest.mark.parametrize("size", [0.85, 0.97, 1.0, 1.03, 1.15])
+def test_what_was_kept_of_somebody_of_another_size_is_told(tmp_path, size):
+    somebody, places, turns = wearer(np.random.default_rng(2))
+    save(tmp_path / "me.toml", somebody)
+    again = load(tmp_path / "me.toml", CONTROLS)
+    for place, turn in zip(size * places, turns, strict=True):
+        again(place, turn)
+        assert somebody.seems is None
+    if abs(size - 1.0) < 0.05:
+        assert again.seems is None
+    else:
+        assert again.seems == pytest.approx(size * somebody.known.height, rel=0.03)
+
+
 @pytest.mark.parametrize(("line", "instead", "names"), [
     ("[room]", "[hall]", "room"), ("heading =", "heading = true #", "room.heading"), ("size =", "size = 9 #", "room.size"),
     ("LeftArm =", "LeftArm = [1, 2] #", "bones.LeftArm"), ("offset =", "offset = [nan, 0, 0] #", "points.root.offset"),
-    ('[points."head"]', '[points."hat"]', "points"), ("shift =", "shift = [[ #", "")])
+    ('[points."head"]', '[points."hat"]', "points"), ("shift =", "shift = [[ #", ""),
+    ("unsure =", "unsure = -1 #", r"points.root.unsure: needs a number, from 0"), ("LeftArm =", "LeftArm = [-0.14, 0, 0] #", "bones.LeftArm: ends"),
+    ("RightLeg =", "RightLeg = [0, 0, 0] #", "bones.RightLeg: ends")])
 def test_files_that_are_no_calibration_are_told_of(tmp_path, line, instead, names):
     path = tmp_path / "me.toml"
     save(path, wearer(np.random.default_rng(2))[0])

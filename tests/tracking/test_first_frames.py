@@ -5,7 +5,7 @@ import pytest
 from bodies import cameras, masks, stick_body, stride
 
 from gambol.controllers.body import human
-from gambol.controllers.tracking import ClickError, Tracker, clicked, fitted_shape, read_clicks
+from gambol.controllers.tracking import ClickError, Tracker, clicked, exchanged, fitted_shape, read_clicks
 from gambol.controllers.tracking.cameras import ring
 from gambol.controllers.tracking.silhouettes import shaped
 from gambol.controllers.tracking.twists import chain_of, posed
@@ -41,6 +41,8 @@ def test_clicks_are_read_and_mistakes_told(tmp_path):
         assert all(word in str(told.value) for word in ("c.toml", *words)) and "\n" not in str(told.value)
     file.write_text("width = 1280\n[cam01]\nLeftArm = [100, 50.5]\n")
     assert read_clicks(file, LENSES) == {"cam01": {"LeftArm": (50.0, 25.25)}}
+    file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes().replace(b"\n", b"\r\n"))  # as Windows' editors write it
+    assert read_clicks(file, LENSES) == {"cam01": {"LeftArm": (50.0, 25.25)}}
     fails("[cam09]\n", "cam09", "cam01")
     fails("[cam01]\nElbow = [1, 2]\n", "Elbow", "LeftForeArm")
     fails("[cam01]\nLeftArm = [1]\n", "cam01.LeftArm", "x and y")
@@ -72,6 +74,30 @@ def test_a_click_that_slipped_is_named(joint):
     told["cam02"][joint] = (5.0, 5.0)
     with pytest.raises(ClickError, match=f"cam02.{joint} is .* from where the other clicks have it"):
         clicked(LENSES, told, "paper")
+
+
+def mirrored(clicks, parts, cameras):
+    """Left and right exchanged of some parts in some cameras."""
+    other = {f"{one}{part}": f"{two}{part}" for part in parts for one, two in (("Left", "Right"), ("Right", "Left"))}
+    return {camera: {other.get(joint, joint) if camera in cameras else joint: at for joint, at in seen.items()} for camera, seen in clicks.items()}
+
+
+ARMS, LEGS = ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "Toe")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_left_and_right_exchanged_are_found(seed):
+    chain = chain_of(human(1.5 + 0.15 * seed), "paper")
+    told = clicks_of(chain, stride(chain, 0.1 + 0.2 * seed), np.random.default_rng(seed))
+    everywhere = [lens.name for lens in LENSES]
+    assert exchanged(LENSES, told) == []
+    for parts, words in ((ARMS + LEGS, "all of left and right"), (ARMS, "LeftArm and RightArm"), (LEGS, "LeftUpLeg and RightUpLeg"),
+                         (ARMS[1:], "LeftForeArm and RightForeArm"), (ARMS[2:], "LeftHand and RightHand"), (LEGS[1:], "LeftLeg and RightLeg")):
+        line, = exchanged(LENSES, mirrored(told, parts, everywhere))
+        assert words in line
+    for parts in (ARMS + LEGS, ARMS, ARMS[1:], LEGS, LEGS[2:]):  # in one camera alone
+        lines = exchanged(LENSES, mirrored(told, parts, everywhere[1:2]))
+        assert lines and all(line.startswith("cam0") and line.partition(" and ")[0].partition("Left")[2] in parts for line in lines)
 
 
 def test_a_shape_is_as_tall_and_as_wide_as_asked():

@@ -36,6 +36,8 @@ from .worn import Calibration
 
 _FAR, _TURN = 100.0, 360.0
 """Nothing in a room is farther away [m], no rotation vector longer [degrees]."""
+_ALIKE = 0.2
+"""No bone ends farther [m] from where the standard body's does, lengths as of a standard body."""
 
 
 def save(path: str | Path, wearer: Wearer) -> None:
@@ -75,12 +77,15 @@ def load(path: str | Path, controls: ControlPoints) -> Wearer:
         own = _table(path, points[name], f"points.{name}")
         offsets[s] = _numbers(path, f"points.{name}.offset", own.get("offset"), 3, 1.0)
         mounts[s], stood[s] = (exp(np.radians(_numbers(path, f"points.{name}.{kind}", own.get(kind), 3, _TURN))) for kind in ("mount", "stood"))
-        unsure[s] = _numbers(path, f"points.{name}.unsure", own.get("unsure"), 1, 1.0)[0]
+        unsure[s] = _numbers(path, f"points.{name}.unsure", own.get("unsure"), 1, 1.0, least=0.0)[0]
     limbs = np.array([SKELETON.offsets[0], *(_numbers(path, f"bones.{name}", bones.get(name), 3, 1.0) for name in SKELETON.names[1:])])
+    for name, away in zip(SKELETON.names, np.linalg.norm(limbs - SKELETON.offsets, axis=-1), strict=True):
+        if away > _ALIKE:
+            raise StreamError(f"{path}: bones.{name}: ends {100 * away:.0f} cm from where a standard body's does, and so does nobody's")
     there = np.isin(JOINTS, controls.joints)
     known = Calibration(Stood(np.zeros(1), np.array([1.0 / size]), np.zeros(1, int), offsets[None], stood[None], there[None]), limbs, offsets, mounts,
                         floor, (0.0, unsure, 0.0), 1)
-    return Wearer(controls, known, np.array([*shift, math.radians(heading)]), level)
+    return Wearer(controls, known, np.array([*shift, math.radians(heading)]), level, kept=True)
 
 
 def _row(numbers: np.ndarray) -> str:
@@ -93,11 +98,12 @@ def _table(path: str | Path, found: Any, name: str) -> dict[str, Any]:
     return found
 
 
-def _numbers(path: str | Path, name: str, found: Any, count: int, most: float) -> np.ndarray:
-    """So many numbers, none larger than `most`. StreamError, naming the field, for anything else."""
+def _numbers(path: str | Path, name: str, found: Any, count: int, most: float, least: float | None = None) -> np.ndarray:
+    """So many numbers, none larger than `most`, nor smaller than `least`, -most by default. StreamError, naming the field, for anything else."""
+    least = -most if least is None else least
     rows = [found] if count == 1 else found
     if not (isinstance(rows, list) and len(rows) == count and
-            all(isinstance(one, (int, float)) and not isinstance(one, bool) and abs(one) <= most for one in rows)):
+            all(isinstance(one, (int, float)) and not isinstance(one, bool) and least <= one <= most for one in rows)):
         wanted = "a number" if count == 1 else f"{count} numbers in brackets"
-        raise StreamError(f"{path}: {printable(name)}: needs {wanted}, from {-most:g} to {most:g}")
+        raise StreamError(f"{path}: {printable(name)}: needs {wanted}, from {least:g} to {most:g}")
     return np.array(rows, float)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
 
-from ...body import Skeleton, yaw
+from ...body import Skeleton, forward_kinematics, yaw
 from ..control_points import ControlPoints
 from ..live import Placement
+from ..pose_vector import SKELETON
 from .calibration_network import CalibrationNetwork
 from .moved import BEFORE
 from .set_poses import fitted
@@ -18,10 +20,15 @@ from .worn import Calibration, calibrated
 
 MOVING = STRIDE * (FRAMES + 1)
 """So many frames of 1/60 s are heard, five seconds."""
+_HEAD = WORN.index("Head")
 EASE = 60
 """In so many frames what is told anew takes the place of what was known."""
 LEVELLED = 0.3
 """A room's floor that is farther than this [m] from its height 0 was never levelled."""
+UPRIGHT = 0.95
+"""Who moves about holds his head no lower than he stands in one moment of twenty."""
+LIKE = 0.94, 1.06
+"""So much over or below a calibration's height is nobody else's: standing tells it to 2 %, shoes and carriage add some."""
 
 
 def calibratable(controls: ControlPoints, turns: np.ndarray) -> bool:
@@ -38,14 +45,20 @@ def stance(controls: ControlPoints, places: np.ndarray, turns: np.ndarray) -> in
 
 class Wearer:
     """Whoever wears trackers on `controls`. known: how they are worn. ground: (3,) how the world lies to the room: x, z, lengths as of a standard body, and
-    heading [rad]. level: [m] the room's floor. network: to hear them move with; none, where that is over."""
+    heading [rad]. level: [m] the room's floor. network: to hear them move with; none, where that is over. kept: whether it was told another day.
+    seems: how tall [m] whoever wears the trackers seems to be, where what was kept is of somebody of another size; None while nothing speaks for that."""
 
-    def __init__(self, controls: ControlPoints, known: Calibration, ground: np.ndarray, level: float = 0.0, network: CalibrationNetwork | None = None):
+    def __init__(self, controls: ControlPoints, known: Calibration, ground: np.ndarray, level: float = 0.0, network: CalibrationNetwork | None = None,
+                 kept: bool = False):
         self.controls, self.known, self.ground, self.level, self._network = controls, known, np.asarray(ground, float), level, network
         self._slots = slots(controls)
         self._heard: list[tuple[np.ndarray, np.ndarray]] = []
         self._before: Calibration | None = None
         self._eased = 0
+        self.seems: float | None = None
+        self._measured = kept and JOINTS[_HEAD] in controls.joints
+        self._heads: deque[float] = deque(maxlen=4 * MOVING)
+        self._counted = 0
 
     @staticmethod
     def standing(controls: ControlPoints, placement: Placement, places: np.ndarray, turns: np.ndarray, network: CalibrationNetwork) -> Wearer:
@@ -81,6 +94,8 @@ class Wearer:
         (n, 3, 3); NaN where not known. A point is not known while its tracker's turn is not. Call it 60 times a second."""
         wide = _wide(self._slots, self.level, places, turns)
         self._hear(*wide)
+        if self._measured:
+            self._measure(*wide)
         points, turned = self._joints(self.known, *wide)
         if self._before is not None:
             share = self._eased / EASE
@@ -96,6 +111,17 @@ class Wearer:
         worn = ", ".join(f"{name.partition('+')[0]} {100 * np.linalg.norm(known.offsets[s]) / scale:.0f} ± {100 * known.unsure[1][s] / scale:.0f}"
                          for name, s in zip(names, self._slots, strict=True))
         return f"{known.height:.2f} m tall; trackers sit beside their joints by cm: {worn}" + ("; move about" if self.moving else "")
+
+    def _measure(self, places, turns):
+        """How high heads are held says how tall somebody is."""
+        high = float(self.known.joints(places, turns)[0][_HEAD, 1])
+        if not np.isfinite(high):
+            return
+        self._heads.append(high)
+        self._counted += 1
+        if self._counted % MOVING == 0:
+            share = float(np.quantile(self._heads, UPRIGHT)) / head_height(self.skeleton)
+            self.seems = None if LIKE[0] < share < LIKE[1] else share * self.known.height
 
     def _joints(self, known, places, turns):
         points, turned = known.joints(places, turns)
@@ -115,6 +141,15 @@ class Wearer:
         self._before, self._eased = self.known, 0
         self.known = calibrated(self._network, self.known.stood, places[pairs], turns[pairs])
         self._network, self._heard = None, []
+
+
+def head_height(skeleton: Skeleton) -> float:
+    """How high [m] the head's joint is of somebody who stands upright on a floor at 0."""
+    def above(body: Skeleton) -> np.ndarray:
+        return forward_kinematics(body, np.zeros(3), np.tile(np.eye(3), (len(body), 1, 1)))[0][:, 1]
+    feet = [SKELETON.index(name) for name in ("LeftFoot", "RightFoot")]
+    own = above(skeleton)
+    return float(own[JOINTS[_HEAD]] - own[feet].mean() + (above(SKELETON) + SKELETON.offsets[0, 1])[feet].mean())
 
 
 def _level(placement: Placement) -> float:

@@ -8,9 +8,9 @@ from .placing import SIZES, Placement, Standing, placed, stances
 from .sources import Recorded
 from .timeline import Timeline
 from .tracker_map import StreamError, read_map, read_tables, usual_map
-from .vmc_sender import Sender, SenderError, address
+from .vmc_sender import Sender, SenderError, Senders, address
 
 __all__ = [
-    "HOST", "PORT", "SIZES", "SUFFIX", "PacketLog", "PacketLogError", "Placement", "Recorded", "Replayed", "Sender", "SenderError", "Standing", "Stream", "StreamError",
+    "HOST", "PORT", "SIZES", "SUFFIX", "PacketLog", "PacketLogError", "Placement", "Recorded", "Replayed", "Sender", "SenderError", "Senders", "Standing", "Stream", "StreamError",
     "Timeline", "Trackers", "address", "placed", "read_map", "read_tables", "stances", "usual_map",
 ]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import socket
+from collections.abc import Sequence
 
 import numpy as np
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
@@ -92,3 +93,25 @@ class Sender:
     def close(self) -> None:
         """Send no more."""
         self._socket.close()
+
+
+class Senders:
+    """Sends bodies to several programs at once, each once. places: as `address` reads them. SenderError if any of them is none."""
+
+    def __init__(self, places: Sequence[str]):
+        self._all = [Sender(*place) for place in dict.fromkeys(map(address, places))]
+
+    @property
+    def lost(self) -> int:
+        """How many frames could not be sent, each program's."""
+        return sum(one.lost for one in self._all)
+
+    def send(self, skeleton: Skeleton, pose: Pose, ground: np.ndarray, time: float, sure: float = 1.0) -> None:
+        """See `bundle`."""
+        for one in self._all:
+            one.send(skeleton, pose, ground, time, sure)
+
+    def close(self) -> None:
+        """Send no more."""
+        for one in self._all:
+            one.close()
