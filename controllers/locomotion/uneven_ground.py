@@ -127,8 +127,8 @@ def _loose(m, tops, floor, foot, place, dt):
 
 @kernel
 def _between(m, body, ahead, tops, floor, foot, highest, line):
-    """How high the ground lies at most between where a foot left and where it comes down, and below its way from now on from heel to tip, as far as it
-    can be stepped over from `highest`. line: (3, 2) scratch."""
+    """How high the ground lies at most between where a foot left and where it comes down, and below its way from now on from heel to tip, slopes apart,
+    as far as it can be stepped over from `highest`. line: (3, 2) scratch."""
     ground, most = np.empty(3), -1e9
     for k in range(BETWEEN):
         share = (k + 1.0) / (BETWEEN + 1.0)
@@ -140,7 +140,8 @@ def _between(m, body, ahead, tops, floor, foot, highest, line):
         if 0.0 < ahead.shares[foot, k] < 1.0:
             line_ahead(m, body, foot, ahead, k, line)
             for i in range(3):
-                if ground_kernel(tops, line[i, 0], line[i, 1], floor, m.level, ground) and ground[0] <= highest + STEP:
+                found = ground_kernel(tops, line[i, 0], line[i, 1], floor, m.level, ground)
+                if found and ground[0] <= highest + STEP and ground[1] == 0.0 and ground[2] == 0.0:  # soles lie along a slope
                     most = max(most, ground[0])
     return most
 
