@@ -21,33 +21,29 @@ EDGE = 0.04
 @kernel
 def out_of_walls(m, tops, floor, foot, line, out):
     """Write into `out` (2,) how far x, z in the world [m] a foot with a centre line (3, 2) must go to be clear of all tops that are too high for a step, never
-    through them to their far side; whether it must."""
+    through them to their far side, nor out of one into another; whether it must."""
     stands, found = max(m.base[1 - foot], m.left[foot]), False
     out[0] = out[1] = 0.0
     for k in range(tops.shape[0]):
-        if tops[k, 7] != 0.0 or tops[k, 6] - floor <= stands + STEP or tops[k, 8] - floor > stands + PASSED:
+        if not (_reaches_in(tops, k, line, out[0], out[1], BESIDE) and _is_wall(m, tops, floor, stands, k)):
             continue
         c, s = tops[k, 2], tops[k, 3]
-        x, z = m.ground[0] - tops[k, 0], m.ground[1] - tops[k, 1]
-        across, along = c * x - s * z, s * x + c * z
+        across, along = _within(tops, k, m.ground[0], m.ground[1])
         beside, before = abs(across) - tops[k, 4], abs(along) - tops[k, 5]
-        if max(beside, before) <= 0.0 or max(beside, before) > FAR:  # it is over it, or far away
-            continue
-        if _stepped_onto(tops, k, across, along, beside, before):
-            continue
-        least, way_across, way_along = math.inf, 0.0, 0.0
+        least, free, way_across, way_along = math.inf, False, 0.0, 0.0
         for side in range(4):  # out to the left and right, and by both ends, but not beyond
             sign = 1.0 - 2.0 * (side % 2)
             if (beside > 0.0 and sign * across < 0.0) if side < 2 else (before > 0.0 and sign * along < 0.0):
                 continue
             need = 0.0
             for i in range(3):
-                x, z = line[i, 0] + out[0] - tops[k, 0], line[i, 1] + out[1] - tops[k, 1]
-                u, w = c * x - s * z, s * x + c * z
+                u, w = _within(tops, k, line[i, 0] + out[0], line[i, 1] + out[1])
                 if abs(u) < tops[k, 4] + BESIDE and abs(w) < tops[k, 5] + BESIDE:
                     need = max(need, (tops[k, 4] - sign * u if side < 2 else tops[k, 5] - sign * w) + BESIDE)
-            if need < least:
-                least, way_across, way_along = need, (sign * need if side < 2 else 0.0), (0.0 if side < 2 else sign * need)
+            u, w = (sign * need, 0.0) if side < 2 else (0.0, sign * need)
+            clear = _clear(m, tops, floor, stands, line, out[0] + c * u + s * w, out[1] - s * u + c * w)
+            if clear and not free or clear == free and need < least:
+                least, free, way_across, way_along = need, clear, u, w
         if 0.0 < least < math.inf:
             out[0] += c * way_across + s * way_along
             out[1] += -s * way_across + c * way_along
@@ -56,17 +52,51 @@ def out_of_walls(m, tops, floor, foot, line, out):
 
 
 @kernel
-def _stepped_onto(tops, k, across, along, beside, before):
-    """Whether somebody whose middle is across and along in top k's frame [m], so far outside its sides and ends, has something right before it that is no more than
+def _within(tops, k, x, z):
+    """How far across and along from top k's middle a place in the world lies [m]."""
+    dx, dz = x - tops[k, 0], z - tops[k, 1]
+    return tops[k, 2] * dx - tops[k, 3] * dz, tops[k, 3] * dx + tops[k, 2] * dz
+
+
+@kernel
+def _reaches_in(tops, k, line, x, z, beside):
+    """Whether a centre line (3, 2), moved by x, z [m], comes nearer to top k than that [m]."""
+    for i in range(3):
+        u, w = _within(tops, k, line[i, 0] + x, line[i, 1] + z)
+        if abs(u) < tops[k, 4] + beside and abs(w) < tops[k, 5] + beside:
+            return True
+    return False
+
+
+@kernel
+def _clear(m, tops, floor, stands, line, x, z):
+    """Whether a centre line (3, 2), moved by x, z [m], lies in no wall but top k."""
+    for i in range(tops.shape[0]):
+        if _reaches_in(tops, i, line, x, z, 0.0) and _is_wall(m, tops, floor, stands, i):
+            return False
+    return True
+
+
+@kernel
+def _is_wall(m, tops, floor, stands, k):
+    """Whether top k is too high to step on for feet that stand so high over the floor [m], and neither above them, below their body nor far away."""
+    if tops[k, 7] != 0.0 or tops[k, 6] - floor <= stands + STEP or tops[k, 8] - floor > stands + PASSED:
+        return False
+    across, along = _within(tops, k, m.ground[0], m.ground[1])
+    return 0.0 < max(abs(across) - tops[k, 4], abs(along) - tops[k, 5]) <= FAR and not _stepped_onto(tops, k, across, along)
+
+
+@kernel
+def _stepped_onto(tops, k, across, along):
+    """Whether somebody whose middle is across and along in top k's frame [m] has something right before it, on the straight way to him, that is no more than
     a step lower, as on stairs."""
-    u = math.copysign(min(abs(across), tops[k, 4]) + (EDGE if beside >= before else 0.0), across)
-    w = math.copysign(min(abs(along), tops[k, 5]) + (EDGE if before > beside else 0.0), along)
+    u, w = min(max(across, -tops[k, 4]), tops[k, 4]), min(max(along, -tops[k, 5]), tops[k, 5])
+    far = math.hypot(across - u, along - w)
+    u, w = u + EDGE / far * (across - u), w + EDGE / far * (along - w)
     c, s = tops[k, 2], tops[k, 3]
     x, z = tops[k, 0] + c * u + s * w, tops[k, 1] - s * u + c * w
     for i in range(tops.shape[0]):
-        dx, dz = x - tops[i, 0], z - tops[i, 1]
-        c, s = tops[i, 2], tops[i, 3]
-        u, w = c * dx - s * dz, s * dx + c * dz
+        u, w = _within(tops, i, x, z)
         high = tops[i, 6] + tops[i, 7] * w
         if abs(u) <= tops[i, 4] and abs(w) <= tops[i, 5] and tops[k, 6] - STEP <= high < tops[k, 6]:
             return True

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
-from ..navigation.passing import NEAR, out_kernel, slow_kernel
+from ..navigation.passing import NEAR, STEP, out_kernel, slow_kernel
 from .memory import put
 
 LAG, BRAKE = 0.1, 6.0
@@ -19,10 +19,13 @@ BACK = 0.3
 """Who is too near to a wall as he walks is led away from it no faster than this [m/s]."""
 GIVES = 0.01
 """So much nearer than that [m] a step may end, and the next one makes up for it."""
+LEAPT = 1.3
+"""What is no higher over the floor than this [m] may be leapt onto: it does not hold up who wants to leap."""
 
 
 def held_up(memory: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
-    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`, but for who wants to leap, onto one perhaps. floors: (N,) [m]."""
+    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap only towards those that nobody leaps onto.
+    floors: (N,) [m]."""
     if len(walls):
         hold_kernel(memory, floors, walls)
 
@@ -41,16 +44,16 @@ def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: n
 
 @kernel
 def hold_kernel(memory, floors, walls):
-    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands or wants to leap."""
+    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands."""
     velocity, rate = np.empty(2), np.empty(2)
     for n in range(memory.shape[0]):
         m = memory[n]
-        if m.settled or m.alert:
+        if m.settled:
             continue
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
         rate[0], rate[1] = velocity[0], velocity[1]
-        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, BRAKE, BACK):
+        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, BRAKE, BACK, LEAPT if m.alert else STEP):
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
             # nor does what is under way go on towards it
             x, z = velocity[0] - rate[0], velocity[1] - rate[1]
@@ -68,6 +71,6 @@ def beyond_kernel(memory, before, floors, walls, shifts):
     found = False
     for n in range(memory.shape[0]):
         m = memory[n]
-        if not m.alert and out_kernel(walls, m.ground[0], m.ground[1], floors[n], before[n], NEAR - GIVES, shifts[n]):
+        if out_kernel(walls, m.ground[0], m.ground[1], floors[n], before[n], NEAR - GIVES, shifts[n], LEAPT if m.alert else STEP):
             found = True
     return found

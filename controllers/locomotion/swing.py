@@ -133,14 +133,20 @@ def _foretold(m, body, foot, ahead, k, speed_x, speed_z, here):
     later = s * ahead.until[foot]
     if s <= 0.0 or s >= 1.0 or later > AHEAD:
         return 0.0, 0.0
+    line_ahead(m, body, foot, ahead, k, here)
+    return smooth(1.0 - later / AHEAD), min(ahead.way[foot, k, 0, 1], ahead.way[foot, k, 1, 1])
+
+
+@kernel
+def line_ahead(m, body, foot, ahead, k, here):
+    """Write a swinging foot's centre line (3, 2) in the world as it will be at moment k of its way, without giving way."""
     heel, ball = ahead.way[foot, k, 0], ahead.way[foot, k, 1]
     for i in range(2):
         goal = m.land[foot, i]
         here[1, i] = ball[2 * i] + goal + smoothest(m.offset[foot, i] - goal, m.offset_rate[foot, i], m.offset_push[foot, i],
-                                                    max(ahead.until[foot], SOONEST), s, 0)
+                                                    max(ahead.until[foot], SOONEST), ahead.shares[foot, k], 0)
         here[0, i] = here[1, i] + heel[2 * i] - ball[2 * i]
     with_toe(body, here)
-    return smooth(1.0 - later / AHEAD), min(heel[1], ball[1])
 
 
 @kernel

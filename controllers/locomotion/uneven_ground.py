@@ -14,7 +14,7 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation.passing import STEP
 from .foot_points import shown_kernel
-from .swing import smooth
+from .swing import SAMPLES, line_ahead, smooth
 from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, come_down, most_speed, on_stairs, under_kernel
 
@@ -44,10 +44,10 @@ TOUCHES, VOID = 0.035, 0.25
 
 
 @kernel
-def follow_ground(m, tops, floor, swing, dt):
+def follow_ground(m, body, ahead, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
-    body's level, which follows both. swing: the share of the cycle for which a foot swings."""
-    under, place, bears = np.empty(3), np.empty(2), np.empty(2)
+    body's level, which follows both. ahead: of the blend's feet (`foothold`). swing: the share of the cycle for which a foot swings."""
+    under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -84,17 +84,17 @@ def follow_ground(m, tops, floor, swing, dt):
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
-        over = _between(m, tops, floor, foot, max(under[0], m.left[foot]))
+        over = _between(m, body, ahead, tops, floor, foot, max(under[0], m.left[foot]), line)
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
-        body = path
+        bearing = path
         if over > max(under[0], m.left[foot]) + SAME:  # a foot passes over it, the body does not rise for that
             up, down = smooth(progress / RISES), smooth((progress - SINKS) / (1.0 - SINKS))
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
         m.base[foot] = min(max(path, rising, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
         m.high[foot] = m.base[foot] - under[0]
-        bears[foot] = min(m.base[foot], body)
+        bears[foot] = min(m.base[foot], bearing)
         if under[0] < m.left[foot]:  # the body sinks all the way down
             bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
         for i in range(2):
@@ -126,8 +126,9 @@ def _loose(m, tops, floor, foot, place, dt):
 
 
 @kernel
-def _between(m, tops, floor, foot, highest):
-    """How high the ground lies at most between where a foot left and where it comes down, as far as it can be stepped over from `highest`."""
+def _between(m, body, ahead, tops, floor, foot, highest, line):
+    """How high the ground lies at most between where a foot left and where it comes down, and below its way from now on from heel to tip, slopes apart,
+    as far as it can be stepped over from `highest`. line: (3, 2) scratch."""
     ground, most = np.empty(3), -1e9
     for k in range(BETWEEN):
         share = (k + 1.0) / (BETWEEN + 1.0)
@@ -135,6 +136,13 @@ def _between(m, tops, floor, foot, highest):
         z = m.left_at[foot, 1] + share * (m.coming[foot, 1, 1] + m.land[foot, 1] - m.left_at[foot, 1])
         if ground_kernel(tops, x, z, floor, m.level, ground) and ground[0] <= highest + STEP:
             most = max(most, ground[0])
+    for k in range(SAMPLES):
+        if 0.0 < ahead.shares[foot, k] < 1.0:
+            line_ahead(m, body, foot, ahead, k, line)
+            for i in range(3):
+                found = ground_kernel(tops, line[i, 0], line[i, 1], floor, m.level, ground)
+                if found and ground[0] <= highest + STEP and ground[1] == 0.0 and ground[2] == 0.0:  # soles lie along a slope
+                    most = max(most, ground[0])
     return most
 
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gambol.controllers.contract import Intent
+from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Physique
 from gambol.controllers.navigation import gap
 from gambol.controllers.navigation.passing import NEAR
@@ -97,3 +97,14 @@ def test_who_stands_at_a_wall_and_is_told_to_go_on_stays():
     wall = (Box((0.0, 1.2, 0.8), (3.0, 2.4, 1.0)),)
     frames = walked(somebody(), np.array([1.4, 0.0, 0.0]), wall, True, seconds=3.0)
     assert np.linalg.norm(frames[:, :2], axis=-1).max() < 0.15
+
+
+@pytest.mark.parametrize("speed", [0.4, 1.4, 3.0])
+def test_who_is_about_to_leap_is_held_up_by_what_nobody_leaps_onto(speed):
+    things = (Pillar((0.05, 0.0, 1.5), 0.2, 2.2),)
+    who = somebody()
+    state, frames = who.parts["locomotion"].start(), []
+    for _ in range(240):
+        state, _ = who.parts["locomotion"].step(state, Intent(np.array([speed, 0.0, 0.0]), around=things, aim=Leap(None, 0.4)), 1 / 60)
+        frames.append(state.ground)
+    assert least(np.array(frames), things) > NEAR - SLACK

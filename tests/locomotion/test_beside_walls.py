@@ -73,6 +73,15 @@ def test_the_next_tread_but_one_is_no_wall_to_who_comes_up_the_stairs():
     assert (led[:, 0] > 1.0 + BESIDE - 1e-9).all()
 
 
+@settings(max_examples=200, deadline=None)
+@given(st.floats(0.05, 0.3), st.floats(2.0, 3.0), st.floats(-0.15, 0.1), st.floats(-0.1, 0.1), st.floats(-3.0, 0.0))
+def test_who_stands_beside_stairs_has_no_foot_led_from_one_tread_into_the_next(far, z, aside, ahead, points):
+    """Treads are short: out by its end is the shorter way, but there is the next one."""
+    stairs = tuple(box((0.0, 0.085 * (n + 1), 1.0 + 0.29 * n), (2.0, 0.17 * (n + 1), 0.29)) for n in range(9))
+    line = np.array([1.0 + aside, z + ahead]) + np.outer([0.0, 0.175, 0.27], [np.sin(points), np.cos(points)])
+    assert (pushed(body(1.0 + far, z), stairs, line)[:, 0] > 1.0).all()
+
+
 def test_what_hangs_overhead_pushes_no_foot():
     line = np.array([[0.3, 0.0], [0.4, 0.0], [0.5, 0.0]])
     assert np.array_equal(pushed(body(), (box((0.8, 1.5, 0.0), (1.0, 1.0, 1.0)),), line), line)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.locomotion.tops import SEEN, ground_kernel, tops
-from gambol.controllers.navigation import floor_at
+from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.scaled import Scaled
 
 FPS = 60
@@ -162,3 +162,17 @@ def test_ground_is_what_navigation_says_it_is(boxes, x, z):
     found = ground_kernel(tops(around), x, z, 0.0, 0.0, out)
     expected = floor_at(x, z, around, SEEN)
     assert found and out[0] == pytest.approx(max(expected, 0.0), abs=1e-9)
+
+
+def test_who_turns_beside_a_kerb_lifts_his_feet_over_it(locomotion):
+    """In a turn feet swing round, over what the straight way between two steps misses."""
+    kerb, count = box((0.0, 0.07, 1.2), (1.2, 0.14, 0.8)), 48
+    rng = np.random.default_rng(1)
+    ground = np.stack([rng.uniform(-1.2, 1.2, count), rng.uniform(0.0, 0.6, count), rng.uniform(-np.pi, np.pi, count)], -1)
+    wish = np.stack([rng.uniform(0.3, 1.0, count), rng.choice([-2.0, 2.0], count), np.zeros(count)], -1)
+    state, deepest = locomotion.start(ground), np.zeros(count)
+    for _ in range(4 * FPS):
+        state, pose = locomotion.step(state, Intent(wish, around=(kerb,)), 1 / FPS)
+        points = contact_points(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
+        deepest = np.maximum(deepest, -gap(points.reshape(-1, 3), kerb).reshape(count, -1).min(1))
+    assert deepest.max() < 0.03, deepest.max()

@@ -42,11 +42,11 @@ def walls_of(around: Sequence[Any]) -> np.ndarray:
 
 
 @kernel
-def wall_kernel(walls, k, x, z, floor, bound, out):
-    """How far [m] a place on a floor [m] is from one of `walls_of`, endless where that holds nobody up; out: (3,) as `distance` has it. Of what is no nearer
-    than a bound [m], whether it holds anybody up is not asked."""
+def wall_kernel(walls, k, x, z, floor, bound, out, least=STEP):
+    """How far [m] a place on a floor [m] is from one of `walls_of`, endless where that holds nobody up, as what is no higher than `least` [m] over the floor;
+    out: (3,) as `distance` has it. Of what is no nearer than a bound [m], whether it holds anybody up is not asked."""
     low, high = walls[k, 6], walls[k, 7]
-    if walls[k, 8] != 0.0 or high <= floor + STEP or low >= floor + HEAD:
+    if walls[k, 8] != 0.0 or high <= floor + least or low >= floor + HEAD:
         return math.inf
     far = distance(x, z, walls[k, :6], out)
     if far >= bound:
@@ -66,9 +66,9 @@ def wall_kernel(walls, k, x, z, floor, bound, out):
 
 
 @kernel
-def slow_kernel(walls, x, z, floor, velocity, near, lag, brake, back):
+def slow_kernel(walls, x, z, floor, velocity, near, lag, brake, back, least=STEP):
     """Take from a velocity (2,) along x and z [m/s] what goes towards a wall faster than somebody can brake who begins to after `lag` [s] and brakes with
-    `brake` [m/s²], so that his middle comes no nearer than `near` [m]; whether anything was. back: so fast is led away [m/s] who is too near already."""
+    `brake` [m/s²], so that his middle comes no nearer than `near` [m]; whether anything was. back: so fast is led away [m/s] who is too near already; least: what is no higher over the floor [m] holds nobody up."""
     out, slowed = np.empty(3), False
     for _ in range(PASSES):
         for k in range(walls.shape[0]):
@@ -76,7 +76,7 @@ def slow_kernel(walls, x, z, floor, velocity, near, lag, brake, back):
             room = far - near
             allowed = brake * (math.sqrt(lag * lag + 2.0 * room / brake) - lag) if room > 0.0 else max(room / lag, -back)
             over = -velocity[0] * out[0] - velocity[1] * out[1] - allowed
-            if over > 1e-9 and wall_kernel(walls, k, x, z, floor, math.inf, out) < math.inf:
+            if over > 1e-9 and wall_kernel(walls, k, x, z, floor, math.inf, out, least) < math.inf:
                 velocity[0] += over * out[0]
                 velocity[1] += over * out[1]
                 slowed = True
@@ -105,14 +105,14 @@ def way_kernel(walls, x, z, floor, ahead, near, most, out):
 
 
 @kernel
-def out_kernel(walls, x, z, floor, since, near, shift):
+def out_kernel(walls, x, z, floor, since, near, shift, least=STEP):
     """Write how far (2,) x, z [m] somebody has to be moved so that no wall is nearer to his middle than `near` [m], or than it was before, at `since` (2,);
-    whether he has to be."""
+    whether he has to be. least: what is no higher over the floor [m] holds nobody up."""
     out, was, moved = np.empty(3), np.empty(3), False
     shift[0] = shift[1] = 0.0
     for _ in range(PASSES):
         for k in range(walls.shape[0]):
-            far = wall_kernel(walls, k, x + shift[0], z + shift[1], floor, near, out)
+            far = wall_kernel(walls, k, x + shift[0], z + shift[1], floor, near, out, least)
             if far >= near:
                 continue
             missing = min(near, distance(since[0], since[1], walls[k, :6], was)) - far
