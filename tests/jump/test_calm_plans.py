@@ -10,6 +10,8 @@ from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jump
 from gambol.controllers.locomotion import Locomotion
 
+from conftest import ahead
+
 
 def fastest(jump, made, *parts):
     """How fast [m/s] one of these joints moves at most."""
@@ -58,3 +60,24 @@ def test_who_idles_on_the_moon_does_not_hop_as_he_winds_up():
                 poses = [made.at(time) for time in np.arange(0.0, made.push_off, 1 / 15)]
                 high = [forward_kinematics(jump.skeleton, pose.root, pose.rotations)[0][toes, 1].max() for pose in poses]
                 assert max(high) < 0.04
+
+
+def test_who_walks_pushes_off_no_harder_than_legs_can(jump):
+    """Where feet are far apart one behind the other, and carry him past them: the next moments of the step are better."""
+    locomotion, wish = Locomotion.load(), np.array([1.1, 0.0, 0.0])
+    state, made = locomotion.start(), []
+    for n in range(220):
+        before = state.pose
+        state, _ = locomotion.step(state, Intent(wish), 1 / 60)
+        state = replace(state, previous=before, elapsed=1 / 60)
+        start = jump.start_of(state)
+        if n > 150 and n % 6 == 0 and start.single is None:
+            made += [jump.attempt(start, ahead(state, far), 0.0, None, ())[0] for far in (0.6, 0.8)]
+    made = [plan for plan in made if plan is not None]
+    assert made
+    for plan in made:
+        assert np.linalg.norm(plan.forces, axis=1).max() < 3.6 * 9.81 * jump.physique.mass, "times its weight"
+        times = np.arange(0.0, plan.touch_down, 1 / 60)
+        poses = [plan.at(t) for t in times]
+        places = forward_kinematics(jump.skeleton, np.stack([p.root for p in poses]), np.stack([p.rotations for p in poses]))[0]
+        assert np.linalg.norm(places[4:] - 2.0 * places[2:-2] + places[:-4], axis=-1).max() * 30**2 < 250.0, "m/s²"

@@ -29,6 +29,8 @@ AGAIN = 2
 """How high it leaves and where heels rise follow from where it goes: that is found so often again."""
 ASTRAY = 0.5
 """No soles are enough for who must leave so far from where it was estimated [m], at standard height."""
+HOPELESS = 0.12
+"""Nor where the pressure would have to lie so far outside them at first [m]: of 460 courses that could be kept to in the end none began with more than 0.06."""
 AGES = 12.0
 """Nobody winds up and pushes longer [s √(m/s²)] than this over the root of gravity."""
 LIGHTEST = 0.1
@@ -49,7 +51,7 @@ def grounded(physique: Physique, start: Start, way: Path, floor: float) -> Path:
         if scale > 1.0 and (sinking(slower, start, np.linspace(0.0, slower.wind_up, KNOTS))[2][:, 1] < (1.0 - LIGHTEST) * way.gravity[1]).any():
             break
         course = _course(physique, start, slower, planted, floor, None)
-        for _ in range(AGAIN):
+        for _ in range(AGAIN if course.outside < HOPELESS * physique.size else 0):
             if not np.linalg.norm(course.place[-1] - way.leave[[0, 2]]) < ASTRAY * physique.size:
                 course = course._replace(outside=np.inf)
                 break

@@ -17,6 +17,8 @@ from ..prior import BETWEEN, LEGS
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
+STANDER = 3.5
+"""And what both legs give that push off together: half as much again as from the deepest crouch at rest."""
 SLIP = 1.0
 """Soles slip on the floor under a force that leans farther: their friction."""
 ASIDE = 0.03
@@ -63,11 +65,11 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
         return f"too short to turn by {np.degrees(abs(way.turn)):.0f}°: that takes {least:.2f} s in the air"
     if way.push is None:
         return f"no push leaves the floor for {way.airtime:.2f} s in the air"
-    force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max()
-    legs = 1 if way.single else 2
-    if (way.running or way.push.springs) and force > RUNNER * legs * 9.81 * physique.strength:
-        return (f"{HARD} from this {'run' if way.running else 'hop'}: {force / 9.81:.1f} times its weight on Earth, "
-                f"where {'this one has' if legs == 1 else 'these have'} {RUNNER * legs * physique.strength:.1f}")
+    force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max() / 9.81
+    gives = physique.strength * (STANDER if not (way.running or way.push.springs) else RUNNER if way.single else 2.0 * RUNNER)
+    if force > gives:  # a push as short as that throws the limbs, too
+        return (f"{HARD} from this {'run' if way.running else 'hop' if way.push.springs else 'pace'}: {force:.1f} times its weight on Earth, "
+                f"where {'this one has' if way.single else 'these have'} {gives:.1f}")
     if way.course is not None and (way.course.outside > ASIDE * physique.size or way.course.lean > SLIP):
         gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.course.velocity[0])
         return f"too {'far' if gains else 'near'} for this {'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"

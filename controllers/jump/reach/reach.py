@@ -97,13 +97,13 @@ class Reach:
         return made, ""
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
-               around: Sequence[Any] = ()) -> tuple[Path, str]:
+               around: Sequence[Any] = (), heights: Sequence[float] = HEIGHTS) -> tuple[Path, str]:
         """The path to a place (3,) off a floor [m], and why it can't be gone, if so: a look at the place, then `arcs`; nothing is planned."""
         why = self.footing(start, place, floor, around)
         if why:
             return self.path(start, place, floor, airtime), why
         first = None
-        for way, why, _ in self.arcs(start, place, floor, airtime, around):
+        for way, why, _ in self.arcs(start, place, floor, airtime, around, heights):
             first = first or (way, why)
             if not why:
                 return way, ""
@@ -133,12 +133,12 @@ class Reach:
         return ""
 
     def arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
-             around: Sequence[Any] = ()) -> Generator[tuple[Path, str, int], float | None, None]:
+             around: Sequence[Any] = (), heights: Sequence[float] = HEIGHTS) -> Generator[tuple[Path, str, int], float | None, None]:
         """The paths to a place, why each can't be gone, if so, and in which haste, see `Start`: the usual one first; where something stands about then with
-        the legs drawn up and the arms down and, without an airtime, higher. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
+        the legs drawn up and the arms down and, without an airtime, higher: by `heights` times the airtime, which begin with 1. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
         in the plan along the last of them leaves out those along which it would as well."""
         first, hits = None, dict[bool, tuple[float, float]]()
-        for higher in HEIGHTS:
+        for higher in heights:
             flight = airtime if first is None else first.airtime * higher
             for low, tucked in WAYS if len(around) else WAYS[:1]:
                 if first is not None and higher > 1.0 and (not tucked or low in hits and self._still(*hits[low], first.airtime * higher)):
@@ -181,13 +181,13 @@ class Reach:
                 around: Sequence[Any] = ()) -> np.ndarray | None:
         """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from one that takes
         no effort: where it stands, or where a run would carry the body; to `GRID`, however far the refused one is. None if that can't be
-        reached either."""
+        reached either. It is looked for along arcs of the usual height alone: who would have to fly higher to get farther is offered a nearer one."""
         here = self.middle(start, floor)
 
         def reached(there: np.ndarray) -> bool:
             if len(around):
                 there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
-            return not self.survey(start, there, floor, airtime, around)[1]
+            return not self.survey(start, there, floor, airtime, around, HEIGHTS[:1])[1]
         run = start.velocity * FLAT * np.sqrt(9.81 * self.physique.size / -self.gravity[1])
         easy = here + np.array([[0.0]] if start.single is None else CARRIED) * run
         found = next((there for there in easy if reached(there)), None)

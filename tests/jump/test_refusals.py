@@ -1,0 +1,42 @@
+"""A leap that can not be made is refused without seeking what can not be found."""
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Refused
+from gambol.game.scene import Box
+
+grounded = import_module("gambol.controllers.jump.motion.grounded")
+
+
+@pytest.fixture
+def courses(monkeypatch):
+    """The courses along the floor that were sought so far: how far outside the soles [m] the pressure would lie on each."""
+    found, sought = [], grounded._course
+
+    def count(*asked):
+        course = sought(*asked)
+        found.append(course.outside)
+        return course
+    monkeypatch.setattr(grounded, "_course", count)
+    return found
+
+
+@pytest.mark.parametrize(("ahead", "high", "far", "most"), [(0.7, 0.5, 1.6, 100), (0.9, 0.5, 2.0, 130), (0.6, 0.3, 2.4, 90)])
+def test_who_stands_before_a_hurdle_is_refused_by_few_courses(jump, standing, courses, ahead, high, far, most):
+    place = np.array([standing.ground[0], 0.0, standing.ground[1] + far])
+    hurdle = Box((0.0, 0.5 * high, standing.ground[1] + ahead), (2.0, high, 0.2))
+    with pytest.raises(Refused):
+        jump.plan(standing, Intent(leap=Leap(place), around=(hurdle,)))
+    assert len(courses) < most
+
+
+def test_a_course_that_is_hopeless_is_not_sought_again(jump, running, courses):
+    """A runner who would have to stop within a step presses far ahead of his foot, whatever comes of it."""
+    start = jump.start_of(running)
+    place = jump.middle(start, 0.0)
+    grounded.grounded(jump.physique, start, jump.path(start, place, 0.0), 0.0)
+    assert len(courses) == 1 and courses[0] > grounded.HOPELESS
