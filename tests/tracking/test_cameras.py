@@ -70,6 +70,19 @@ def test_files_keep_cameras(tmp_path, name, write):
         np.testing.assert_allclose(is_now.numbers, was.numbers, atol=1e-9)
 
 
+def test_a_camera_that_keeps_a_part_of_its_picture_sees_the_same_there(tmp_path):
+    """Qualisys's field of view: its pixels are counted from its own corner, its lens from the whole sensor's."""
+    file = tmp_path / "part.qca.txt"
+    write_qualisys([lens()], file)
+    text = file.read_text()
+    assert 'sensorMaxU="40896.0" sensorMaxV="30656.0"' in text  # the last pixel's, in 64ths
+    file.write_text(text.replace('left="0" top="0" right="639" bottom="479"', 'left="100" top="50" right="499" bottom="349"'))
+    part, = read_cameras(file)
+    assert part.size == (400, 300)
+    points = np.random.default_rng(2).uniform(-0.5, 1.5, (20, 3))
+    np.testing.assert_allclose(part.project(points)[0], lens().project(points)[0] - [100.0, 50.0], atol=1e-6)
+
+
 def test_a_real_calibration_is_read(shared):
     """Qualisys's, of a treadmill: all four cameras see its corner, and a body that stands a metre high there."""
     cameras = read_cameras(shared / "multiview" / "calibration" / "Calib.qca.txt")
