@@ -115,7 +115,7 @@ def test_motion(short, tmp_path):
     assert done.exit_code == 0 and "10 frames" in done.output
     text = (tmp_path / "a.bvh").read_text()
     assert "Frames: 10" in text and "HIERARCHY" in text
-    two = SHORT + '[[actors]]\nname = "B"\n'
+    two = SHORT + '[[actors]]\nname = "B"\nstart = [1, 0, 0]\n'
     short.write_text(two)
     assert gambol("render", short, "-o", tmp_path / "b.bvh").exit_code == 0
     assert (tmp_path / "b-A.bvh").exists() and (tmp_path / "b-B.bvh").exists()
@@ -169,7 +169,7 @@ def test_no_work_is_done_for_a_path_that_cannot_be_written(short, tmp_path, monk
     for work in ("gambol.game.scenario.run", "gambol.controllers.locomotion.build_library", "gambol.controllers.locomotion.report"):
         monkeypatch.setattr(work, never)
     monkeypatch.setattr(hosts, "Offscreen", never)
-    short.write_text(SHORT + '[[actors]]\nname = "B"\n')
+    short.write_text(SHORT + '[[actors]]\nname = "B"\nstart = [1, 0, 0]\n')
     (tmp_path / name).mkdir()
     done = gambol(*{"a.mp4": ("render", short, "-o", tmp_path / "a.mp4"),
                     "a-B.bvh": ("render", short, "-o", tmp_path / "a.bvh"),
