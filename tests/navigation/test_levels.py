@@ -148,6 +148,29 @@ def test_who_stands_too_near_for_his_run_up_steps_back_for_it(someone):
     assert states[off - 1].velocity[0] > 1.2 and not states[-1].going.barred, "then he leaps from a walk, at once"
 
 
+@pytest.mark.parametrize("far", [1.2, 1.5, 1.82, 1.95, 2.1])
+@pytest.mark.parametrize("begins", [-1.2, 0.6, 1.17, 1.8])
+def test_whoever_is_sent_across_leaps_at_the_first_or_second_run_up(someone, far, begins):
+    """Where he begins decides which of his steps ends at the edge; 1.17: so far before it as the room on a platform of 2 m lets him."""
+    gap = far - 0.72  # he leaps, and lands, 0.36 m from the edges
+    things = (LONG[0], Box((0.0, 0.3, 5.0 + gap), (2.0, 0.6, 5.0)))
+    states = going(someone, things, (0.0, begins - 0.36, 0.0), 0.6, Goal((0.0, 5.5 + gap)))
+    assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
+    runs = [state.going.pace > 0.0 for state in states]
+    assert sum(now and not was for was, now in zip([False, *runs], runs)) <= 2 and len(states) < 15 * 60
+
+
+def test_leaps_alike_are_not_all_asked_about():
+    """What is refused in the same words for two leaps, as far and as high, is refused for all: who is asked for each stands and thinks for seconds."""
+    asked = []
+
+    def able(leap):
+        asked.append(leap.asks)
+        return "its legs would hit something 0.3 m ahead" if leap.asks[1] > 0.5 else ""
+    way = crossed(STAGES["course"], (3.4, 1.6), (5.9, 12.4), able)
+    assert way.crossings and not way.reason and sum(up > 0.5 for _, up in asked) <= 4
+
+
 def test_without_room_to_step_back_a_gap_is_too_wide(someone):
     short = (Box((0.0, 0.3, 1.75), (2.0, 0.6, 1.5)), WIDE[1])
     status = someone.status(going(someone, short, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)), 3.0)[-1])

@@ -7,6 +7,7 @@ leap there is asked only of those that the quickest way so far has.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
@@ -33,6 +34,8 @@ LEAP = 1.8, 1.5
 """What a leap counts for [s]: turning, crouching and getting up; and for each metre, more than to walk it, so that the shortest is leapt."""
 ASKED = 60
 """About no more leaps is asked."""
+ALIKE = 2
+"""Of leaps as far and as high so many are asked about that can't be made for the same reason."""
 WEAK = "too "
 """How reasons begin by which nobody leaps farther or higher, either."""
 
@@ -71,7 +74,7 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
     barred = set(barred)
     leaps = [leap for leap in crossings(levels, np.array([here, goal])) if named(leap[0]) not in barred]
     times = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
-    good, faults = set(), []
+    good, faults, alike = set(), [], Counter[tuple[str, float, float]]()
     while len(good) + len(faults) < ASKED:
         _, before = dijkstra(times, indices=0, return_predecessors=True)
         way, at = [], int(before[-1])
@@ -86,10 +89,13 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
             return Journey(tuple(leaps[k][0] for k in way))
         if why is None:
             return Journey(())  # nobody here leaps: whoever plans the walk says what is in its way
-        faults.append(why)
         asks = leaps[bad][0].asks
+        faults.append(why)
+        alike[why, *np.round(asks, 2)] += 1
         for k, (leap, *_) in enumerate(leaps):
-            if k == bad or why.startswith(WEAK) and k not in good and leap.asks[0] >= asks[0] - 1e-6 and leap.asks[1] >= asks[1] - 1e-6:
+            worse = why.startswith(WEAK) and leap.asks[0] >= asks[0] - 1e-6 and leap.asks[1] >= asks[1] - 1e-6
+            same = alike[why, *np.round(asks, 2)] >= ALIKE and np.allclose(leap.asks, asks, atol=1e-6)
+            if k == bad or (worse or same) and k not in good:
                 times[:, k + 1] = np.inf
     return Journey((), "no walk leads there, and no leap: " + max(sorted(set(faults)), key=faults.count) if faults else "")
 

@@ -9,11 +9,15 @@ import numpy as np
 
 from ...contract import CharacterState, Controller, Goal, Intent, Leap
 from .journeys import Crossing, journey, named
-from .run_up import farther, near, start_of
+from .run_up import TRIES, farther, near, start_of
 from .surfaces import levels_of
 
 Refusal = Callable[[CharacterState, Intent], str | None]
 """Says why nobody could leap from a state as an intent says, as `Controller.refusal`."""
+
+
+RUN_UPS = 2
+"""A leap that did not go off at so many run-ups is left."""
 
 
 class Leg(NamedTuple):
@@ -32,12 +36,12 @@ class Leg(NamedTuple):
 
 
 def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequence[Any], barred: Iterable[tuple[float, ...]] = (),
-             refusal: Refusal | None = None, known: Sequence[Crossing] = (), stands: Iterable[tuple[float, ...]] = ()) -> Leg:
+             refusal: Refusal | None = None, known: Sequence[Crossing] = (), stands: Sequence[tuple[float, ...]] = (), ask: Callable[[], None] = lambda: None) -> Leg:
     """How the way to a goal goes on, for a walker who stands in `state`. barred: leaps, as `named`, that he could not make. refusal: how the walker
     is asked for leaps, by default his own. known: the leaps that are left of a way that he is on: they are not sought again where they lead on from here.
-    stands: leaps, as `named`, that he makes from no walk.
+    stands: leaps, as `named`, that did not go off from a walk, once for each time. ask: is called for what takes long, so often as it counts for leaps.
     """
-    refusal = walker.refusal if refusal is None else refusal
+    refusal, tried = walker.refusal if refusal is None else refusal, set[float]()
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
     start = levels.under(here, float(state.floor))
     region = int(levels.regions[start])
@@ -51,13 +55,16 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
         return refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
 
     def able(leap: Crossing) -> str | None:
-        why = from_stand(leap)
-        return "" if why and farther(walker, leap, around, refusal) else why
+        why, far = from_stand(leap), round(leap.asks[0], 2)
+        for _ in range(TRIES if why and far not in tried else 0):
+            ask()
+        tried.add(far)
+        return "" if why and farther(walker, leap, around) else why
 
     def to(crossings: tuple[Crossing, ...]) -> Leg:
         """The walk to the first of them; back, where he is too near for the run-up without which it is too far."""
         first = crossings[0]
-        if near(first, here) and named(first) not in stands and (begins := start_of(first, around)) is not None and from_stand(first):
+        if near(first, here) and stands.count(named(first)) < RUN_UPS and (begins := start_of(walker, first, around)) is not None and from_stand(first):
             return Leg(begins, float(first.ground[2]), stops, crossings, back=True)
         return Leg(first.ground[:2], float(first.ground[2]), stops, crossings)
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...contract import CharacterState, Controller, Intent, Leap
+from ...contract import CharacterState, Controller, Intent, Leap, but
 from ..goal import wish
 from ..obstacles import SHOULDER, STEP
 from .journeys import Crossing
@@ -18,48 +18,66 @@ from .surfaces import levels_of
 if TYPE_CHECKING:  # who leaps from a walk has planned it
     from ..planning import Plan
 
-PACE = 1.35
-"""How fast one walks as one leaps on [m/s]: slower, and both feet push off as from a stand."""
-FAR, UP = 2.0, 0.1
+SHARE = 0.9
+"""Plans keep to this share of what is walked: what is left serves to catch up."""
+PACES = 1.35, 1.6, 1.9
+"""So fast one may walk as one leaps on [m/s], as slowly as will do; slower, and both feet push off as from a stand, faster, and legs run."""
+FAR, UP = 2.3, 0.1
 """Nobody leaps from a walk farther than this [m], or higher up."""
 LONG = 1.65
 """Who leaps from a walk leaps so far at least [m]: landing nearer, he would come to a stand."""
-RUN = 1.2
+RUN = 0.95
 """So far before the leap he begins to walk to it, at least [m] ..."""
-BACKS = 1.9, 1.3
-"""... or goes back for it, so far, where there is room: from a stand there one of his steps ends where the leap goes off; ..."""
+BACKS = 1.9, 1.6, 1.4, 1.3, 1.2, 1.1
+"""... or goes back for it, so far, where there is room, and where from a stand there one of his steps ends where the leap goes off; ..."""
+ELSEWHERE = 0.07
+"""No run-up begins so near to where another began from which no leap goes off [m]."""
 ROOM = 1.8
 """... and has so far to come to a stand behind where he lands [m]."""
+SPARE = 1.04
+"""Plans of run-ups may be so many times as fast as they end: what is late is caught up."""
 SOON = 0.65
 """So long before he would be at the edge he looks at which of his steps he can leap [s]; then he can still stop."""
-STEPS = 120
-"""So many steps of 1/60 s somebody walks until he goes evenly, and through two strides."""
 READY = 1.0
 """What a jump bids that could go off at once."""
-MOST = 0.5
-"""Who could leap at more than this share of the moments at which a jump could go off counts on it."""
+ENOUGH = 2
+"""A run-up is counted on from which the leap could go off at so many moments: one may be missed."""
 PAST = 0.08
 """No farther beyond where the leap was to go off it does [m]."""
 EVERY = 3
 """About every so manieth step is asked [steps]."""
+FINE = 0.05
+"""Run-ups are measured for leaps as far as so much more or less [m]."""
+TRIES = 4
+"""What measuring a run-up counts for, in leaps that are asked about."""
 
 
-def runs(leap: Crossing, here: np.ndarray, around: Sequence[Any], planes: np.ndarray) -> float:
-    """How fast [m/s] somebody at a place (2,) would walk as he leaps; 0 for who leaps from a stand: where there is no room, or it is too far or high."""
-    top = float(np.min(-planes[:, 3] / np.maximum(planes[:, 0], 1e-9), initial=np.inf, where=planes[:, 0] > 1e-9))
-    if top < PACE or near(leap, here):
-        return 0.0
-    return PACE if _room(leap, around) else 0.0
+def runs(leap: Crossing, here: np.ndarray, around: Sequence[Any], planes: np.ndarray) -> bool:
+    """Whether somebody at a place (2,) may come to a leap at a walk: not where there is no room, where it is too far or high, or where he walks too slowly."""
+    return _top(planes) >= PACES[0] and not near(leap, here) and _room(leap, around)
 
 
-def start_of(leap: Crossing, around: Sequence[Any]) -> np.ndarray | None:
-    """Where (2,) who can leap only from a walk begins to walk to it; None where there is no room."""
+def quickened(planes: np.ndarray, pace: float) -> np.ndarray:
+    """The half-spaces (H, 4) of velocities that a run-up keeps to which ends so fast [m/s]."""
+    return planes / np.array([max(SPARE * pace / _top(planes), 1.0), 1.0, 1.0, 1.0])
+
+
+def _top(planes: np.ndarray) -> float:
+    """How fast one walks straight on [m/s]."""
+    return float(np.min(-planes[:, 3] / np.maximum(planes[:, 0], 1e-9), initial=np.inf, where=planes[:, 0] > 1e-9))
+
+
+def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for: np.ndarray | None = None) -> np.ndarray | None:
+    """Where (2,) who can leap only from a walk begins to walk to it; None where there is no room, or he could leap from nowhere. but_for: (2,) not there."""
     levels = levels_of(around)
-    for back in BACKS:
+    for back in measured(walker, FINE * math.ceil(leap.asks[0] / FINE - 1e-6)):
+        begins = leap.ground[:2] - back * _ahead(leap)
+        if but_for is not None and math.dist(begins, but_for) < ELSEWHERE:
+            continue
         places = leap.ground[:2] - np.linspace(0.0, back + SHOULDER, 8)[:, None] * _ahead(leap)
         which, heights = levels.ground(places, leap.height + STEP)
         if np.all(levels.regions[which] == levels.regions[which[0]]) and not levels.shut(places, heights).any():
-            return leap.ground[:2] - back * _ahead(leap)
+            return begins
     return None
 
 
@@ -68,28 +86,44 @@ def near(leap: Crossing, here: np.ndarray) -> bool:
     return bool((leap.ground[:2] - here) @ _ahead(leap) < RUN)
 
 
-def farther(walker: Controller, leap: Crossing, around: Sequence[Any], refusal: Callable[[CharacterState, Intent], str | None]) -> bool:
-    """Whether a leap that is too far from a stand could be made from a walk, at most of the steps; what it might touch is not looked at."""
-    if not _room(leap, around) or start_of(leap, around) is None:
-        return False
-    asked = [(state, Leap(np.array([state.ground[0], 0.0, state.ground[1] + leap.asks[0]]))) for state in _walking(walker)]
-    asked = [(state, one) for state, one in asked if walker.precondition(state, Intent(leap=one)) >= READY]
-    can, left = 0, len(asked)
-    for state, one in asked:
-        can, left = can + (refusal(state, Intent(leap=one)) == ""), left - 1
-        if can > MOST * len(asked) or can + left <= MOST * len(asked):
+def farther(walker: Controller, leap: Crossing, around: Sequence[Any]) -> bool:
+    """Whether a leap that is too far from a stand could be made from a walk; what it might touch is not looked at."""
+    return _room(leap, around) and start_of(walker, leap, around) is not None
+
+
+@lru_cache(maxsize=64)
+def measured(walker: Controller, far: float) -> tuple[float, ...]:
+    """How long [m] the run-ups are from a stand, on a level floor, after which a leap so far [m] goes off, played ahead."""
+    planes = walker.limits(SHARE)
+    leap, found = Crossing(np.zeros(3), np.array([0.0, 0.0, far]), 0.0), []
+    if planes is None or _top(planes) < PACES[0]:
+        return ()
+    for back in BACKS:
+        if approach(walker, walker.start((0.0, -back, 0.0)), leap, Intent(), planes, (), 1 / 60, ENOUGH)[0]:
+            found.append(back)
+    return tuple(found)
+
+
+def approach(walker: Controller, state: CharacterState, leap: Crossing, intent: Intent, planes: np.ndarray, stops: Sequence[Any], dt: float,
+             least: int = 1) -> tuple[float, Plan]:
+    """How fast [m/s] he walks as he leaps, and the plan that leads there, played ahead to the leap: the slowest that will do; 0 where at none the leap could go off at so many moments at least.
+
+    planes: (H, 4) half-spaces of the velocities that he walks with. stops: what is in the way of his walk.
+    """
+    from ..planning import plan_in_time
+
+    best: tuple[int, float, Plan | None] = (0, 0.0, None)
+    for pace in PACES:
+        made = plan_in_time(state.ground, leap.ground, state.velocity, quickened(planes, pace), stops, float(state.floor), leaving=np.array([pace, 0.0, 0.0]))
+        if made.reason:
+            return 0.0, made
+        moments = len(take_offs(walker, state, made, 0.0, leap, intent, dt, ENOUGH))
+        if best[2] is None or moments > best[0]:
+            best = moments, pace if moments >= least else 0.0, made
+        if moments >= ENOUGH:
             break
-    return can > MOST * len(asked)
-
-
-@lru_cache(maxsize=8)
-def _walking(walker: Controller) -> tuple[CharacterState, ...]:
-    """Somebody on a level floor, who walks along z, through two steps: at every third of them."""
-    state, states = walker.start(), []
-    for number in range(STEPS):
-        state, _ = walker.step(state, Intent(np.array([PACE, 0.0, 0.0])), 1 / 60)
-        states += [state] if number >= STEPS // 2 and number % EVERY == 0 else []
-    return tuple(states)
+    assert best[2] is not None
+    return best[1], best[2]
 
 
 def _ahead(leap: Crossing) -> np.ndarray:
@@ -114,17 +148,20 @@ def onto(leap: Crossing, pace: float) -> np.ndarray:
     return leap.place + missing * np.array([np.sin(leap.ground[2]), 0.0, np.cos(leap.ground[2])])
 
 
-def take_off(walker: Controller, state: CharacterState, plan: Plan, time: float, leap: Crossing, intent: Intent, dt: float) -> int | None:
-    """After how many steps of dt [s] of a plan, `time` [s] into it, the leap can be made: the last such. None if at none: his walk is played ahead."""
+def take_offs(walker: Controller, state: CharacterState, plan: Plan, time: float, leap: Crossing, intent: Intent, dt: float, most: int = 1) -> list[int]:
+    """After how many steps of dt [s] of a plan, `time` [s] into it, the leap can be made: the last such, at most so many. His walk is played ahead."""
     ahead = _ahead(leap)
-    asked = replace(intent, goal=None, aside=None, leap=Leap(onto(leap, PACE)))
-    states = []
-    while (state.ground - leap.ground)[:2] @ ahead < PAST and len(states) < 2.0 * SOON / dt:
-        states.append((state, replace(asked, velocity=wish(plan, time, state.ground, state.velocity))))
+    asked = but(intent, goal=None, aside=None, leap=Leap(onto(leap, PACES[0])))
+    states: list[tuple[CharacterState, Intent]] = []
+    while (state.ground - leap.ground)[:2] @ ahead < PAST and time < plan.seconds + SOON:
+        states.append((state, but(asked, velocity=wish(plan, time, state.ground, state.velocity))))
         time += dt * float(walker.readiness(state))
-        state, _ = walker.step(state, replace(states[-1][1], leap=None), dt)
-    for number in range(len(states) - 1, -1, -EVERY):
+        state, _ = walker.step(state, but(states[-1][1], leap=None), dt)
+    found: list[int] = []
+    for number in range(len(states) - 1, max(len(states) - round(SOON / dt), 0) - 1, -EVERY):
         at, intent = states[number]
-        if walker.refusal(at, intent) == "" and walker.step(at, intent, dt)[0].active != at.active:
-            return number
-    return None
+        if walker.precondition(at, intent) >= READY and walker.refusal(at, intent) == "" and walker.step(at, intent, dt)[0].active != at.active:
+            found.append(number)
+            if len(found) >= most:
+                break
+    return found

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...contract import CharacterState, Controller, Intent, Leap, but
-from ..levels import Leg, named, next_leg, onto, runs, take_off
+from ..levels import RUN_UPS, SHARE, TRIES, Crossing, Leg, approach, named, next_leg, onto, quickened, runs, start_of, take_offs
 from ..obstacles import DEPTH, SHOULDER
 from .going import NEARER, Going, Thinking
 from .thought import Thought, steps_of
@@ -17,8 +17,6 @@ from .thought import Thought, steps_of
 if TYPE_CHECKING:  # who never goes to a goal loads no planner
     from ..planning import Plan
 
-SHARE = 0.9
-"""Plans keep to this share of what is walked: what is left serves to catch up."""
 HELD_UP = 4
 """After so many plans in a row that were worth nothing he is held up."""
 MISSED = 0.5
@@ -39,25 +37,48 @@ def began(now: Going, state: CharacterState, intent: Intent, walker: Controller,
         goal, questions, planes = now.goal, 0, walker.limits(SHARE)
         assert planes is not None  # he walks
 
-        def refusal(there: CharacterState, asked: Intent) -> str | None:
+        def counted() -> None:
             nonlocal questions
             questions += 1
             ask()
+
+        def refusal(there: CharacterState, asked: Intent) -> str | None:
+            counted()
             return walker.refusal(there, asked)
-        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, now.crossings[1:] if now.leapt else (), now.stands)
+        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, now.crossings[1:] if now.leapt else (), now.stands, counted)
+        failed = now.stands.count(named(leg.crossings[0])) if leg.crossings else 0
+        run = bool(leg.crossings) and not leg.back and failed <= now.back and runs(leg.crossings[0], state.ground[:2], intent.around, planes)
+        for _ in range(TRIES if run else 0):
+            counted()
         steps = steps_of(questions, dt)
         then = foreseen(now, state, intent, walker, steps, dt, carries)
+        pace, made = approach(walker, then, leg.crossings[0], intent, planes, leg.around, dt) if run else (0.0, None)
+        stands = now.stands
+        if run and not pace and failed + now.back < RUN_UPS:
+            leg = _afresh(walker, leg, intent, then)
+            stands = (*stands, named(leg.crossings[0])) if now.back else stands
         heading = _arrival(then, leg) if leg.heading is None else leg.heading
         end = np.array([*leg.place, heading])
         within = None if leg.crossings or goal.within is None else max(goal.within - now.spent - steps * dt, 0.1)
-        walks = leg.crossings and not leg.back and named(leg.crossings[0]) not in now.stands
-        pace = runs(leg.crossings[0], then.ground[:2], intent.around, planes) if walks else 0.0
-        made = Plan.none(then.ground, end, leg.reason) if leg.reason else plan_in_time(
-            then.ground, end, then.velocity, planes, leg.around, float(then.floor), within, now.planned != goal, np.array([pace, 0.0, 0.0]))
+        if leg.reason:
+            made = Plan.none(then.ground, end, leg.reason)
+        elif not pace:
+            made = plan_in_time(then.ground, end, then.velocity, planes, leg.around, float(then.floor), within, now.planned != goal)
+        assert made is not None
         return {"plan": made, "planned": goal, "heading": heading, "around": intent.around, "stops": leg.around, "time": 0.0, "stood": 0.0,
                 "left": _left(then, made), "held": 0, "waits": 0.0, "nearest": math.inf, "plans": now.plans + 1, "crossings": leg.crossings,
-                "asked": 0.0, "leapt": False, "anew": False, "pace": pace, "off": None, "poised": False, "back": leg.back}
+                "asked": 0.0, "leapt": False, "anew": False, "pace": pace, "off": None, "poised": False, "back": leg.back,
+                "stands": stands}
     return _thinking(act, dt, carries)
+
+
+def _afresh(walker: Controller, leg: Leg, intent: Intent, here: CharacterState) -> Leg:
+    """The walk to where a run-up begins from which a leap goes off that goes off neither from here nor from a stand."""
+    leap: Crossing = leg.crossings[0]
+    begins = start_of(walker, leap, intent.around, here.ground[:2])
+    if begins is None or not walker.refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=intent.around)):
+        return leg
+    return leg._replace(place=begins, back=True)
 
 
 def landed(now: Going, state: CharacterState) -> Going:
@@ -77,6 +98,7 @@ def another(now: Going, state: CharacterState, intent: Intent, walker: Controlle
 
         planes, steps = walker.limits(SHARE), steps_of(0, dt)
         assert planes is not None  # he walked
+        planes = quickened(planes, now.pace)
         goal = np.array([*now.plan.goal[:2], now.heading])
         if held >= HELD_UP:
             made = Plan.none(state.ground, goal, f"held up {left:.2f} m before the {'leap' if now.crossings else 'goal'}")
@@ -91,8 +113,8 @@ def another(now: Going, state: CharacterState, intent: Intent, walker: Controlle
 def run_up(now: Going, state: CharacterState, intent: Intent, walker: Controller, dt: float) -> Thinking:
     """At which of his steps he leaps is thought of, while he goes on; where he can at none, he stops, and leaps from a stand."""
     def act(ask: Callable[[], None]) -> Mapping[str, Any]:
-        off, steps = take_off(walker, state, now.plan, now.time, now.crossings[0], intent, dt), steps_of(0, dt)
-        return {"off": off - steps + 1} if off is not None and off >= steps else {"stands": (*now.stands, named(now.crossings[0])), "anew": True}
+        off, steps = take_offs(walker, state, now.plan, now.time, now.crossings[0], intent, dt), steps_of(0, dt)
+        return {"off": off[0] - steps + 1} if off and off[0] >= steps else {"stands": (*now.stands, named(now.crossings[0])), "anew": True}
     return _thinking(act, dt)
 
 
