@@ -15,7 +15,7 @@ import numpy as np
 from ...body import Pose, Skeleton, contact_points, end_positions, forward_kinematics, sole_corners
 from ...navigation import floor_at, gap
 from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
-                    turns, vectors)
+                    soles, turns, vectors)
 from ..prior import BETWEEN, LEGS, Prior
 from .airborne import SAME, Airborne
 from .flight import flight_kernel
@@ -27,6 +27,8 @@ BOUNCE, FRICTION = 0.05, 0.4
 """How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
 VOID = 0.33
 """A foot that is so high over what lies under it [m] stands on nothing: farther than feet step down."""
+STANDS = 0.1
+"""A foot whose ball or heel is no higher over it [m] stands there, however high the floor was that its body was on."""
 CLOSING = 0.4
 """Slower than this [m/s] a body does not strike what it touches."""
 LEAST, LOW = 0.14, 0.5
@@ -41,6 +43,9 @@ GATHERS = 0.6
 """In so long [s] arms that were thrown out are as in any landing."""
 ASIDE = ((0.25, 0.17), (1.15, 0.36))
 """What stands or hangs at a height over the feet [m] is so far from them [m] when they come down."""
+BESIDE, ROUND, DEEP, HANGS = np.linspace(0.05, 0.3, 6), np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False), 10.0, 0.05
+"""Where soles would be in a riser or hang over an edge they come down so far beside [m], in one of these directions: as near as can be, where a metre that a sole is in
+something counts as so many, and a corner that hangs as so much [m]."""
 ROUNDS, CLOSE = 5, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 TUCKS, TUCKED, EARLY = np.array([0.5, 1.0, 1.5]), np.array([-0.7, 1.3, -0.6]), 0.4
@@ -97,17 +102,19 @@ def _out(place: np.ndarray, thing) -> np.ndarray:
 
 def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: Sequence[Any], floor: float, size: float = 1.0) -> bool:
     """Whether a foot that stands, heel or ball (4,), has no floor within a step under either, or under the floor [m] that the body was on:
-    feet reach for what lies lower. size: of the body, over a standard one's."""
+    feet reach for what lies lower, and stand once they are there. size: of the body, over a standard one's."""
+    def void(x: float, y: float, z: float) -> bool:
+        under = floor_at(x, z, around, y + 0.1 * size)
+        return y - under > STANDS * size and max(y, floor) - under > VOID * size
     points = contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
     stands = np.asarray(contacts, bool).reshape(2, 2).any(1)
-    return any(all(max(y, floor) - floor_at(x, z, around, y + 0.1 * size) > VOID * size for x, y, z in foot)
-               for foot in points.reshape(2, 2, 3)[stands])
+    return any(all(void(x, y, z) for x, y, z in foot) for foot in points.reshape(2, 2, 3)[stands])
 
 
 def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray) -> Plan:
     """The motion from the moment of a hit, or of losing the floor, to standing, with a roll where it comes down hard, going ahead. start: the body at that moment."""
     velocity = start.velocity if hit is None else hit.after(start.velocity)
-    time, land, place = _down(physique, start.centre, velocity, around, gravity)
+    time, land, place = _down(physique, start.centre, velocity, start.heading, around, gravity)
     prior, falls = Prior.load(), max(-float(velocity[1] + gravity[1] * time), 0.0)
     features = prior.features(falls, 0.0, 0.0, physique.size, False)
     way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre, start.centre, heading=start.heading,
@@ -147,9 +154,9 @@ def _deep(physique: Physique, made: Plan, around: Sequence[Any]) -> np.ndarray:
     return out
 
 
-def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: Sequence[Any],
+def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, heading: float, around: Sequence[Any],
           gravity: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """When [s] and where (3,) a falling centre of mass is as the feet touch the floor, and their place (3,) there."""
+    """When [s] and where (3,) a falling centre of mass is as the feet touch the floor, and their place (3,) there, heading so [rad]."""
     flat, g, touch = velocity * FLAT, -float(gravity[1]), measures(physique).touch(0.0)
     pace, size = float(np.linalg.norm(flat)), physique.size
     ahead = flat / max(pace, 1e-9) * min(TRAIL[0] * pace, TRAIL[1] * size)
@@ -167,7 +174,21 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, around: 
         floor = floor_at(place[0], place[2], around, centre[1] - LOW * touch)
         soft = softened(np.sqrt(velocity[1] ** 2 + 2.0 * g * max(centre[1] - floor - touch, 0.0)), physique.tables)
         time = max(until(floor + touch - soft), min(LEAST, until(floor + LOW * touch)), 0.03)
-    return time, centre + time * velocity + 0.5 * time**2 * gravity, np.array([place[0], floor, place[2]])
+    return time, centre + time * velocity + 0.5 * time**2 * gravity, _clear(physique, np.array([place[0], floor, place[2]]), heading, around)
+
+
+def _clear(physique: Physique, place: np.ndarray, heading: float, around: Sequence[Any]) -> np.ndarray:
+    """The place (3,) near another one at its height where both soles come down whole, or as whole as can be: out of risers, and not over edges."""
+    size, corners = physique.size, soles(landing_feet(place, heading, physique.tables), physique.tables)
+
+    def cost(aside: np.ndarray) -> float:
+        high = np.array([floor_at(x, z, around, place[1] + LOW * size) for x, _, z in corners + aside]) - place[1]
+        return float(np.hypot(*aside[[0, 2]]) + DEEP * max(high.max() - GRAZES, 0.0) + HANGS * (high < -GRAZES).sum())
+    best = np.zeros(3)
+    if not len(around) or cost(best) == 0.0:
+        return place
+    ways = [far * size * np.array([np.sin(angle), 0.0, np.cos(angle)]) for far in BESIDE for angle in ROUND]
+    return place + min([best, *ways], key=cost)
 
 
 class _Fall(Airborne):
