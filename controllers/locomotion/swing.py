@@ -150,6 +150,21 @@ def line_ahead(m, body, foot, ahead, k, here):
 
 
 @kernel
+def swept_line(m, body, foot, goes, until, share, here):
+    """Write a swinging foot's centre line (3, 2) in the world as it will be after a share of its way, without giving way, where nothing foretells that: the smoothest way
+    from where heel and ball are, and how fast they go, to where they come down. goes: (4, 2) how fast the blend's points go [m/s]; until: when it comes down [s]."""
+    outline_kernel(m, body, foot, here)
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    for k in range(2):
+        x, z = here[k, 0], here[k, 1]
+        here[k, 0], here[k, 1] = m.ground[0] + c * x + s * z - m.aside[foot, 0], m.ground[1] - s * x + c * z - m.aside[foot, 1]
+        for i in range(2):
+            goal = m.coming[foot, k, i] + m.land[foot, i]
+            here[k, i] = goal + smoothest(here[k, i] - goal, goes[2 * foot + k, i] + m.offset_rate[foot, i], 0.0, max(until, SOONEST), share, 0)
+    with_toe(body, here)
+
+
+@kernel
 def smoothest(x, v, a, whole, s, order):
     """The smoothest way from place x, speed v and acceleration a to rest at 0 in `whole` seconds, after the share s of that
     time: its place (order 0), speed (1) or acceleration (2)."""

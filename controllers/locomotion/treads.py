@@ -19,20 +19,27 @@ from .tops import SAME, ground_kernel
 
 FOOT, TOE = 0.175, 0.095
 """From heel to ball and on to the toes' end [m]."""
-SHIFTS = np.concatenate([[0.0], np.outer(np.arange(0.0125, 0.16, 0.0125), [-1.0, 1.0]).ravel(), -np.arange(0.1625, 0.51, 0.0125)])
-"""How much farther or nearer a foot comes down where it would not stand well, the nearest first [m]."""
+ASIDE = 0.05
+"""A foot comes down no farther beside where it was planned to than this [m]."""
+_AROUND = [[0.0, 0.0]] + [[way * far, side * far] for far in np.arange(0.0125, 0.16, 0.0125) for way, side in ((-1, 0), (1, 0), (0, -1), (0, 1)) if way or far <= ASIDE]
+SHIFTS = np.array(_AROUND + [[-far, 0.0] for far in np.arange(0.1625, 0.51, 0.0125)])
+"""How much farther or nearer, and how far to its left, a foot comes down where it would not stand well, the nearest first [m]."""
 NONE, BALL, HALF, WHOLE = 0, 1, 2, 3
 """How much of a foot stands: nothing that one could stand on; the ball, or else the heel; half of what is behind the ball, too; all."""
 WORTH = np.array([9.0, 0.22, 0.12, 0.0])
 """So much farther away a foot is set for more of it to stand [m]."""
 WITHIN = 0.02
 """A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
+TIP, SOLE = 0.07, 0.03
+"""Toes are looked at so far before the ball, and so far to both sides of a foot's line, lest they stand in a riser that they come to askew [m]."""
 BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
 """So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
 CERTAIN = 0.35
 """After this share of its swing a foot keeps to the place where it will come down …"""
 FARTHEST = 0.6
 """… unless that gets farther away than this [m]."""
+CLEAR, TURNS = 0.08, 0.3
+"""On level ground it keeps to none, but where something is higher or lower within the first [m] of it and its body turns faster than the second [rad/s]."""
 SLOWEST = 0.4
 """Who must take shorter steps slows down, to no less than this share of the wish."""
 SLOW = 0.1
@@ -72,12 +79,13 @@ def come_down(m, tops, floor, foot, progress, out):
         m.land[foot, 0], m.land[foot, 1] = aim[0] - ball[0], aim[1] - ball[1]
         out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
         return
-    stands, shift, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
+    stands, shift, left, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
     m.land[foot, 0] += beside_x
     m.land[foot, 1] += beside_z
     aim[0], aim[1] = ball[0] + m.land[foot, 0], ball[1] + m.land[foot, 1]
     aim[2], aim[3], aim[4] = out[0] + floor, out[1], out[2]
-    even = stands == WHOLE and shift == 0.0 and (out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME)
+    even = stands == WHOLE and shift == 0.0 and left == 0.0 and (
+        out[1] != 0.0 or out[2] != 0.0 or abs(out[0] - m.base[1 - foot]) < SAME and not (abs(m.velocity[1]) > TURNS and _edge_near(m, tops, floor, aim[0], aim[1], c, s, out[0])))
     runs_up = m.alert and m.family != WALK  # who runs up to a leap has no time to
     m.aimed[foot] = 1 if stands > NONE and progress > CERTAIN and not even and not runs_up else 0
     if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
@@ -88,7 +96,7 @@ def come_down(m, tops, floor, foot, progress, out):
 @kernel
 def _choose(m, tops, floor, foot, x, z, c, s, out):
     """The ground (3,) that a foot comes down on near x, z, pointing to where cosine c and sine s say: how much of it stands there,
-    how far ahead that is [m], and how fast the body goes there [m/s]. Where nothing can be stepped on it is the highest that lies there."""
+    how far ahead and to the left that is [m], and how fast the body goes there [m/s]. Where nothing can be stepped on it is the highest that lies there."""
     along_x, along_z = c * m.velocity[2] + s * m.velocity[0], -s * m.velocity[2] + c * m.velocity[0]
     speed = math.hypot(along_x, along_z)
     if speed > SLOW:
@@ -101,20 +109,34 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         line[i, 0], line[i, 1] = x - back * s, z - back * c
     out_of_walls(m, tops, floor, foot, line, aside)
     x, z = x + aside[0], z + aside[1]
-    best, least, most = 0.0, 9.0, NONE
-    for shift in SHIFTS:
-        if abs(shift) >= least:
+    best, left, least, most = 0.0, 0.0, 9.0, NONE
+    for k in range(SHIFTS.shape[0]):
+        shift, beside = SHIFTS[k, 0], SHIFTS[k, 1]
+        far = abs(shift) + abs(beside)
+        if far >= least:
             break
-        stands = under_kernel(m, tops, floor, x + shift * along_x, z + shift * along_z, c, s, here)
-        if stands > NONE and abs(here[0] - other) <= STEP and abs(shift) + WORTH[stands] < least:
-            best, least, most = shift, abs(shift) + WORTH[stands], stands
+        stands = under_kernel(m, tops, floor, x + shift * along_x + beside * along_z, z + shift * along_z - beside * along_x, c, s, here)
+        if stands > NONE and abs(here[0] - other) <= STEP and far + WORTH[stands] < least:
+            best, left, least, most = shift, beside, far + WORTH[stands], stands
             out[0], out[1], out[2] = here[0], here[1], here[2]
-    m.land[foot, 0], m.land[foot, 1] = aside[0] + best * along_x, aside[1] + best * along_z
+    m.land[foot, 0], m.land[foot, 1] = aside[0] + best * along_x + left * along_z, aside[1] + best * along_z - left * along_x
     if most == NONE:
         under_kernel(m, tops, floor, x, z, c, s, out)
         if out[0] < other - STEP and speed > SLOW:  # over an edge: as the other one, until it is over it, too
             out[0], out[1], out[2] = other, 0.0, 0.0
-    return most, best, speed
+    return most, best, left, speed
+
+
+@kernel
+def _edge_near(m, tops, floor, x, z, c, s, high):
+    """Whether the ground is not as high all about a foot whose ball is at x, z in the world."""
+    ground = np.empty(3)
+    for k in range(9):
+        along, left = (TOE + CLEAR, 0.0, -FOOT - CLEAR)[k // 3], (k % 3 - 1) * CLEAR
+        ground_kernel(tops, x + along * s + left * c, z + along * c - left * s, floor, m.level, ground)
+        if abs(ground[0] - high) > SAME:
+            return True
+    return False
 
 
 @kernel
@@ -132,6 +154,11 @@ def under_kernel(m, tops, floor, x, z, c, s, out):
             out[0], out[1], out[2] = top, part[1], part[2]
     if ground_kernel(tops, x + (TOE + WITHIN) * s, z + (TOE + WITHIN) * c, floor, m.level, part):  # toes may hang over an edge
         found = found and part[0] - (TOE + WITHIN) * (s * part[1] + c * part[2]) < top + SAME
+    for k in range(6):
+        along, left = (TIP, 0.0, -FOOT)[k // 2], SOLE - 2.0 * SOLE * (k % 2)
+        dx, dz = along * s + left * c, along * c - left * s
+        if found and ground_kernel(tops, x + dx, z + dz, floor, m.level, part):
+            found = part[0] - dx * part[1] - dz * part[2] < top + SAME
     ground_kernel(tops, x - (FOOT + WITHIN) * s, z - (FOOT + WITHIN) * c, floor, m.level, part)
     if not found or part[0] + (FOOT + WITHIN) * (s * part[1] + c * part[2]) > top + SAME:
         return NONE

@@ -14,9 +14,9 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation.passing import STEP
 from .foot_points import shown_kernel
-from .swing import SAMPLES, line_ahead, smooth
+from .swing import SAMPLES, line_ahead, smooth, swept_line
 from .tops import SAME, ground_kernel
-from .treads import FOOT, TOE, come_down, most_speed, on_stairs, under_kernel
+from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, under_kernel
 
 ASTRAY = 0.06
 """A foot that came down farther than this from where it was to stands on what lies there [m]."""
@@ -37,6 +37,8 @@ RISER = 0.06
 """What lies so much higher before or behind a foot is no slope [m]."""
 BETWEEN = 20
 """So many places on a foot's way are looked at for what it must pass over."""
+SOON = 0.03
+"""A foot that goes aside is looked for where it will be so much later [s]."""
 REACHES = 0.06
 """A foot that goes up is up so far before a riser [m]."""
 TOUCHES, VOID = 0.035, 0.25
@@ -44,9 +46,9 @@ TOUCHES, VOID = 0.035, 0.25
 
 
 @kernel
-def follow_ground(m, body, ahead, tops, floor, swing, dt):
+def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
-    body's level, which follows both. ahead: of the blend's feet (`foothold`). swing: the share of the cycle for which a foot swings."""
+    body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     for foot in range(2):
         bears[foot] = m.base[foot]
@@ -69,6 +71,9 @@ def follow_ground(m, body, ahead, tops, floor, swing, dt):
                 else:
                     under[0] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
                     under[1], under[2] = aim[3], aim[4]
+                    if not firm and abs(m.velocity[1]) > TURNS:  # the blend's foot turns with its body by now: it is led to the place, not with that
+                        for i in range(2):
+                            m.land[foot, i] = aim[i] - (place[i] - m.offset[foot, i] - m.aside[foot, i])
                 m.base[foot] += min(max(under[0] - m.base[foot], -DROPS * dt), CLIMBS * dt)
                 m.tilt[foot, 0], m.tilt[foot, 1] = under[1], under[2]
                 m.high[foot] = m.base[foot] - under[0]
@@ -84,7 +89,7 @@ def follow_ground(m, body, ahead, tops, floor, swing, dt):
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
-        over = _between(m, body, ahead, tops, floor, foot, max(under[0], m.left[foot]), line)
+        over = _between(m, body, ahead, goes, tops, floor, foot, max(under[0], m.left[foot]), line)
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
         bearing = path
@@ -126,9 +131,9 @@ def _loose(m, tops, floor, foot, place, dt):
 
 
 @kernel
-def _between(m, body, ahead, tops, floor, foot, highest, line):
+def _between(m, body, ahead, goes, tops, floor, foot, highest, line):
     """How high the ground lies at most between where a foot left and where it comes down, and below its way from now on from heel to tip, slopes apart,
-    as far as it can be stepped over from `highest`. line: (3, 2) scratch."""
+    as far as it can be stepped over from `highest`: as far aside as it gives way. goes: (4, 2) how fast the blend's contact points go [m/s]; line: (3, 2) scratch."""
     ground, most = np.empty(3), -1e9
     for k in range(BETWEEN):
         share = (k + 1.0) / (BETWEEN + 1.0)
@@ -137,9 +142,14 @@ def _between(m, body, ahead, tops, floor, foot, highest, line):
         if ground_kernel(tops, x, z, floor, m.level, ground) and ground[0] <= highest + STEP:
             most = max(most, ground[0])
     for k in range(SAMPLES):
-        if 0.0 < ahead.shares[foot, k] < 1.0:
-            line_ahead(m, body, foot, ahead, k, line)
+        if m.turn != 0.0 or 0.0 < ahead.shares[foot, k] < 1.0:
+            if ahead.shares[foot, k] > 0.0:
+                line_ahead(m, body, foot, ahead, k, line)
+            else:
+                swept_line(m, body, foot, goes, ahead.until[foot], (k + 0.5) / SAMPLES, line)
             for i in range(3):
+                line[i, 0] += m.aside[foot, 0] + SOON * m.aside_rate[foot, 0]
+                line[i, 1] += m.aside[foot, 1] + SOON * m.aside_rate[foot, 1]
                 found = ground_kernel(tops, line[i, 0], line[i, 1], floor, m.level, ground)
                 if found and ground[0] <= highest + STEP and ground[1] == 0.0 and ground[2] == 0.0:  # soles lie along a slope
                     most = max(most, ground[0])

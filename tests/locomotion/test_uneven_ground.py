@@ -1,7 +1,9 @@
 """Kerbs, stairs and ramps: the ground under a foot, and whoever walks up, along and down."""
 
 import math
+from itertools import product
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap
-from gambol.controllers.locomotion.tops import SEEN, ground_kernel, tops
+from gambol.controllers.locomotion.tops import SAME, SEEN, ground_kernel, tops
+from gambol.controllers.locomotion.treads import FOOT, NONE, SOLE, TIP, under_kernel
 from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.scaled import Scaled
 
@@ -176,3 +179,21 @@ def test_who_turns_beside_a_kerb_lifts_his_feet_over_it(locomotion):
         points = contact_points(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
         deepest = np.maximum(deepest, -gap(points.reshape(-1, 3), kerb).reshape(count, -1).min(1))
     assert deepest.max() < 0.03, deepest.max()
+
+
+class Level(NamedTuple):
+    """What is asked of a character's memory."""
+
+    level: float
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-3.2, 3.2), st.floats(0.06, 0.2))
+def test_a_foot_that_stands_has_no_side_in_a_tread(x, z, points, high):
+    """By the corner of stairs, whichever way it points: looked at along its middle alone, toes stood in the riser beside it."""
+    steps = tops([box((-2.0, 0.5 * high * (n + 1), 0.29 * n), (4.0, high * (n + 1), 0.29)) for n in range(3)])
+    under, ground, c, s = np.empty(3), np.empty(3), np.cos(points), np.sin(points)
+    if under_kernel(Level(0.0), steps, 0.0, x, z, c, s, under) > NONE:
+        for along, left in product((-FOOT, 0.0, TIP), (-SOLE, SOLE)):
+            ground_kernel(steps, x + along * s + left * c, z + along * c - left * s, 0.0, 0.0, ground)
+            assert ground[0] < under[0] + SAME
