@@ -15,7 +15,7 @@ from ..navigation import floor_at
 from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Plan, between_kernel, fall, over_nothing, struck
+from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import TRIES, Reach, Refused
@@ -251,7 +251,8 @@ class Jump(Reach, Controller):
         x, z = x + s * ahead + c * left, z + c * ahead - s * left
         if np.ndim(state.ground) != 1 or floor_at(x, z, intent.around) > float(state.floor) - 0.2 * self.physique.size:
             return False
-        return over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), self.physique.size)
+        return (over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), self.physique.size)
+                or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
 
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""
