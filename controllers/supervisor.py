@@ -33,11 +33,13 @@ TAKEN = "its next steps take in what pushed it"
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a controller refused. name: whose. intent: what was asked. state: from where."""
+    """What a controller refused. name: whose. intent: what was asked. state: from where. onward: with what it goes on finding out about it; None where
+    all is known."""
 
     name: str
     intent: Intent
     state: CharacterState
+    onward: Any = None
 
     def still(self, state: CharacterState, intent: Intent) -> bool:
         """Whether the same is asked from the same place: of the same stance, where somebody moves."""
@@ -162,13 +164,14 @@ class Supervisor(Controller):
         for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break
-            if asked is not None and asked.name == name and asked.still(own, intent):
+            still = asked is not None and asked.name == name and asked.still(own, intent)
+            if still and asked.onward is None:
                 continue
             try:
-                entered = self.parts[name].enter(own, intent)
+                entered = self.parts[name].begin(own, intent, asked.onward if still else None)
             except Unable as reason:
                 refused = str(reason)
-                asked = None if intent.leap is None else Asked(name, intent, own)
+                asked = None if intent.leap is None else Asked(name, intent, asked.state if still else own, reason.onward)
                 continue
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"

@@ -209,7 +209,7 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     calls = []
 
     class Never(Jump):
-        def enter(self, state, intent):
+        def begin(self, state, intent, onward=None):
             calls.append(state)
             raise Unable("not from here")
     person = Supervisor({"locomotion": Locomotion.load(), "jump": Never()})

@@ -14,7 +14,10 @@ from .wishes import HIGHEST, Intent, Strike
 
 
 class Unable(ValueError):
-    """A controller can't do what is asked from here; the message says why."""
+    """A controller can't do what is asked from here; the message says why. onward: with what `Controller.begin` goes on finding that out in the
+    next step, the message being what is known so far, "" for nothing; None where all is known."""
+
+    onward: Any = None
 
 
 LONGEST = 0.1
@@ -86,6 +89,11 @@ class Controller(Protocol):
         """The state with this controller's own memory, ready to step: it takes over pose and motion as
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
         raise NotImplementedError
+
+    def begin(self, state: CharacterState, intent: Intent, onward: Any = None) -> CharacterState:
+        """What `enter` gives, of which no more is worked out than a step has time for: Unable, with its `onward`, until it is known whether it can.
+        onward: of the step before, if the same was asked."""
+        return self.enter(state, intent)
 
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""

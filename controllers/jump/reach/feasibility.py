@@ -14,6 +14,7 @@ from ..body import FLAT, TURNED, Physique, along, measures, carriage, turns
 from ..motion import SPINS, Path, Plan, rolls
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
+from .seeking import Onward
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
@@ -42,14 +43,14 @@ TILT = 75.0
 
 class Refused(Unable):
     """A jump that this body can't make. nearest: the place (3,) [m] nearest to the target that it can reach
-    from `here` (3,), if one was found."""
+    from `here` (3,), if one was found. onward: with what it is gone on with finding out, in the next step; None where all is known."""
 
-    def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None):
+    def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None, onward: Onward | None = None):
         if nearest is not None:
             reason += "; the nearest that it reaches is " + ("" if here is None else f"{np.linalg.norm((nearest - here)[[0, 2]]):.1f} m away, at ")
             reason += f"({nearest[0]:.2f}, {nearest[1]:.2f}, {nearest[2]:.2f})"
         super().__init__(reason)
-        self.nearest = nearest
+        self.nearest, self.onward = nearest, onward
 
 
 def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) -> str:
