@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Status, Strike, Unable, but, seconds
+from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, seconds
 from .navigation import going
 from .navigation.passing import drawn_in
 
@@ -182,6 +182,11 @@ class Supervisor(Controller):
         """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""
         found = [why for why in (part.refusal(self.active(state)[1], intent) for part in self.parts.values()) if why is not None]
         return None if not found else "" if "" in found else found[0]
+
+    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
+        """The leap that intent.leap says, with how one of them could make it; None where none could."""
+        found = (part.found(self.active(state)[1], intent) for part in self.parts.values())
+        return next((leap for leap in found if leap is not None), None)
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
         """Who is on duty, and the state as that controller sees it."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..body import Pose, Skeleton
 from .states import CharacterState, Status
-from .wishes import HIGHEST, Intent, Strike
+from .wishes import HIGHEST, Intent, Leap, Strike
 
 
 class Unable(ValueError):
@@ -97,6 +97,10 @@ class Controller(Protocol):
 
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
+        return None
+
+    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
+        """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not."""
         return None
 
     def gain(self, strike: Strike) -> np.ndarray | None:

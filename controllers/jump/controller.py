@@ -18,7 +18,7 @@ from .crouching import Crouching, begun, crouched
 from .motion import Plan, between_kernel, fall, over_nothing, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import Found, Onward, Pieces, Reach, Refused, Seeking, whole
+from .reach import Found, Onward, Pieces, Reach, Refused, Seeking, too_weak, whole
 from .starting import FEET, Jumping, landed, ready, rebounding, start_of, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
@@ -120,10 +120,10 @@ class Jump(Reach, Controller):
             return found.made
         if isinstance(onward.seeking.after(onward.steps - 1), str):  # it was found just now: no step makes two plans
             raise Refused("", onward=onward)
-        made = self.again(found, self.start_of(state, intent.leap), float(level(state.floor)), intent.around)
-        if made is None:  # he moved meanwhile
+        found = self.again(found.arc.how, self.start_of(state, intent.leap), found.place, float(level(state.floor)), intent.leap.airtime, intent.around)
+        if found is None:  # he moved meanwhile
             raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
-        return made
+        return found.made
 
     def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.
@@ -143,6 +143,9 @@ class Jump(Reach, Controller):
         if leap.airtime is not None and not 0.05 <= leap.airtime <= 10.0:
             raise Refused(f"the airtime must be within 0.05 … 10 s, got {leap.airtime!r}")
         asked = start, place, floor, leap.airtime, intent.around
+        known = None if leap.how is None else self.again(leap.how, *asked)
+        if known is not None:
+            return known
         found, reason = yield from self.seen(*asked, parted)
         if found is not None:
             return found
@@ -151,6 +154,8 @@ class Jump(Reach, Controller):
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
                 return (f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
                         f"body there; the jump takes {other.made.path.airtime:.2f} s", None, here)
+        if start.single is None and not (self.path(start, place, floor, leap.airtime).strong or (usual := self.path(start, here, floor, leap.airtime)).strong):
+            return too_weak(self.physique, usual, self.longest), None, here
         ahead = (place - here) / max(float(np.linalg.norm(place - here)), 1e-9)
         if leap.slack > 0.0 and max((self.easy(start, floor) - place) @ ahead) > 0.0:  # else the nearest place is no farther on
             nearest, found = whole(self.nearby(*asked))
@@ -168,6 +173,16 @@ class Jump(Reach, Controller):
         start, floor = self.start_of(state, intent.leap), float(level(state.floor))
         place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
         return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1]
+
+    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
+        """The leap that can be made from a state, with how; None where it can't."""
+        leap = intent.leap
+        if leap is None:
+            return None
+        start, floor = self.start_of(state, leap), float(level(state.floor))
+        place = self.middle(start, floor) if leap.place is None else np.asarray(leap.place, float)
+        found, _ = whole(self.seen(start, place, floor, leap.airtime, intent.around, False))
+        return None if found is None else replace(leap, how=found.arc.how)
 
     @cached_property
     def longest(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -26,16 +26,22 @@ FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 
 
-class Arc(NamedTuple):
-    """A path to a place, why it can't be gone, if so, and how it is found from elsewhere: its airtime [s] or None for the usual one, arms down or not,
-    legs drawn up or not, and in which haste, see `Start`."""
+class How(NamedTuple):
+    """What tells an arc from others to the same place: its airtime [s] or None for the usual one, arms down or not, legs drawn up or not, and in which
+    haste, see `Start`."""
 
-    path: Path
-    why: str
     airtime: float | None
     low_arms: bool
     tucked: bool
     haste: int
+
+
+class Arc(NamedTuple):
+    """A path to a place, why it can't be gone, if so, and how it is found from elsewhere."""
+
+    path: Path
+    why: str
+    how: How
 
 
 Looks = Generator[Arc | int, float | None, None]
@@ -75,31 +81,33 @@ class Arcs:
             for low, tucked in WAYS if len(around) else WAYS[:1]:
                 if first is not None and higher > 1.0 and (not tucked or low in hits and self._still(*hits[low], first.airtime * higher)):
                     continue
-                how = flight, low, tucked
-                arc = partial(self._arc, start, place, floor, around, *how)
+                how = partial(How, flight, low, tucked)
+
+                def arc(haste: int, how: Callable[[int], How] = how) -> Arc:
+                    return self.arc(start, place, floor, around, how(haste))
                 quick, deep, slower = None, None, (0, 1)
                 if higher == 1.0:
                     yield PATH
-                    (way, why), slower = arc(0), (1,)
-                    deep = yield Arc(way, why, *how, 0)
-                if not slower[0] or why:  # who can't go it in all haste is not asked whether he can otherwise
+                    tried, slower = arc(0), (1,)
+                    deep = yield tried
+                if not slower[0] or tried.why:  # who can't go it in all haste is not asked whether he can otherwise
                     yield PATH
                     quick = arc(2)
-                    for haste in slower if not quick[1] else ():
+                    for haste in slower if not quick.why else ():
                         yield PATH
-                        way, why = arc(haste)
-                        if not why:
-                            deep = yield Arc(way, why, *how, haste)
+                        tried = arc(haste)
+                        if not tried.why:
+                            deep = yield tried
                             break
                 if deep is None or deep < LITTLE or start.runs and higher == 1.0:  # who runs flies lower then
                     if quick is None:
                         yield PATH
-                    way, why = quick or arc(2)
-                    deep = yield Arc(way, why, *how, 2)
-                first = first or way
+                    tried = quick or arc(2)
+                    deep = yield tried
+                first = first or tried.path
                 if deep is not None:
-                    hits[low] = way.airtime, deep
-                if not way.strong or why.startswith(HARD):
+                    hits[low] = tried.path.airtime, deep
+                if not tried.path.strong or tried.why.startswith(HARD):
                     return
             if airtime is not None or not len(around):
                 return
@@ -108,12 +116,11 @@ class Arcs:
         """Whether something that lay so deep [m] in a plan would still lie in one that flies longer [s], and so much higher."""
         return deep > RISES - 0.125 * float(self.gravity[1]) * (longer**2 - airtime**2)
 
-    def _arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], airtime: float | None, low_arms: bool, tucked: bool,
-             haste: int) -> tuple[Path, str]:
-        """One path to a place, and why it can't be gone, if so."""
-        start = replace(start, haste=haste)
-        way = grounded(self.physique, start, self.path(start, place, floor, airtime, low_arms, tucked), floor)
-        return way, fault(self.physique, way, around, floor)
+    def arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], how: How) -> Arc:
+        """One of them."""
+        start = replace(start, haste=how.haste)
+        way = grounded(self.physique, start, self.path(start, place, floor, how.airtime, how.low_arms, how.tucked), floor)
+        return Arc(way, fault(self.physique, way, around, floor), how)
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                around: Sequence[Any] = (), heights: Sequence[float] = HEIGHTS) -> tuple[Path, str]:

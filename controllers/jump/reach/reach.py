@@ -14,7 +14,7 @@ from ..body import FLAT, Physique, Start
 from ..motion import Plan, rolled, rolls, room
 from ..planner import plan
 from ..prior import Prior
-from .arcs import HEIGHTS, Arc, Arcs, following
+from .arcs import HEIGHTS, Arc, Arcs, How, following
 from .feasibility import STEEP, stopped, wrong
 from .seeking import PLAN, Pieces, whole
 from .sweep import Touch, touch
@@ -61,14 +61,16 @@ class Reach(Arcs):
         """What `planned` gives, in its pieces or all at once: then what was asked just now is not planned again."""
         if parted:
             return (yield from self.planned(start, place, floor, airtime, around, tries))
-        asked = (*(part if part is None or isinstance(part, float | int) else part.tobytes() for part in vars(start).values()),
-                 place.tobytes(), floor, airtime, tries)
-        for known, things, found in self._lately:
-            if known == asked and (things is around or list(things) == list(around)):
-                return found
-        found = whole(self.planned(start, place, floor, airtime, around, tries))
-        self._lately = (*self._lately[1 - KEPT:], (asked, around, found))
+        asked = _asked(start, place, floor, airtime, tries)
+        found = self._known(asked, around)
+        if found is None:
+            found = whole(self.planned(start, place, floor, airtime, around, tries))
+            self._lately = (*self._lately[1 - KEPT:], (asked, around, found))
         return found
+
+    def _known(self, asked: tuple[Any, ...], around: Sequence[Any]) -> tuple[Found | None, str] | None:
+        """What came of the same question, if that was asked just now."""
+        return next((found for known, things, found in self._lately if known == asked and (things is around or list(things) == list(around))), None)
 
     def planned(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
                 around: Sequence[Any], tries: int | None = None) -> Pieces[tuple[Found | None, str]]:
@@ -92,17 +94,20 @@ class Reach(Arcs):
             arc = yield from following(arcs, deep)
         return None, told
 
-    def again(self, found: Found, start: Start, floor: float, around: Sequence[Any]) -> Plan | None:
-        """The plan that was found from elsewhere, from here; None where there is none."""
-        (_, _, airtime, low_arms, tucked, haste), place = found.arc, found.place
+    def again(self, how: How, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any]) -> Found | None:
+        """The plan along an arc that was found from elsewhere; None where there is none."""
+        known = self._known(_asked(start, place, floor, airtime, None), around)
+        if known is not None and known[0] is not None and known[0].arc.how == how:
+            return known[0]
         if self.footing(start, place, floor, around):
             return None
-        way, why = self._arc(start, place, floor, around, airtime, low_arms, tucked, haste)
-        return None if why else self._made(start, place, floor, around, found.arc._replace(path=way))[0]
+        arc = self.arc(start, place, floor, around, how)
+        made = None if arc.why else self._made(start, place, floor, around, arc)[0]
+        return None if made is None else Found(made, arc, place)
 
     def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, float | None]:
         """The plan along an arc; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
-        made, why = self._down(plan(self.physique, replace(start, haste=arc.haste), arc.path, place, floor), around)
+        made, why = self._down(plan(self.physique, replace(start, haste=arc.how.haste), arc.path, place, floor), around)
         why = why or wrong(self.physique, made)
         hit = None if why else touch(self.physique, made, around)
         return (None, why, None) if why else (None, hit.reason, hit.deep) if hit is not None else (made, "", None)
@@ -124,12 +129,12 @@ class Reach(Arcs):
         way = arc.path
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = plan(self.physique, replace(start, haste=arc.haste), way, place, floor)
+        made = plan(self.physique, replace(start, haste=arc.how.haste), way, place, floor)
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                 around: Sequence[Any] = ()) -> np.ndarray | None:
-        """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from one that takes
+        """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from right above it, where it lies lower, or from one that takes
         no effort: where it stands, or where a run would carry the body; to `GRID`, however far the refused one is. None if that can't be
         reached either. It is looked for along arcs of the usual height alone: who would have to fly higher to get farther is offered a nearer one."""
         return whole(self.nearby(start, place, floor, airtime, around))[0]
@@ -141,8 +146,8 @@ class Reach(Arcs):
             if len(around):
                 there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
             return not (yield from self.surveyed(start, there, floor, airtime, around, HEIGHTS[:1]))[1]
-        found = None
-        for there in self.easy(start, floor):
+        found, deep = None, place[1] < floor and not len(around)  # who can't get as deep is told how deep he can get there
+        for there in ([place * FLAT + [0.0, floor, 0.0]] if deep else []) + list(self.easy(start, floor)):
             if (yield from reached(there)):
                 found = there
                 break
@@ -170,3 +175,8 @@ class Reach(Arcs):
         """The places (n, 3) to which it takes no effort to jump: where it stands, or where a run would carry the body."""
         run = start.velocity * FLAT * np.sqrt(9.81 * self.physique.size / -self.gravity[1])
         return self.middle(start, floor) + np.array([[0.0]] if start.single is None else CARRIED) * run
+
+
+def _asked(start: Start, place: np.ndarray, floor: float, airtime: float | None, tries: int | None) -> tuple[Any, ...]:
+    """A question, to be compared with others."""
+    return (*(part if part is None or isinstance(part, float | int) else part.tobytes() for part in vars(start).values()), place.tobytes(), floor, airtime, tries)

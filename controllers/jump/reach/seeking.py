@@ -9,8 +9,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 T = TypeVar("T")
 
-PATH, PLAN, SHARE = 1, 2, 3
-"""What a path costs, a plan of one that is swept, and what a step has time for: a plan and its path, or three paths."""
+PATH, PLAN, SHARE = 2, 1, 3
+"""What a path costs, what its plan does that is swept, and what a step has time for: a path, and its plan."""
 
 Pieces = Generator[int | str, Any, T]
 """Work in pieces: it yields what each costs before that is done, and in words what is known so far, with which a step is over."""
