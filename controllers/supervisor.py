@@ -164,14 +164,14 @@ class Supervisor(Controller):
         for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break
-            still = asked is not None and asked.name == name and asked.still(own, intent)
-            if still and asked.onward is None:
+            before = asked if asked is not None and asked.name == name and asked.still(own, intent) else None
+            if before is not None and before.onward is None:
                 continue
             try:
-                entered = self.parts[name].begin(own, intent, asked.onward if still else None)
+                entered = self.parts[name].begin(own, intent, None if before is None else before.onward)
             except Unable as reason:
                 refused = str(reason)
-                asked = None if intent.leap is None else Asked(name, intent, asked.state if still else own, reason.onward)
+                asked = None if intent.leap is None else Asked(name, intent, own if before is None else before.state, reason.onward)
                 continue
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"

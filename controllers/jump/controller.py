@@ -114,13 +114,15 @@ class Jump(Reach, Controller):
         found = onward.seeking.after(onward.steps)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
+        leap = intent.leap
         if not isinstance(found, Found):
             raise Refused(*found)
+        assert leap is not None  # or nothing would have been found
         if onward.steps == 1:
             return found.made
         if isinstance(onward.seeking.after(onward.steps - 1), str):  # it was found just now: no step makes two plans
             raise Refused("", onward=onward)
-        found = self.again(found.arc.how, self.start_of(state, intent.leap), found.place, float(level(state.floor)), intent.leap.airtime, intent.around)
+        found = self.again(found.arc.how, self.start_of(state, leap), found.place, float(level(state.floor)), leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
             raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
         return found.made
@@ -159,7 +161,7 @@ class Jump(Reach, Controller):
         ahead = (place - here) / max(float(np.linalg.norm(place - here)), 1e-9)
         if leap.slack > 0.0 and max((self.easy(start, floor) - place) @ ahead) > 0.0:  # else the nearest place is no farther on
             nearest, found = whole(self.nearby(*asked))
-            if nearest is not None and 0.0 < float((nearest - place) @ ahead) <= leap.slack:
+            if nearest is not None and found is not None and 0.0 < float((nearest - place) @ ahead) <= leap.slack:
                 return found
         else:
             yield reason
