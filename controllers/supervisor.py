@@ -168,7 +168,7 @@ class Supervisor(Controller):
             if before is not None and before.onward is None:
                 continue
             try:
-                entered = self.parts[name].begin(own, intent, None if before is None else before.onward)
+                entered = self.parts[name].seek(own, intent, None if before is None else before.onward)
             except Unable as reason:
                 refused = str(reason)
                 asked = None if intent.leap is None else Asked(name, intent, own if before is None else before.state, reason.onward)

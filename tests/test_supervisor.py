@@ -210,7 +210,7 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     calls = []
 
     class Never(Jump):
-        def begin(self, state, intent, onward=None):
+        def seek(self, state, intent, onward=None):
             calls.append(state)
             raise Unable("not from here")
     person = Supervisor({"locomotion": Locomotion.load(), "jump": Never()})

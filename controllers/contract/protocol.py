@@ -14,7 +14,7 @@ from .wishes import HIGHEST, Intent, Leap, Strike
 
 
 class Unable(ValueError):
-    """A controller can't do what is asked from here; the message says why. onward: with what `Controller.begin` goes on finding that out in the
+    """A controller can't do what is asked from here; the message says why. onward: with what `Controller.seek` goes on finding that out in the
     next step, the message being what is known so far, "" for nothing; None where all is known."""
 
     onward: Any = None
@@ -90,7 +90,7 @@ class Controller(Protocol):
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
         raise NotImplementedError
 
-    def begin(self, state: CharacterState, intent: Intent, onward: Any = None) -> CharacterState:
+    def seek(self, state: CharacterState, intent: Intent, onward: Any = None) -> CharacterState:
         """What `enter` gives, of which no more is worked out than a step has time for: Unable, with its `onward`, until it is known whether it can.
         onward: of the step before, if the same was asked."""
         return self.enter(state, intent)

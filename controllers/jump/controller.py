@@ -87,7 +87,7 @@ class Jump(Reach, Controller):
         if the jump can't be made."""
         return self._began(state, intent) or replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
 
-    def begin(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> CharacterState:
+    def seek(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> CharacterState:
         """The same, of which no more is worked out than a step has time for."""
         return self._began(state, intent) or replace(state, memory=Jumping.begun(self.sought(state, intent, onward), state, intent.leap))
 

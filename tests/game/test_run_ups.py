@@ -145,7 +145,7 @@ def test_who_thought_of_his_leap_makes_one_plan_as_it_goes_off(library, monkeypa
     monkeypatch.setattr(reach, "plan", lambda *given: plans.append(plan(*given)) or plans[-1])
     counts = {}
     for name, now, asked in (("all", state, intent), ("found", state, replace(intent, leap=leap)), ("elsewhere", elsewhere, replace(intent, leap=leap))):
-        Jumper().begin(now, asked)  # one who remembers nothing
+        Jumper().seek(now, asked)  # one who remembers nothing
         counts[name] = len(plans)
         plans.clear()
     assert counts["all"] > 1 and counts["found"] == counts["elsewhere"] == 1

@@ -103,7 +103,7 @@ def test_the_foot_stays_where_it_comes_down_and_no_hip_sinks_through_the_stride(
     assert np.linalg.norm(balls[0, [0, 2]] - made.feet[side, [0, 2]]) < 0.02
     assert min(sole_corners(jump.skeleton, *one)[..., 1].min() for one in placed) > -0.015
     heights = np.array([one[0][0, 1] for one in placed])
-    assert heights.min() > 0.74 and np.abs(np.diff(heights, 2)).max() < 0.02
+    assert heights.min() > 0.72 and np.abs(np.diff(heights, 2)).max() < 0.02
 
 
 @pytest.mark.parametrize("high", [0.0, 0.34])
@@ -122,12 +122,13 @@ def test_the_leg_that_swings_on_clears_the_floor_as_it_lands(person, runner, hig
     assert (soles[:, 1 - made.path.lands, :, 1] - high).min() > 0.0
 
 
-def test_no_stance_is_passed_in_the_air_after_a_leap(person):
+@pytest.mark.parametrize("late", [6, 12, 18])
+def test_no_stance_is_passed_in_the_air_after_a_leap(person, late):
     """At 3.4 m/s the leg that swings is slow to come ahead: its foot comes down for its stance, all the same."""
-    wish, state, leap, off = np.array([3.4, 0.0, 0.0]), person.start(), None, []
-    for _ in range(110):
+    wish, state, off = np.array([3.4, 0.0, 0.0]), person.start(), []
+    for _ in range(110 + late):
         state, _ = person.step(state, Intent(wish), 1 / FPS)
-    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + 2.2]))
+    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + 2.2]), slack=SLACK)
     for _ in range(100):
         state, _ = person.step(state, Intent(wish, leap if state.active != "jump" and not off else None), 1 / FPS)
         if state.active == "jump":
