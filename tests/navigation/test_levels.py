@@ -80,6 +80,15 @@ def test_the_quickest_leaps_that_can_be_made_lead_to_a_goal():
     assert other.crossings and named(other.crossings[0]) != named(way.crossings[0])
 
 
+@pytest.mark.parametrize("height", [0.6, 0.8, 1.0])
+def test_nobody_goes_down_into_a_gap_that_he_can_leap_over(height):
+    """Beyond the gap a ramp leads down, and the goal lies behind it, on the floor."""
+    near, far = (Box((0.0, 0.5 * height, z), (2.4, height, 2.0)) for z in (0.0, 3.0))
+    down = Box((0.0, -0.05, 3.0 + 1.0 + 2.5), (1.4, height + 0.1, 5.0), 0.0, slope=-height / 5.0)
+    leaps = crossed((near, far, down), (0.3, 0.3), (0.0, 10.0), lambda _: "", height).crossings
+    assert [leap.place[1] for leap in leaps] == pytest.approx([height])
+
+
 def test_why_no_leaps_lead_there_is_said():
     assert "no leap: too far" in crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: "too far", 0.6).reason
     nobody = crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: None, 0.6)

@@ -31,7 +31,8 @@ NEAREST = 6
 SPEED = 1.2
 """How fast one walks between them [m/s]."""
 LEAP = 1.8, 1.5
-"""What a leap counts for [s]: turning, crouching and getting up; and for each metre, more than to walk it, so that the shortest is leapt."""
+"""What a leap counts for [s]: turning, crouching and getting up; and for each metre, up and down, too, more than to walk it, so that the shortest is
+leapt and nobody goes down into a gap that he can leap over."""
 ASKED = 60
 """About no more leaps is asked."""
 ALIKE = 2
@@ -105,7 +106,7 @@ def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int,
     off, onto = (np.array([start, *(leap[k] for leap in leaps), end]) for k in (1, 2))
     from_, to = (np.array([end_, *(getattr(leap[0], name)[axes] for leap in leaps), goal])
                  for end_, name, axes in ((here, "place", [0, 2]), (goal, "ground", [0, 1])))
-    spent = np.array([0.0, *(LEAP[0] + LEAP[1] * sum(leap[0].asks) for leap in leaps), 0.0])
+    spent = np.array([0.0, *(LEAP[0] + LEAP[1] * (leap[0].asks[0] + abs(leap[0].place[1] - leap[0].height)) for leap in leaps), 0.0])
     times = np.linalg.norm(from_[:, None] - to[None], axis=-1) / SPEED + spent + 1e-9
     times[onto[:, None] != off[None]] = np.inf
     times[-1], times[:, 0] = np.inf, np.inf
