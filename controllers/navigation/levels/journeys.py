@@ -7,7 +7,6 @@ leap there is asked only of those that the quickest way so far has.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
@@ -35,8 +34,8 @@ LEAP = 1.8, 1.5
 leapt and nobody goes down into a gap that he can leap over."""
 ASKED = 60
 """About no more leaps is asked."""
-ALIKE = 2
-"""Of leaps as far and as high so many are asked about that can't be made for the same reason."""
+ALIKE, BY = 2, 1.0
+"""Of leaps side by side, as far and as high, so many are asked about that can't be made for the same reason; no others are then within so far [m]."""
 WEAK = "too "
 """How reasons begin by which nobody leaps farther or higher, either."""
 
@@ -75,7 +74,7 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
     barred = set(barred)
     leaps = [leap for leap in crossings(levels, np.array([here, goal])) if named(leap[0]) not in barred]
     times = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
-    good, faults, alike = set(), [], Counter[tuple[str, float, float]]()
+    good, faults = set(), list[tuple[str, Crossing]]()
     while len(good) + len(faults) < ASKED:
         _, before = dijkstra(times, indices=0, return_predecessors=True)
         way, at = [], int(before[-1])
@@ -90,15 +89,21 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
             return Journey(tuple(leaps[k][0] for k in way))
         if why is None:
             return Journey(())  # nobody here leaps: whoever plans the walk says what is in its way
-        asks = leaps[bad][0].asks
-        faults.append(why)
-        alike[why, *np.round(asks, 2)] += 1
+        faulty = leaps[bad][0]
+        faults.append((why, faulty))
+        alike = sum(other == why and _alike(leap, faulty) for other, leap in faults) >= ALIKE
         for k, (leap, *_) in enumerate(leaps):
-            worse = why.startswith(WEAK) and leap.asks[0] >= asks[0] - 1e-6 and leap.asks[1] >= asks[1] - 1e-6
-            same = alike[why, *np.round(asks, 2)] >= ALIKE and np.allclose(leap.asks, asks, atol=1e-6)
-            if k == bad or (worse or same) and k not in good:
+            worse = why.startswith(WEAK) and all(np.array(leap.asks) >= np.array(faulty.asks) - 1e-6)
+            if k == bad or (worse or alike and _alike(leap, faulty)) and k not in good:
                 times[:, k + 1] = np.inf
-    return Journey((), "no walk leads there, and no leap: " + max(sorted(set(faults)), key=faults.count) if faults else "")
+    whys = [why for why, _ in faults]
+    return Journey((), "no walk leads there, and no leap: " + max(sorted(set(whys)), key=whys.count) if whys else "")
+
+
+def _alike(one: Crossing, other: Crossing) -> bool:
+    """Whether leaps go as far and as high, side by side."""
+    return bool(np.allclose(one.asks, other.asks, atol=0.01) and math.dist(one.ground[:2], other.ground[:2]) < BY
+                and abs(math.remainder(one.ground[2] - other.ground[2], math.tau)) < 0.1)
 
 
 def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray, end: int) -> np.ndarray:
@@ -150,7 +155,9 @@ def _edge(levels: Levels, box: int, ends: np.ndarray) -> tuple[np.ndarray, np.nd
     """Places (S, 2) near a box's sides that can be stood on, those among them that are nearest to the ends; outward normals (S, 2); its height [m]."""
     out = levels.outline(box, INSET, APART)
     nearest = _nearest_on(levels, box, ends)
-    normals = out.normals[[int(np.linalg.norm(out.places - place, axis=1).argmin()) for place in nearest]]
+    side = [int(np.linalg.norm(out.places - place, axis=1).argmin()) for place in nearest]
+    normals = out.normals[side]
+    nearest = nearest + np.sum((out.places[side] - nearest) * normals, axis=-1, keepdims=True) * normals  # who stands on it leaps from its side
     places, normals = np.concatenate([out.places, nearest]), np.concatenate([out.normals, normals])
     height = float(levels.centres[box, 1] + levels.halves[box, 1])
     free = (levels.ground(places)[0] == box) & ~levels.shut(places, np.full(len(places), height))

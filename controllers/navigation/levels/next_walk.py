@@ -16,6 +16,8 @@ Refusal = Callable[[CharacterState, Intent], str | None]
 """Says why nobody could leap from a state as an intent says, as `Controller.refusal`."""
 
 
+TOO_FAR = "too far"
+"""How the reasons begin by which one leaps there only from a walk."""
 RUN_UPS = 2
 """A leap that did not go off at so many run-ups is left."""
 
@@ -41,7 +43,7 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     is asked for leaps, by default his own. known: the leaps that are left of a way that he is on: they are not sought again where they lead on from here.
     stands: leaps, as `named`, that did not go off from a walk, once for each time. ask: is called for what takes long, so often as it counts for leaps.
     """
-    refusal, tried = walker.refusal if refusal is None else refusal, set[float]()
+    refusal, tried = walker.refusal if refusal is None else refusal, set[tuple[float, ...]]()
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
     start = levels.under(here, float(state.floor))
     region = int(levels.regions[start])
@@ -55,11 +57,13 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
         return refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
 
     def able(leap: Crossing) -> str | None:
-        why, far = from_stand(leap), round(leap.asks[0], 2)
-        for _ in range(TRIES if why and far not in tried else 0):
+        why, asks = from_stand(leap), tuple(np.round(leap.asks, 1))
+        if why is None or not why.startswith(TOO_FAR):
+            return why
+        for _ in range(TRIES if asks not in tried else 0):
             ask()
-        tried.add(far)
-        return "" if why and farther(walker, leap, around) else why
+        tried.add(asks)
+        return "" if farther(walker, leap, around) else why
 
     def to(crossings: tuple[Crossing, ...]) -> Leg:
         """The walk to the first of them; back, where he is too near for the run-up without which it is too far."""

@@ -22,7 +22,7 @@ SHARE = 0.9
 """Plans keep to this share of what is walked: what is left serves to catch up."""
 PACES = 1.35, 1.6, 1.9
 """So fast one may walk as one leaps on [m/s], as slowly as will do; slower, and both feet push off as from a stand, faster, and legs run."""
-FAR, UP = 2.3, 0.1
+FAR, UP = 2.3, 0.5
 """Nobody leaps from a walk farther than this [m], or higher up."""
 LONG = 1.65
 """Who leaps from a walk leaps so far at least [m]: landing nearer, he would come to a stand."""
@@ -46,8 +46,8 @@ PAST = 0.08
 """No farther beyond where the leap was to go off it does [m]."""
 EVERY = 3
 """About every so manieth step is asked [steps]."""
-FINE = 0.05
-"""Run-ups are measured for leaps as far as so much more or less [m]."""
+FINE, HIGH = 0.05, 0.1
+"""Run-ups are measured for leaps as far, and as high up, as so much more or less [m]."""
 TRIES = 4
 """What measuring a run-up counts for, in leaps that are asked about."""
 
@@ -70,7 +70,8 @@ def _top(planes: np.ndarray) -> float:
 def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for: np.ndarray | None = None) -> np.ndarray | None:
     """Where (2,) who can leap only from a walk begins to walk to it; None where there is no room, or he could leap from nowhere. but_for: (2,) not there."""
     levels = levels_of(around)
-    for back in measured(walker, FINE * math.ceil(leap.asks[0] / FINE - 1e-6)):
+    far, up = leap.asks
+    for back in measured(walker, FINE * math.ceil(far / FINE - 1e-6), HIGH * math.ceil(up / HIGH - 1e-6)):
         begins = leap.ground[:2] - back * _ahead(leap)
         if but_for is not None and math.dist(begins, but_for) < ELSEWHERE:
             continue
@@ -92,10 +93,10 @@ def farther(walker: Controller, leap: Crossing, around: Sequence[Any]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def measured(walker: Controller, far: float) -> tuple[float, ...]:
-    """How long [m] the run-ups are from a stand, on a level floor, after which a leap so far [m] goes off, played ahead."""
+def measured(walker: Controller, far: float, up: float) -> tuple[float, ...]:
+    """How long [m] the run-ups are from a stand, on a level floor, after which a leap so far and so high up [m] goes off, played ahead."""
     planes = walker.limits(SHARE)
-    leap, found = Crossing(np.zeros(3), np.array([0.0, 0.0, far]), 0.0), []
+    leap, found = Crossing(np.zeros(3), np.array([0.0, up, far]), 0.0), []
     if planes is None or _top(planes) < PACES[0]:
         return ()
     for back in BACKS:
