@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Status, Strike, Unable, but, seconds
+from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, seconds
 from .navigation import going
 from .navigation.passing import drawn_in
 
@@ -33,11 +33,13 @@ TAKEN = "its next steps take in what pushed it"
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a controller refused. name: whose. intent: what was asked. state: from where."""
+    """What a controller refused. name: whose. intent: what was asked. state: from where. onward: with what it goes on finding out about it; None where
+    all is known."""
 
     name: str
     intent: Intent
     state: CharacterState
+    onward: Any = None
 
     def still(self, state: CharacterState, intent: Intent) -> bool:
         """Whether the same is asked from the same place: of the same stance, where somebody moves."""
@@ -162,13 +164,14 @@ class Supervisor(Controller):
         for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break
-            if asked is not None and asked.name == name and asked.still(own, intent):
+            before = asked if asked is not None and asked.name == name and asked.still(own, intent) else None
+            if before is not None and before.onward is None:
                 continue
             try:
-                entered = self.parts[name].enter(own, intent)
+                entered = self.parts[name].begin(own, intent, None if before is None else before.onward)
             except Unable as reason:
                 refused = str(reason)
-                asked = None if intent.leap is None else Asked(name, intent, own)
+                asked = None if intent.leap is None else Asked(name, intent, own if before is None else before.state, reason.onward)
                 continue
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"
@@ -179,6 +182,11 @@ class Supervisor(Controller):
         """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""
         found = [why for why in (part.refusal(self.active(state)[1], intent) for part in self.parts.values()) if why is not None]
         return None if not found else "" if "" in found else found[0]
+
+    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
+        """The leap that intent.leap says, with how one of them could make it; None where none could."""
+        found = (part.found(self.active(state)[1], intent) for part in self.parts.values())
+        return next((leap for leap in found if leap is not None), None)
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
         """Who is on duty, and the state as that controller sees it."""

@@ -10,11 +10,14 @@ import numpy as np
 
 from ..body import Pose, Skeleton
 from .states import CharacterState, Status
-from .wishes import HIGHEST, Intent, Strike
+from .wishes import HIGHEST, Intent, Leap, Strike
 
 
 class Unable(ValueError):
-    """A controller can't do what is asked from here; the message says why."""
+    """A controller can't do what is asked from here; the message says why. onward: with what `Controller.begin` goes on finding that out in the
+    next step, the message being what is known so far, "" for nothing; None where all is known."""
+
+    onward: Any = None
 
 
 LONGEST = 0.1
@@ -87,8 +90,17 @@ class Controller(Protocol):
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
         raise NotImplementedError
 
+    def begin(self, state: CharacterState, intent: Intent, onward: Any = None) -> CharacterState:
+        """What `enter` gives, of which no more is worked out than a step has time for: Unable, with its `onward`, until it is known whether it can.
+        onward: of the step before, if the same was asked."""
+        return self.enter(state, intent)
+
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
+        return None
+
+    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
+        """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not."""
         return None
 
     def gain(self, strike: Strike) -> np.ndarray | None:

@@ -31,6 +31,7 @@ class Leap:
     airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
     on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or run on.
+    how: along which arc it was found that it can be made, see `Controller.found`, which is tried first; None where that was not.
     """
 
     place: np.ndarray | None
@@ -38,6 +39,7 @@ class Leap:
     slack: float = 0.0
     heading: float | None = None
     on: Literal["left", "right", "both"] | None = None
+    how: Any = None
 
     def __post_init__(self):
         if self.place is not None:

@@ -15,10 +15,10 @@ from ..navigation import floor_at
 from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Plan, between_kernel, fall, over_nothing, struck
+from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import TRIES, Reach, Refused
+from .reach import Found, Onward, Pieces, Reach, Refused, Seeking, too_weak, whole
 from .starting import FEET, Jumping, landed, ready, rebounding, start_of, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
@@ -85,15 +85,51 @@ class Jump(Reach, Controller):
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,
         if the jump can't be made."""
+        return self._began(state, intent) or replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
+
+    def begin(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> CharacterState:
+        """The same, of which no more is worked out than a step has time for."""
+        return self._began(state, intent) or replace(state, memory=Jumping.begun(self.sought(state, intent, onward), state, intent.leap))
+
+    def _began(self, state: CharacterState, intent: Intent) -> CharacterState | None:
+        """The state at the beginning of what needs no plan, a crouch or a fall; None where a leap is asked."""
         if intent.around and self._lost_floor(state, intent):
             fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
             return replace(state, memory=Jumping.begun(fallen, state, intent.leap, "there was nothing to step on"))
         if intent.leap is None and intent.aim is not None:
             return replace(state, memory=begun(self, self.start_of(state), float(level(state.floor))))
-        return replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
+        return None
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
         """The jump that `intent.leap` asks for, from the state as it is. Refused, with the reason."""
+        found = whole(self._looked_for(state, intent))
+        if isinstance(found, Found):
+            return found.made
+        raise Refused(*found)
+
+    def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
+        """The same, sought in pieces. onward: of the step before, where the same was asked. Refused until a plan is found, with why there is none as
+        far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
+        onward = (onward or Onward(Seeking(self._looked_for(state, intent, self._waits(state))))).next
+        found = onward.seeking.after(onward.steps)
+        if isinstance(found, str):
+            raise Refused(found, onward=onward)
+        leap = intent.leap
+        if not isinstance(found, Found):
+            raise Refused(*found)
+        assert leap is not None  # or nothing would have been found
+        if onward.steps == 1:
+            return found.made
+        if isinstance(onward.seeking.after(onward.steps - 1), str):  # it was found just now: no step makes two plans
+            raise Refused("", onward=onward)
+        found = self.again(found.arc.how, self.start_of(state, leap), found.place, float(level(state.floor)), leap.airtime, intent.around)
+        if found is None:  # he moved meanwhile
+            raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
+        return found.made
+
+    def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
+        """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.
+        parted: whether plans are pieces of it, too."""
         leap = intent.leap
         if leap is None:
             raise Refused("nobody asked for a jump")
@@ -108,20 +144,29 @@ class Jump(Reach, Controller):
             raise Refused(f"the target must be three finite numbers, got {leap.place!r}")
         if leap.airtime is not None and not 0.05 <= leap.airtime <= 10.0:
             raise Refused(f"the airtime must be within 0.05 … 10 s, got {leap.airtime!r}")
-        made, reason = self.attempt(start, place, floor, leap.airtime, intent.around)
-        if made is not None:
-            return made
+        asked = start, place, floor, leap.airtime, intent.around
+        known = None if leap.how is None else self.again(leap.how, *asked)
+        if known is not None:
+            return known
+        found, reason = yield from self.seen(*asked, parted)
+        if found is not None:
+            return found
         if leap.airtime is not None:
-            other = self.attempt(start, place, floor, None, intent.around)[0]
-            if other is not None and abs(other.path.airtime - leap.airtime) > 0.01:
-                raise Refused(f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.path.airtime else 'short'} for this "
-                              f"body there; the jump takes {other.path.airtime:.2f} s")
-        nearest = self.nearest(start, place, floor, leap.airtime, intent.around)
-        if nearest is not None and 0.0 < float((nearest - place) @ (place - here)) / max(float(np.linalg.norm(place - here)), 1e-9) <= leap.slack:
-            made = self.attempt(start, nearest, floor, leap.airtime, intent.around, TRIES)[0]  # it was planned as it was found
-            if made is not None:
-                return made
-        raise Refused(reason, nearest, here)
+            other, _ = yield from self.seen(start, place, floor, None, intent.around, parted)
+            if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
+                return (f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
+                        f"body there; the jump takes {other.made.path.airtime:.2f} s", None, here)
+        if start.single is None and not (self.path(start, place, floor, leap.airtime).strong or (usual := self.path(start, here, floor, leap.airtime)).strong):
+            return too_weak(self.physique, usual, self.longest), None, here
+        ahead = (place - here) / max(float(np.linalg.norm(place - here)), 1e-9)
+        if leap.slack > 0.0 and max((self.easy(start, floor) - place) @ ahead) > 0.0:  # else the nearest place is no farther on
+            nearest, found = whole(self.nearby(*asked))
+            if nearest is not None and found is not None and 0.0 < float((nearest - place) @ ahead) <= leap.slack:
+                return found
+        else:
+            yield reason
+            nearest, _ = yield from self.nearby(*asked)
+        return reason, nearest, here
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
         """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""
@@ -130,6 +175,16 @@ class Jump(Reach, Controller):
         start, floor = self.start_of(state, intent.leap), float(level(state.floor))
         place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
         return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1]
+
+    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
+        """The leap that can be made from a state, with how; None where it can't."""
+        leap = intent.leap
+        if leap is None:
+            return None
+        start, floor = self.start_of(state, leap), float(level(state.floor))
+        place = self.middle(start, floor) if leap.place is None else np.asarray(leap.place, float)
+        found, _ = whole(self.seen(start, place, floor, leap.airtime, intent.around, False))
+        return None if found is None else replace(leap, how=found.arc.how)
 
     @cached_property
     def longest(self) -> float:
@@ -195,13 +250,18 @@ class Jump(Reach, Controller):
         says why, and looks again only if something else is asked."""
         memory, leap = state.memory, intent.leap
         if leap is None:
-            return state if not memory.refused else replace(state, memory=replace(memory, refused="", asked=None))
-        if leap.same(memory.asked):
+            return state if memory.asked is None else replace(state, memory=replace(memory, refused="", asked=None, onward=None))
+        return self._leapt(state, intent, leap)
+
+    def _leapt(self, state: CharacterState, intent: Intent, leap: Leap) -> CharacterState:
+        """The state at the beginning of a leap; where it can't be made yet, or at all, as it is, and with why. What was refused is not asked again."""
+        memory, same = state.memory, leap.same(state.memory.asked)
+        if same and memory.onward is None:
             return state
         try:
-            return replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
+            return replace(state, memory=Jumping.begun(self.sought(state, intent, memory.onward if same else None), state, leap))
         except Refused as reason:
-            return replace(state, memory=replace(memory, refused=str(reason), asked=leap))
+            return replace(state, memory=replace(memory, refused=str(reason), asked=leap, onward=reason.onward))
 
     def _followed(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state of who comes down at the beginning of the leap that is to follow, or of a crouch if one is aimed at; as it is where there
@@ -210,13 +270,8 @@ class Jump(Reach, Controller):
         if leap is None:
             if intent.aim is not None and memory.rebounds and memory.time >= memory.plan.lowest:
                 return replace(state, memory=begun(self, self.start_of(state), float(memory.plan.feet[0, 1] - self.physique.tables.sole)))
-            return state if memory.asked is None else replace(state, memory=replace(memory, asked=None, refused=""))
-        if not memory.rebounds or leap.same(memory.asked):
-            return state
-        try:
-            return replace(state, memory=Jumping.begun(self.plan(state, intent), state, leap))
-        except Refused as reason:
-            return replace(state, memory=replace(memory, refused=str(reason), asked=leap))
+            return state if memory.asked is None else replace(state, memory=replace(memory, asked=None, refused="", onward=None))
+        return self._leapt(state, intent, leap) if memory.rebounds else state
 
     def _hit(self, state: CharacterState, around: Sequence[Any], dt: float) -> CharacterState:
         """The state as it is if it strikes nothing in the air, else at the beginning of a fall."""
@@ -251,7 +306,12 @@ class Jump(Reach, Controller):
         x, z = x + s * ahead + c * left, z + c * ahead - s * left
         if np.ndim(state.ground) != 1 or floor_at(x, z, intent.around) > float(state.floor) - 0.2 * self.physique.size:
             return False
-        return over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), self.physique.size)
+        return (over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), self.physique.size)
+                or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
+
+    def _waits(self, state: CharacterState) -> bool:
+        """Whether it will be in a moment where it is now."""
+        return isinstance(state.memory, Crouching) or not isinstance(state.memory, Jumping) and self._stands(state)
 
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""

@@ -16,7 +16,7 @@ from ..contract import CharacterState, Leap
 from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, turns, vectors
 from .motion import FADE, faded, ground_kernel
 from .prior import BETWEEN, LEGS
-from .reach import Reach
+from .reach import Onward, Reach
 from .starting import turning
 
 RATE = 10.0
@@ -32,7 +32,7 @@ class Crouching:
     """What somebody who crouches remembers. start: how it began; time: [s] since. offset: (J, 3) [rad] what its limbs differed by then,
     the pelvis's first. planted: (2, 5) where its feet come to stand. place, rate, bend: (14,) where the centre of mass is [m] and how the body
     is carried [rad], and their first and second derivatives. goal: (14,) where they shall be. leap: for what it crouches, None as it
-    stands up. refused: why the jump that was asked can't be made, and which one that was.
+    stands up. refused: why the jump that was asked can't be made, asked: which one that was, onward: with what that is gone on with being found out.
     """
 
     start: Start
@@ -46,6 +46,7 @@ class Crouching:
     leap: Leap | None = None
     refused: str = ""
     asked: Leap | None = None
+    onward: Onward | None = None
 
     @property
     def stands(self) -> bool:

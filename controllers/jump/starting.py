@@ -11,6 +11,7 @@ from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
 from ..contract import CharacterState, Leap
 from .body import FLAT, Physique, Start, soles, vectors
 from .motion import PLANT, Plan
+from .reach import Onward
 
 RUNNING = 1.2
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
@@ -30,7 +31,7 @@ SPRINGS = 0.05
 class Jumping:
     """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
     plan is a fall. hits: how often. shift: (3,) x, z [m] of the ground frame from under the centre of mass, and its heading's [rad] from the plan's, as that began. asked: what is
-    not to be asked again until it was let go; refused: why the leap that was to follow can't be made."""
+    not to be asked again until it was let go; refused: why the leap that was to follow can't be made, onward: with what that is gone on with being found out."""
 
     plan: Plan
     time: float = 0.0
@@ -39,6 +40,7 @@ class Jumping:
     shift: np.ndarray = field(default_factory=lambda: np.zeros(3))
     asked: Leap | None = None
     refused: str = ""
+    onward: Onward | None = None
 
     @staticmethod
     def begun(made: Plan, state: CharacterState, asked: Leap | None = None, fault: str = "", hits: int = 0) -> Jumping:

@@ -68,7 +68,7 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     if m.waits:
         come_over(m, stance, most, dt)
         push = 0.0
-    _take_up(m.command, m.rate, p, settings, lean, lean * push, time_to_stop(m, settings, table), m.steep, dt)
+    _take_up(m.command, m.rate, p, settings, lean, lean * push, PUSHES[m.family], time_to_stop(m, settings, table), m.steep, dt)
 
 
 @kernel
@@ -78,10 +78,11 @@ def _turns(asked, speed):
 
 
 @kernel
-def _take_up(command, rate, asked, settings, turning, push, left, steep, dt):
+def _take_up(command, rate, asked, settings, turning, push, mean, left, steep, dt):
     """Lead a command (3,) and its rate (3,) towards what is asked (3,): shoulders turn in half the time, and in the air, too.
 
-    left: how long somebody who stops is still on the way [s], 0 for others; steep: with which power of that he slows down.
+    mean: the share of their push that legs have on average: who speeds up or comes to rest makes up for it, so that a runner, who pushes
+    only while a foot stands, takes that up in the time in which a walker does. left: how long somebody who stops is still on the way [s], 0 for others; steep: with which power of that he slows down.
     """
     most, halflife = settings.acceleration * settings.agility, settings.command_halflife / settings.agility
     before = command[1]
@@ -91,6 +92,8 @@ def _take_up(command, rate, asked, settings, turning, push, left, steep, dt):
         command[1], rate[1] = before + math.copysign(4.0 * most * dt, turn), math.copysign(4.0 * most, turn)
     if push <= 0.0:
         return
+    if asked[0] > command[0] or asked[0] < ON_SPOT:
+        halflife *= mean
     round_curve = 0.5 * (abs(before) + abs(command[1])) * math.hypot(command[0], command[2])
     most = math.sqrt(max(most * most - round_curve * round_curve, (LEFT_OVER * most) ** 2))
     forward, forward_rate = spring_kernel(command[0], rate[0], asked[0], halflife, push * dt)
@@ -142,7 +145,7 @@ def look_ahead(m, settings, table, later, ground, command):
     for k in range(2 * PIECES):
         dt = (moment if k < PIECES else later - moment) / PIECES
         v_f, omega, v_l = now[0], now[1], now[2]
-        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], left, m.steep, dt)
+        _take_up(now, rate, m.asked, settings, 1.0, PUSHES[m.family], PUSHES[m.family], left, m.steep, dt)
         left = max(left - dt, 0.0)
         advance(ground, 0.5 * (v_f + now[0]), 0.5 * (omega + now[1]), 0.5 * (v_l + now[2]), dt)
         if k == PIECES - 1:

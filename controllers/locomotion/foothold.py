@@ -18,7 +18,7 @@ from .command import look_ahead, reached
 from .control_space import SCALE
 from .foot_points import foot_points
 from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, series_kernel
-from .last_stride import bring_together
+from .last_stride import bring_together, step_first
 from .root_motion import advance, locate, short_way, time_ahead
 from .turning_back import pivots
 from .turning_step import END as TURNED, turn_ahead, turned_row
@@ -93,7 +93,9 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt
         x, z = m.land[foot, 0], m.land[foot, 1]
         m.land[foot, 0] = m.land[foot, 1] = 0.0
         bring_together(m, foot, legs.stance)
+        wanted_x, wanted_z = m.land[foot, 0], m.land[foot, 1]
         _beside(m, body, foot, ahead, m.turn == 0.0 or not m.spot)
+        step_first(m, foot, math.hypot(m.land[foot, 0] - wanted_x, m.land[foot, 1] - wanted_z))
         if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0 and flat:
             _still_reached(m, foot, x, z, ahead.until[foot], dt)
 

@@ -38,6 +38,8 @@ BRAKING = 0.5
 """Who brakes by more than this share of his push goes on as hard as he can."""
 SHORT, LONGER = 0.7, 0.2
 """He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
+AT, CROWDED = 0.1, 0.08
+"""Who is no farther from his place than this [m] is there; a foot that is kept by more than the second [m] from where it belongs is crowded out by the other."""
 NOWHERE, AHEAD, STOPS, CHOSE = range(4)
 """Whether there is a place where somebody is to come to rest: none; one ahead; he has let go of his wish for it; he stops at one of his own choice."""
 BEYOND, ON_ITS_WAY = 0.1, 0.5 + STRIKE
@@ -245,6 +247,15 @@ def bring_together(m, foot, stance):
         z = m.halt[1] - s * stance[ball, 0] + c * stance[ball, 1] - m.coming[foot, 1, 1]
         share = min(LONGER / max(math.hypot(x, z), 1e-9), 1.0)
         m.land[foot, 0], m.land[foot, 1] = share * x, share * z
+
+
+@kernel
+def step_first(m, foot, aside):
+    """Let somebody who turns at his place take another step before he stops, where the foot that he is to stand on can't be set down by `aside` [m] where it belongs: the other one
+    stands there."""
+    if m.halts == STOPS and 0.5 < m.stop <= 0.5 + STRIKE and foot != _last(m) and aside > CROWDED \
+            and math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) < AT and math.hypot(m.command[0], m.command[2]) < LEAST:
+        m.stop += 0.5
 
 
 @kernel

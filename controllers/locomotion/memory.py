@@ -154,7 +154,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("halt", "f8", 3), ("halts", "i4"),  # where to come to rest, x, z in the world, heading or NaN; whether there is such a place, and he stops for it
         ("onset", "f4"), ("first", "i4"), ("shares", "f4", 2), ("shares_rate", "f4", 2),  # how much phase of a start is left, its first foot, how far it shows, and how fast that changes
         ("heads", "i4"), ("towards", "f8", 2),  # whether it is told which heading and speed it is to have in the end, and these
-        ("turn", "f4"), ("turned", "f4"), ("turn_gain", "f4"),  # how far it turns in steps of their own, 0 for none; where in its phase that is; over what is fitted
+        ("turn", "f4"), ("turned", "f4"), ("turn_gain", "f4"), ("turn_haste", "f4"),  # how far it turns in steps of their own, 0 for none; where in its phase that is; over what is fitted; how far (0 … 1) its second step is a runner's
         ("stray", "f8", 2), ("spot", "i4"), ("turns_to", "f8"), ("turn_ends", "f8"), ("left_turn", "i4"), ("glide", "f8", 2), ("backs", "i4"), ("corner", "f4"), ("corner_rate", "f4"),  # whether on the spot; the heading it was told, that it ends with; whether it has just been left; what is left of the walk before it, x, z in the world [m/s]; to which side he turns back who brakes for it, 1 left, -1 right; how far his pose takes a corner
         ("rested", "f4"), ("presence", "f4"), ("presence_rate", "f4"),  # how long it has stood [s], how far its idling shows
         ("moment", "f4"), ("luck", "u4"), ("alert", "i4"),  # where in the recorded idling it is, and what comes next

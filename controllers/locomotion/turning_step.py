@@ -52,6 +52,9 @@ ENTRY, LEAVING = 0.1, 0.16
 """The half-lives [s] of what is left of the pose before a turn, and of a turn after it."""
 GLIDES = 0.12
 """What somebody who walked until a turn is faster than it goes with this half-life [s]."""
+RUNS, SECOND, RUNS_ON = (1.3, 2.5), (0.42, 0.6), 0.3
+"""Who is to be faster than the first of these [m/s], altogether from the second on, takes the second step of a turn, from and until so long after its first toe-off in
+phase, by this share faster."""
 SMALLEST = 0.0, 1.3
 """Smaller turns than this [rad] are such ones, whose way is turned less: no smaller ones were recorded."""
 FOLLOWS = 0.04
@@ -124,6 +127,7 @@ def enter_turn(m, turns, turn, since, row):
     m.turn_ends = m.ground[2] + turn
     m.turn, m.turned, m.first = turn, since, 0 if turn > 0.0 else 1
     m.turn_gain = 1.0
+    m.turn_haste = 0.0 if m.spot else smooth((m.towards[1] - RUNS[0]) / (RUNS[1] - RUNS[0]))
     m.stray[0] = m.stray[1] = m.glide[0] = m.glide[1] = 0.0
     whole = way_kernel(m, turns, STRIKE if m.spot else END) - way_kernel(m, turns, since)
     m.turn_gain = (1.0 - FOLLOWS * m.spot) * turn / whole
@@ -292,5 +296,6 @@ def turn_ahead(m, turns, agility, later, ground):
 
 @kernel
 def _tempo(m, since):
-    """How many times as fast as recorded a turn is there."""
-    return TEMPO[m.spot] + (HASTE[m.spot] - TEMPO[m.spot]) * (1.0 - smooth(1.0 + since / BEFORE))
+    """How many times as fast as recorded a turn is there: at first, while weight shifts, and in the second step of somebody who goes over into a run."""
+    pace = TEMPO[m.spot] + (HASTE[m.spot] - TEMPO[m.spot]) * (1.0 - smooth(1.0 + since / BEFORE))
+    return pace * (1.0 + RUNS_ON * m.turn_haste * smooth((since - SECOND[0]) / (SECOND[1] - SECOND[0])))

@@ -192,7 +192,7 @@ class Play(Game):
         count = len(self.now.players)
         if count > len(before.players) and not self.hands.has_pad(count):
             self.kept.say(f"player {count} waits for a gamepad: plug one in")
-        for line in refused(before, self.now):
+        for line in refused(before, self.now, self.previews):
             for part in broken(line):
                 self.kept.say(part)
 

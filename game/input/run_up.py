@@ -196,8 +196,9 @@ def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, f
     for footfall in reversed(footfalls):
         for leap in _beyond(footfall, blocked, float(state.floor), around):
             ask()
-            if controller.refusal(footfall.state, but(footfall.intent, leap=leap)) == "":
-                return RunUp(footfall.number, None, leap, velocity)
+            found = controller.found(footfall.state, but(footfall.intent, leap=leap))
+            if found is not None:
+                return RunUp(footfall.number, None, found, velocity)
     return None
 
 

@@ -18,7 +18,7 @@ from gambol.controllers.contract import CharacterState, Intent, Leap
 from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
-from ..explain import preview
+from ..explain import Preview, preview
 from ..input import PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, landing, last_chance, leaps, leaving, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
@@ -140,13 +140,13 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
     return RunUp(-1, velocity=velocity, thought=Thought(think, DT)).known(near(WAITED, 0.0), halt)
 
 
-def refused(before: SessionState, after: SessionState) -> tuple[str, ...]:
-    """Why jumps that players had asked for were given up in the last step: a line for each."""
+def refused(before: SessionState, after: SessionState, seen: Sequence[Preview | None] = ()) -> tuple[str, ...]:
+    """Why jumps that players had asked for were given up in the last step: a line for each. seen: what they saw of them, where that was drawn; else that is found out now."""
     lines = []
     for i, (old, new, was, now) in enumerate(zip(before.players, after.players, before.after.characters, after.after.characters)):
         if old.aim.waiting > 0.0 and new.aim == Aim() and not leaving(now.state) and now is not was:
-            seen = preview(was, old.aim, before.after.about(i), sweeps=False)
-            why = seen.why if seen is not None else ""
+            drawn = seen[i] if i < len(seen) else preview(was, old.aim, before.after.about(i), sweeps=False)
+            why = drawn.why if drawn is not None else ""
             lines.append(f"no jump: {why or was.state.refused or 'no foot stood ready'}")
     return tuple(lines)
 

@@ -1,11 +1,15 @@
 """Run-ups with a leap that can't be made: he comes to rest before what he can't leap, and is told why; one that can be made goes off as ever."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body import Pose, forward_kinematics
 from gambol.controllers.contract import Intent
+from gambol.controllers.jump import Jump as Jumper
 from gambol.controllers.jump import Jumping
+from gambol.controllers.jump.reach import reach
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.navigation import gap
 from gambol.controllers.navigation.thinking import steps_of
@@ -127,6 +131,26 @@ def test_a_leap_held_at_a_run_goes_off_at_the_last_footfall_and_he_runs_on(libra
     assert not any(s.memory.memory.fault for s in leapt) and states[-1].ground[1] > far + 3.4
     assert min(s.velocity[0] for s in states[first:]) > 1.2
     assert sum(now.active == "jump" and was.active != "jump" for was, now in zip(states, states[1:])) == 1, "the held button means one leap"
+
+
+def test_who_thought_of_his_leap_makes_one_plan_as_it_goes_off(library, monkeypatch):
+    """Along the arc that was found; which is the plan that he finds if he looks at all of them, and from a hair elsewhere, too."""
+    who, things = person(library.tuned(Settings(idle=0.0))), (box(5.6, 0.4, 0.15),)
+    states = running(who, things, 0.0, 5.6)
+    state, after = next(pair for pair in zip(states, states[1:]) if pair[1].active == "jump")
+    state, intent = who.active(state)[1], Intent(leap=replace(after.memory.memory.asked, how=None), around=things)
+    leap = Jumper().found(state, intent)
+    elsewhere = replace(state, pose=Pose(state.pose.root + np.float32(1e-5), state.pose.rotations))
+    plans, plan = [], reach.plan
+    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(plan(*given)) or plans[-1])
+    counts = {}
+    for name, now, asked in (("all", state, intent), ("found", state, replace(intent, leap=leap)), ("elsewhere", elsewhere, replace(intent, leap=leap))):
+        Jumper().begin(now, asked)  # one who remembers nothing
+        counts[name] = len(plans)
+        plans.clear()
+    assert counts["all"] > 1 and counts["found"] == counts["elsewhere"] == 1
+    whole, again = (Jumper().plan(state, asked) for asked in (intent, replace(intent, leap=leap)))
+    assert np.array_equal(whole.local, again.local) and np.array_equal(whole.roots, again.roots)
 
 
 def test_a_leap_held_at_a_run_over_a_gap_too_wide_for_it_is_braked(library):

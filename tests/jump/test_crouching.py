@@ -107,8 +107,8 @@ def test_the_crouch_follows_the_aim(jump, person, waiting):
 
 def test_what_can_t_be_is_told_once_and_waits_on(person, waiting, monkeypatch):
     _, states = waiting
-    planned, plan = [], Jump.plan
-    monkeypatch.setattr(Jump, "plan", lambda *given: planned.append(1) or plan(*given))
+    planned, sought = [], Jump._looked_for
+    monkeypatch.setattr(Jump, "_looked_for", lambda *given: planned.append(1) or sought(*given))
     far = Leap(np.array([0.0, 0.0, 9.0]))
     after = led(person, [Intent(leap=far)] * 20, states[-1])
     assert "too far" in after[-1].refused and isinstance(after[-1].memory.memory, Crouching) and len(planned) == 1

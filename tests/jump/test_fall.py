@@ -13,7 +13,9 @@ from gambol.controllers.body.anatomy import centre_of_mass
 from gambol.controllers.body.support_polygon import sole_corners
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump.body import soles
-from gambol.controllers.jump.motion.fall import Hit, fall, over_nothing, struck
+from gambol.controllers.jump.body import measures
+from gambol.controllers.jump.motion.edges import over_nothing, steps_over
+from gambol.controllers.jump.motion.fall import Hit, fall, struck
 from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene.scene import Box, Goal
@@ -156,14 +158,41 @@ def test_who_walks_over_an_edge_falls_and_walks_on(jump, locomotion, high, speed
     assert state.memory.active == "locomotion" and float(state.floor) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_who_ran_down_to_the_floor_runs_on(jump, locomotion):
-    """Whose feet stand on it by the time they stand at all no longer falls: he would be torn off it, and set down again."""
-    person = Supervisor({"locomotion": locomotion, "jump": jump})
-    state, around = person.start((0.0, 0.0, 1.5), 0.5), (Box((0.0, 0.25, 0.0), (6.0, 0.5, 6.0)),)
-    for _ in range(240):
-        state, _ = person.step(state, Intent(np.array([2.8, 0.0, 0.0]), around=around), 1 / FPS)
-        assert state.memory.active == "locomotion"
-    assert float(state.floor) == pytest.approx(0.0, abs=1e-6)
+@pytest.mark.parametrize(("speed", "high", "shift"), [(0.8, 1.0, 0.6), (1.8, 1.0, 0.3), (1.8, 0.6, 1.2), (2.5, 0.6, 0.1), (2.8, 0.5, 0.0), (3.0, 1.0, 0.3), (4.0, 2.0, 0.75)])
+def test_nobody_is_led_down_the_air(jump, locomotion, speed, high, shift):
+    """From the moment on at which no foot touches ground any more, whoever came over an edge falls as everything does."""
+    person, fps, four = Supervisor({"locomotion": locomotion, "jump": jump}), 120, 4
+    state, around = person.start((0.0, -3.0 - shift, 0.0), high), (Box((0.0, 0.5 * high, -10.0), (20.0, high, 20.0)),)
+    height, touches, falls = [], [], []
+    while not (state.memory.active == "jump" and state.memory.memory.landed):
+        assert len(height) < 8 * fps, "it never fell"
+        state, pose = person.step(state, Intent(np.array([speed, 0.0, 0.0]), around=around), 1 / fps)
+        placed = forward_kinematics(jump.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float))
+        corners = sole_corners(jump.skeleton, *placed)
+        height.append(centre_of_mass(jump.physique.anatomy, *placed)[1])
+        touches.append((corners[:, 1] - np.where(corners[:, 2] < 0.0, high, 0.0)).min() < 0.03)
+        falls.append(state.memory.active == "jump")
+    last = int(np.flatnonzero(touches[:falls.index(True) + 1])[-1])
+    assert falls.index(True) - last <= 0.05 * fps
+    flown = np.array(height[last + 1:-1])
+    assert np.abs((flown[2 * four:] - 2.0 * flown[four:-four] + flown[:-2 * four]) * (fps / four)**2 + 9.81).max() < 3.0
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.1, 4.0), st.floats(-1.0, 1.0), st.floats(-0.5, 3.0))
+def test_who_flies_to_ground_or_touches_it_has_come_over_no_edge(jump, standing, speed, up, edge):
+    """In a run's flight nothing touches ground, and all is well as long as something lies under the next step; once nothing does he falls."""
+    high, around = 2.0, (Box((0.0, 1.0, edge - 5.0), (20.0, 2.0, 10.0)),)
+    assume(abs(edge) > 0.25)
+    start = replace(jump.start_of(standing), velocity=np.array([0.0, up, speed]))
+    pose = replace(standing.pose, root=np.asarray(standing.pose.root, float) + [0.0, high, 0.0])
+    here = replace(start, centre=start.centre + [0.0, high, 0.0])
+    if edge > 0.0:
+        assert not steps_over(jump.physique, here, pose, around, high, jump.gravity), "it stands"
+    flying = replace(pose, root=pose.root + [0.0, 0.1, 0.0])
+    lands = here.centre[2] + speed * (up + np.sqrt(up**2 + 2.0 * 9.81 * max(here.centre[1] + 0.1 - high - measures(jump.physique).touch(0.0), 0.0))) / 9.81
+    assume(abs(lands - edge) > 1e-3)
+    assert steps_over(jump.physique, replace(here, centre=here.centre + [0.0, 0.1, 0.0]), flying, around, high, jump.gravity) == (lands > edge)
 
 
 def test_a_goal_is_in_nobodys_way_down(jump, locomotion):

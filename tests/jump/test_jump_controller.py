@@ -134,6 +134,29 @@ def test_a_runner_who_is_refused_is_told_the_nearest_place_too(jump, running, fa
         jump.enter(running, Intent(leap=Leap(closer)))
 
 
+@pytest.mark.parametrize("strength, words", [(0.4, "too weak to jump here at all, with a strength of 0.4"), (0.6, "strength of 0.6 keeps it in the air for 0.26 s at most, and it takes 0.30 s")])
+def test_a_body_that_can_t_jump_at_all_is_told_so_wherever_it_is_asked_to(standing, strength, words):
+    """And not how far it would be; what it is told of, a shorter jump, it can make."""
+    jump = Jump(Physique(strength=strength))
+    for place in (None, [0.0, 0.0, 0.1], [0.0, 0.0, 0.5], [0.0, 0.4, 0.5]):
+        with pytest.raises(Refused, match=words):
+            jump.plan(standing, Intent(leap=Leap(None if place is None else np.array(place))))
+    if strength > 0.5:
+        assert jump.plan(standing, Intent(leap=Leap(None, 0.25))).path.airtime == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("deep", [5.0, 50.0])
+def test_who_is_asked_too_deep_is_told_how_deep_he_can_get_there(jump, standing, deep):
+    """Right above the place, however deep that is; a little deeper is refused."""
+    with pytest.raises(Refused, match=r"too deep: .*nearest that it reaches is 0\.9 m away and 3\.[12] m down") as refused:
+        jump.plan(standing, leap(1.0, -deep))
+    nearest = refused.value.nearest
+    assert nearest[[0, 2]] == pytest.approx([0.0, 1.0]) and -3.25 < nearest[1] < -3.0
+    jump.plan(standing, Intent(leap=Leap(nearest)))
+    with pytest.raises(Refused):
+        jump.plan(standing, Intent(leap=Leap(nearest - [0.0, 0.1, 0.0])))
+
+
 def test_a_goal_stops_nobody(jump, standing):
     assert isinstance(jump.enter(standing, leap(0.8, around=(Goal((0.0, 0.0, 0.8)),))).memory, Jumping)
 

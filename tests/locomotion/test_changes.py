@@ -47,6 +47,16 @@ def test_a_runner_who_stops_does_not_run_backwards(locomotion):
         assert motion.ground[-1, n, 1] - motion.ground[frame, n, 1] < 2.15
 
 
+def test_a_runner_speeds_up_about_as_soon_as_a_walker(locomotion):
+    """Though he pushes only while a foot stands."""
+    taken = []
+    for before, after in (((0.3, 0, 0), (1.3, 0, 0)), ((2.0, 0, 0), (3.0, 0, 0))):
+        motion, asked = changed(locomotion, before, after)
+        speed = np.array([s.velocity[:, 0] for s in motion.states])
+        taken.append(np.mean([(speed[frame:, n] > after[0] - 0.1).argmax() / FPS for n, frame in enumerate(asked)]))
+    assert taken[1] < taken[0] + 0.2, taken
+
+
 def test_a_careful_runner_stops_without_a_step_back_and_a_quick_one_sooner(library):
     """Where a stop ends is planned with what these legs push, at any agility."""
     rests = []

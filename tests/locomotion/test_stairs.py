@@ -11,6 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
+from gambol.controllers.body import forward_kinematics, sole_corners  # noqa: E402
 from gambol.controllers.contract import Intent  # noqa: E402
 from gambol.controllers.locomotion.memory import RUN  # noqa: E402
 from gambol.controllers.locomotion.tops import tops  # noqa: E402
@@ -84,6 +85,7 @@ def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
     around = tuple(SimpleNamespace(centre=(0.0, 0.085 * (n + 1), 2.0 + (n + 0.5) * 0.29), size=(8.0, 0.17 * (n + 1), 0.29), heading=0.0, slope=0.0) for n in range(8))
     turn = np.radians([90, 135, 160, 180, -90, -120, -135, -160])
     state, turned, aloft, longest = locomotion.start(np.zeros((len(turn), 3))), np.zeros(len(turn), bool), np.zeros(len(turn)), 0.0
+    high, bare = 0.17 * np.arange(9), np.zeros(len(turn))
     for _ in range(480):
         turned |= state.ground[:, 1] > 2.0 + 3.5 * 0.29
         goes = np.where(turned, turn, 0.0)
@@ -92,4 +94,8 @@ def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
         on = turned & (np.abs(state.ground[:, 0]) < 3.7) & (state.ground[:, 1] > 2.0) & (state.ground[:, 1] < 2.0 + 8 * 0.29)
         aloft = np.where(state.contacts.any(-1), 0, aloft + 1)
         longest = max(longest, (aloft * on).max() / 60)
+        soles = sole_corners(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
+        under = high[np.clip(np.floor((soles[..., 2] - 2.0) / 0.29).astype(int) + 1, 0, 8)]
+        bare = np.where((np.abs(soles[..., 1] - under) < 0.02).any(-1), 0, bare + 1)
+        assert (bare * on).max() <= 0.15 * 60, "no sole touches a tread"
     assert turned.all() and longest < 0.5

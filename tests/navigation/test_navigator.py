@@ -55,6 +55,19 @@ def test_random_goals_are_reached(walker):
         assert np.abs(last.velocity).max() < 1e-6, "and he stands"
 
 
+@pytest.mark.parametrize(("place", "turn"), [((-1.5, 2.2), -1.8), ((0.3, 3.0), -2.4), ((1.2, 3.0), -1.8)])
+def test_who_turns_at_his_place_stands_on_it_after_two_more_steps(walker, place, turn):
+    """The other foot stood in the way of the last but one, which came down 16 cm aside, so that the body glided 9 cm off and four small steps brought it back."""
+    states = going(walker, Goal(place, float(wrap(np.arctan2(*place) + turn))))
+    feet = np.array([np.asarray(state.contacts).reshape(2, 2).any(-1) for state in states])
+    ground = np.array([state.ground for state in states])
+    goes = np.hypot(*np.diff(ground[:, :2], axis=0, prepend=ground[:1, :2]).T) * 60
+    there = (np.hypot(*(ground[:, :2] - place).T) < 0.15) & (np.abs(wrap(ground[:, 2] - ground[-1, 2])) < 0.35) & (goes < 0.12) & feet.all(-1)
+    first = int(there.argmax())
+    assert (np.diff(feet.astype(int), axis=0)[first:] > 0).any(-1).sum() <= 2
+    assert np.hypot(*(ground[first:, :2] - place).T).max() < 0.07
+
+
 def test_he_walks_round_boxes(walker):
     for place in ((1.2, 2.6), (-2.0, 1.2), (0.0, 3.0)):
         goal = Goal(place, 2.0)

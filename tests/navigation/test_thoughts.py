@@ -113,7 +113,7 @@ def test_a_leap_that_was_thought_of_is_not_planned_again(monkeypatch):
     someone = person()
     jump, state = someone.parts["jump"], someone.start((0.0, -2.0, 0.0), 0.6)
     planned = []
-    monkeypatch.setattr(jump, "_planned", lambda *a, made=jump._planned: (planned.append(None), made(*a))[1])
+    monkeypatch.setattr(jump, "planned", lambda *a, made=jump.planned: (planned.append(None), made(*a))[1])
     for _ in range(60 * 12):
         count, before = len(planned), state
         if state.going is not None and state.going.thinking is not None:

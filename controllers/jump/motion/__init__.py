@@ -4,7 +4,8 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 
 from .airborne import FADE, GROUND_RATE, HEEL, PLANT, SAME, Airborne
 from .descent import sinking
-from .fall import fall, over_nothing, struck
+from .edges import over_nothing, steps_over
+from .fall import fall, struck
 from .footing import faded, heels_rise, heels_up, settling
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
@@ -19,5 +20,5 @@ from .thrust import Push, push
 __all__ = [
     "BONES", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
     "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
-    "settling", "sinking", "sole_places", "struck", "tumbled",
+    "settling", "sinking", "sole_places", "steps_over", "struck", "tumbled",
 ]

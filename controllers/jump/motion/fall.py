@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...body import Pose, Skeleton, contact_points, end_positions, forward_kinematics, sole_corners
+from ...body import Pose, Skeleton, end_positions, forward_kinematics, sole_corners
 from ...navigation import floor_at, gap
 from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
                     soles, turns, vectors)
@@ -25,10 +25,6 @@ from .rolling import rolled, rolls, room
 
 BOUNCE, FRICTION = 0.05, 0.4
 """How much of the velocity into it something gives back, and how much along it it takes, as a share of that."""
-VOID = 0.33
-"""A foot that is so high over what lies under it [m] stands on nothing: farther than feet step down."""
-STANDS = 0.1
-"""A foot whose ball or heel is no higher over it [m] stands there, however high the floor was that its body was on."""
 CLOSING = 0.4
 """Slower than this [m/s] a body does not strike what it touches."""
 LEAST, LOW = 0.14, 0.5
@@ -98,17 +94,6 @@ def _out(place: np.ndarray, thing) -> np.ndarray:
     step = 1e-4 * np.eye(3)
     slope = gap(place + step, thing) - gap(place - step, thing)
     return slope / max(float(np.linalg.norm(slope)), 1e-12)
-
-
-def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: Sequence[Any], floor: float, size: float = 1.0) -> bool:
-    """Whether a foot that stands, heel or ball (4,), has no floor within a step under either, or under the floor [m] that the body was on:
-    feet reach for what lies lower, and stand once they are there. size: of the body, over a standard one's."""
-    def void(x: float, y: float, z: float) -> bool:
-        under = floor_at(x, z, around, y + 0.1 * size)
-        return y - under > STANDS * size and max(y, floor) - under > VOID * size
-    points = contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
-    stands = np.asarray(contacts, bool).reshape(2, 2).any(1)
-    return any(all(void(x, y, z) for x, y, z in foot) for foot in points.reshape(2, 2, 3)[stands])
 
 
 def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray) -> Plan:

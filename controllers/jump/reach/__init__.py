@@ -1,9 +1,10 @@
 """What a body can reach with a jump: plans that touch nothing, why there is none, the nearest place to which there is one."""
 
-from .feasibility import Refused
-from .reach import TRIES, Reach
+from .feasibility import Refused, too_weak
+from .reach import Found, Reach
+from .seeking import SHARE, Onward, Pieces, Seeking, whole
 from .sweep import Touch
 
 __all__ = [
-    "TRIES", "Reach", "Refused", "Touch",
+    "Found", "Onward", "Pieces", "Reach", "Refused", "SHARE", "Seeking", "Touch", "too_weak", "whole",
 ]

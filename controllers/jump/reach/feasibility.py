@@ -14,6 +14,7 @@ from ..body import FLAT, TURNED, Physique, along, measures, carriage, turns
 from ..motion import SPINS, Path, Plan, rolls
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
+from .seeking import Onward
 
 RUNNER = 4.2
 """What the leg of a runner gives, stretched as the foot strikes, in an adult's weights on Earth, at strength 1."""
@@ -30,6 +31,8 @@ ROLLED = 1.2
 """Who rolls comes down so many times as fast as legs alone stop: the shoulder and the back take the rest."""
 STEEP = "too deep for legs alone"
 """Why nobody comes down so hard who does not roll."""
+TOO_WEAK = "this body is too weak to jump here at all"
+"""Why nobody leaps whose muscles don't lift him off the floor."""
 HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
 GRAZE = 0.05
@@ -42,14 +45,28 @@ TILT = 75.0
 
 class Refused(Unable):
     """A jump that this body can't make. nearest: the place (3,) [m] nearest to the target that it can reach
-    from `here` (3,), if one was found."""
+    from `here` (3,), if one was found. onward: with what it is gone on with finding out, in the next step; None where all is known."""
 
-    def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None):
+    def __init__(self, reason: str, nearest: np.ndarray | None = None, here: np.ndarray | None = None, onward: Onward | None = None):
         if nearest is not None:
-            reason += "; the nearest that it reaches is " + ("" if here is None else f"{np.linalg.norm((nearest - here)[[0, 2]]):.1f} m away, at ")
+            reason += "; the nearest that it reaches is " + ("" if here is None else _away(nearest - here) + ", at ")
             reason += f"({nearest[0]:.2f}, {nearest[1]:.2f}, {nearest[2]:.2f})"
         super().__init__(reason)
-        self.nearest = nearest
+        self.nearest, self.onward = nearest, onward
+
+
+def _away(way: np.ndarray) -> str:
+    """How far away something is by a way (3,) [m], and how far up or down."""
+    up = f" and {abs(way[1]):.1f} m {'up' if way[1] > 0.0 else 'down'}" if abs(way[1]) > 0.05 else ""
+    return f"{np.hypot(way[0], way[2]):.1f} m away{up}"
+
+
+def too_weak(physique: Physique, usual: Path, longest: float) -> str:
+    """What is told of a body whose muscles don't do the usual jump straight up. longest: [s] that it can be in the air."""
+    if strongest(physique, measures(physique).leave(0.0) - measures(physique).stand, usual.gravity) <= 0.0:
+        return TOO_WEAK + f", with a strength of {physique.strength:g}"
+    return (f"this body is too weak to jump here: a strength of {physique.strength:g} keeps it in the air for {longest:.2f} s at most, and it takes {usual.airtime:.2f} s; "
+            "an airtime asks for less")
 
 
 def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) -> str:
@@ -99,7 +116,7 @@ def wrong(physique: Physique, made: Plan) -> str:
 def _weak(physique: Physique, way: Path, floor: float) -> str:
     """What is missing where the muscles are too weak."""
     if strongest(physique, way.leave[1] - floor - measures(physique).stand, way.gravity) <= 0.0:
-        return "this body is too weak to jump here at all"
+        return TOO_WEAK
     if way.up > 0.05:
         return f"too {'high' if way.up > 0.35 * way.far else 'far'}: {way.far:.1f} m away and {way.up:.1f} m up"
     return f"too far: {way.far:.1f} m" if way.far > 0.05 else "too high"

@@ -1,0 +1,70 @@
+"""What takes longer than a step is worked out in pieces, a few in each step: the same comes of it as of all pieces at once, and after
+as many steps however fast a machine is."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Generator
+from typing import Any, Generic, NamedTuple, TypeVar
+
+T = TypeVar("T")
+
+PATH, PLAN, SHARE = 2, 1, 3
+"""What a path costs, what its plan does that is swept, and what a step has time for: a path, and its plan."""
+
+Pieces = Generator[int | str, Any, T]
+"""Work in pieces: it yields what each costs before that is done, and in words what is known so far, with which a step is over."""
+
+
+def whole(pieces: Pieces[T]) -> T:
+    """What comes of all pieces at once."""
+    while True:
+        try:
+            next(pieces)
+        except StopIteration as end:
+            return end.value
+
+
+class Seeking(Generic[T]):
+    """Work that is done a share in each step. What is known of it is a pure function of the steps: each share is worked out once, whoever asks first."""
+
+    def __init__(self, pieces: Pieces[T]):
+        self._pieces, self._held, self._ended = pieces, 0, False
+        self._known: list[T | str] = []
+        self._lock = threading.Lock()
+
+    def after(self, steps: int) -> T | str:
+        """What came of it after so many steps, one or more; before it has come to an end, what is known so far, in words."""
+        with self._lock:
+            while len(self._known) < steps and not self._ended:
+                self._known.append(self._share())
+            return self._known[min(steps, len(self._known)) - 1]
+
+    def _share(self) -> T | str:
+        """What is known one share later."""
+        spent = 0
+        while True:
+            try:
+                piece = self._held or next(self._pieces)
+            except StopIteration as end:
+                self._ended = True
+                return end.value
+            self._held = 0
+            if isinstance(piece, str):
+                return piece
+            if spent and spent + piece > SHARE:
+                self._held = piece
+                return next((known for known in reversed(self._known) if isinstance(known, str)), "")
+            spent += piece
+
+
+class Onward(NamedTuple):
+    """How far somebody is with seeking: what, and after how many steps."""
+
+    seeking: Seeking[Any]
+    steps: int = 0
+
+    @property
+    def next(self) -> Onward:
+        """A step later."""
+        return Onward(self.seeking, self.steps + 1)

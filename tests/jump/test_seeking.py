@@ -1,0 +1,74 @@
+"""Leaps of who stands are sought in pieces: no step makes more than one plan, and the same comes of it as of all at once."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Jump, Jumping, Refused
+from gambol.controllers.jump.reach import SHARE, Seeking, reach, whole
+from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene import Box
+
+LOW, HIGH = (Box((0.0, high / 2, 0.7), (1.0, high, 0.1)) for high in (0.4, 0.6))
+
+
+def of(costs, done):
+    for cost in costs:
+        yield cost
+        if isinstance(cost, int):
+            done.append(cost)
+    return tuple(costs)
+
+
+@given(st.lists(st.one_of(st.integers(1, SHARE), st.sampled_from(["near", "far"])), max_size=12), st.lists(st.integers(1, 20), min_size=1, max_size=6))
+def test_what_is_known_depends_on_the_steps_alone(costs, asked):
+    """Whoever asked before, and for how many; no share costs more than a step has time for."""
+    steps = [Seeking(of(costs, [])).after(n) for n in range(1, 21)]
+    seeking = Seeking(of(costs, []))
+    assert [seeking.after(n) for n in asked] == [steps[n - 1] for n in asked]
+    assert steps[-1] == whole(of(costs, [])) == tuple(costs)
+    done, before = [], 0
+    seeking = Seeking(of(costs, done))
+    for n in range(1, 21):
+        seeking.after(n)
+        assert sum(done) - before <= SHARE
+        before = sum(done)
+        words = [known for known in steps[:n] if isinstance(known, str)]
+        assert steps[n - 1] == tuple(costs) or words[-1] in ("", *costs)
+
+
+@pytest.fixture(scope="module")
+def someone():
+    return Supervisor({"locomotion": Locomotion.load(), "jump": Jump()})
+
+
+@pytest.mark.parametrize("place, things", [((0.0, 0.0, 5.0), ()), ((0.0, 0.0, 1.4), (HIGH,)), ((0.0, 0.0, 1.3), (LOW,))], ids=["far", "refused", "leapt"])
+@pytest.mark.parametrize("crouches", [False, True])
+def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someone, monkeypatch, place, things, crouches):
+    jump, intent, state = someone.parts["jump"], Intent(leap=Leap(np.array(place)), around=things), someone.start()
+    for _ in range(60 * crouches):
+        state, _ = someone.step(state, Intent(aim=intent.leap, around=things), 1 / 60)
+    plans, plan = [], reach.plan
+    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    states = [state]
+    for _ in range(60):
+        before, state = state, someone.step(state, intent, 1 / 60)[0]
+        assert len(plans) <= 1
+        plans.clear()
+        states.append(state)
+        if isinstance(state.memory.memory, Jumping):
+            break
+    now = someone.active(states[0])[1]
+    try:
+        made, parted = jump.plan(now, intent), whole(jump._looked_for(now, intent, True)).made
+        np.testing.assert_array_equal(parted.local, made.local)
+        np.testing.assert_allclose(state.memory.memory.plan.local, jump.plan(someone.active(before)[1], intent).local, atol=1e-4)  # higher by a share of what it was
+    except Refused as reason:
+        assert state.refused == str(reason) and not isinstance(state.memory.memory, Jumping)
+    again = states[3]
+    for then in states[4:]:  # from where somebody went back to
+        again, _ = someone.step(again, intent, 1 / 60)
+        assert again.refused == then.refused and np.array_equal(again.pose.rotations, then.pose.rotations)
