@@ -16,7 +16,11 @@ from ..obstacles import SHOULDER
 from .surfaces import Levels
 
 INSET = SHOULDER + 0.06
-"""Leaps begin and end so far from where a surface ends [m]: where walks lead to."""
+"""Leaps begin so far from where a surface ends [m]: where walks lead to; ..."""
+LANDING = 0.22
+"""... and end so far from it: from there one walks on."""
+CLEAR = SHOULDER + 0.02
+"""Nothing that lets nobody stand there is nearer to where they begin and end than this [m]."""
 ROOM = 0.5
 """Nobody leaps onto, or off, what is narrower than this [m]."""
 APART = 0.5
@@ -135,15 +139,16 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
         without = places + (INSET + BESIDE) * normals
         which, ground = levels.ground(without, height)  # what is higher is another box's matter
         own, theirs = int(levels.regions[box]), levels.regions[which]
-        free = ~levels.shut(without, ground) & (theirs != own) & _within(levels, which, without)
+        free = ~levels.shut(without, ground, CLEAR) & (theirs != own) & _within(levels, which, without)
         for k in np.flatnonzero(free):
             here, there = (places[k], height), (without[k], float(ground[k]))
             _add(found, here, there, own, int(theirs[k]))
             _add(found, there, here, int(theirs[k]), own)
         for other in broad:
             if levels.regions[other] != own and len(edges[other][0]):
-                onto = _nearest_on(levels, other, places)
-                far = np.linalg.norm(onto - places, axis=1)
+                onto = _nearest_on(levels, other, places, LANDING)
+                shut = levels.shut(onto, np.full(len(onto), edges[other][2]), CLEAR)
+                far = np.where(shut, np.inf, np.linalg.norm(onto - places, axis=1))
                 detour = np.linalg.norm(places - ends[0], axis=1) + np.linalg.norm(onto - ends[1], axis=1)
                 for k in np.argsort(far.round(2) + 1e-3 * detour, kind="stable")[:NEAREST]:  # of those as short the ones on the way
                     if far[k] > 0.1:
@@ -160,13 +165,13 @@ def _edge(levels: Levels, box: int, ends: np.ndarray) -> tuple[np.ndarray, np.nd
     nearest = nearest + np.sum((out.places[side] - nearest) * normals, axis=-1, keepdims=True) * normals  # who stands on it leaps from its side
     places, normals = np.concatenate([out.places, nearest]), np.concatenate([out.normals, normals])
     height = float(levels.centres[box, 1] + levels.halves[box, 1])
-    free = (levels.ground(places)[0] == box) & ~levels.shut(places, np.full(len(places), height))
+    free = (levels.ground(places)[0] == box) & ~levels.shut(places, np.full(len(places), height), CLEAR)
     return places[free], normals[free], height
 
 
-def _nearest_on(levels: Levels, box: int, places: np.ndarray) -> np.ndarray:
-    """The places (P, 2) on a box, an inset from its sides, that are nearest to others (P, 2)."""
-    half = np.maximum(levels.halves[box, [0, 2]] - INSET, 0.0)
+def _nearest_on(levels: Levels, box: int, places: np.ndarray, inset: float = INSET) -> np.ndarray:
+    """The places (P, 2) on a box, an inset [m] from its sides, that are nearest to others (P, 2)."""
+    half = np.maximum(levels.halves[box, [0, 2]] - inset, 0.0)
     c, s = np.cos(levels.headings[box]), np.sin(levels.headings[box])
     return np.clip(levels.local(places)[:, box], -half, half) @ np.array([[c, -s], [s, c]]) + levels.centres[box, [0, 2]]
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...contract import CharacterState, Controller, Intent, Leap, but
 from ..goal import wish
-from ..obstacles import SHOULDER, STEP
-from .journeys import Crossing
+from ..obstacles import STEP
+from .journeys import CLEAR, Crossing
 from .surfaces import levels_of
 
 if TYPE_CHECKING:  # who leaps from a walk has planned it
@@ -46,6 +46,10 @@ PAST = 0.08
 """No farther beyond where the leap was to go off it does [m]."""
 EVERY = 3
 """About every so manieth step is asked [steps]."""
+ROUND = np.stack([np.sin(np.arange(8) * math.pi / 4.0), np.cos(np.arange(8) * math.pi / 4.0)], axis=-1)
+"""Ways (8, 2) all round."""
+LEVEL = 0.05
+"""Where one walks up to a leap, the ground is no higher or lower than where it goes off [m]."""
 FINE, HIGH = 0.05, 0.1
 """Run-ups are measured for leaps as far, and as high up, as so much more or less [m]."""
 TRIES = 4
@@ -75,9 +79,10 @@ def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for:
         begins = leap.ground[:2] - back * _ahead(leap)
         if but_for is not None and math.dist(begins, but_for) < ELSEWHERE:
             continue
-        places = leap.ground[:2] - np.linspace(0.0, back + SHOULDER, 8)[:, None] * _ahead(leap)
+        places = np.concatenate([leap.ground[:2] - np.linspace(0.0, back, 7)[:, None] * _ahead(leap), begins + CLEAR * ROUND])
         which, heights = levels.ground(places, leap.height + STEP)
-        if np.all(levels.regions[which] == levels.regions[which[0]]) and not levels.shut(places, heights).any():
+        walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights)
+        if walked.all() and np.all(abs(heights[:7] - leap.height) <= LEVEL) and not levels.shut(begins[None], heights[6:7], CLEAR)[0]:
             return begins
     return None
 
@@ -139,8 +144,8 @@ def _room(leap: Crossing, around: Sequence[Any]) -> bool:
     ahead, levels = _ahead(leap), levels_of(around)
     beyond = leap.place[[0, 2]] + max(LONG - far, 0.0) * ahead + np.linspace(0.0, ROOM, 6)[:, None] * ahead
     which, heights = levels.ground(beyond)
-    on = (levels.regions[which] == levels.regions[levels.under(leap.place[[0, 2]], float(leap.place[1]))]) & ~levels.shut(beyond, heights)
-    return bool(on.all()) and abs(float(heights[0]) - float(leap.place[1])) < 0.05
+    on = (levels.regions[which] == levels.regions[levels.under(leap.place[[0, 2]], float(leap.place[1]))]) & ~levels.shut(beyond, heights, CLEAR)
+    return bool(on.all()) and abs(float(heights[0]) - float(leap.place[1])) <= LEVEL
 
 
 def onto(leap: Crossing, pace: float) -> np.ndarray:

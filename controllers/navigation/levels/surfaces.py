@@ -89,13 +89,15 @@ class Levels:
             heights.append(floor)
         return np.array(heights)
 
-    def shut(self, places: np.ndarray, heights: np.ndarray) -> np.ndarray:
-        """Whether something stands or hangs over places (P, 2) on ground of heights (P,) that lets nobody stand there."""
-        tops = self.tops(places)[:, :-1]
-        bottoms = tops - 2.0 * self.halves[:, 1]
-        shut = np.any((tops > heights[:, None] + STEP) & (bottoms < heights[:, None] + HEAD), 1)
+    def shut(self, places: np.ndarray, heights: np.ndarray, room: float = 0.0) -> np.ndarray:
+        """Whether something stands or hangs over places (P, 2) on ground of heights (P,), or so near to them [m], that lets nobody stand there."""
+        local, half = self.local(places), self.halves[:, [0, 2]]
+        over = np.clip(local, -half, half)
+        tops = self.centres[:, 1] + self.halves[:, 1] + self.slopes * over[..., 1]
+        near = np.linalg.norm(local - over, axis=-1) <= room + 1e-9
+        shut = np.any(near & (tops > heights[:, None] + STEP) & (tops - 2.0 * self.halves[:, 1] < heights[:, None] + HEAD), 1)
         for one in self.pillars:
-            near = np.hypot(places[:, 0] - one[0], places[:, 1] - one[2]) <= one[3]
+            near = np.hypot(places[:, 0] - one[0], places[:, 1] - one[2]) <= one[3] + room
             shut |= near & (one[1] < heights + HEAD) & (one[1] + one[4] > heights + STEP)
         return shut
 
