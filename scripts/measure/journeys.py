@@ -31,8 +31,8 @@ FALLS = 0.25
 """Who comes down so far [m] without a leap falls."""
 
 
-def level(rng: np.random.Generator) -> tuple[list[Box], list[Box], list[Pillar]]:
-    """Platforms, what leads up to the first of them, and pillars on some."""
+def level(rng: np.random.Generator) -> tuple[list[Box], list[Box], list[Pillar], float]:
+    """Platforms, what leads up to the first of them, pillars on some, and how far along z [m] it begins, where nothing is."""
     size, high = rng.uniform(1.6, 4.0, 2), rng.uniform(0.4, 1.0)
     platforms = [Box((0.0, 0.5 * high, 5.0), (size[0], high, size[1]))]
     foot = 5.0 - 0.5 * size[1]
@@ -42,6 +42,7 @@ def level(rng: np.random.Generator) -> tuple[list[Box], list[Box], list[Pillar]]
     else:
         long = high / np.tan(np.radians(13.0))
         up = [Box((0.0, 0.5 * high - 0.5, foot - 0.5 * long), (1.4, 1.0, long), slope=high / long)]
+    begins = min(box.centre[2] - 0.5 * box.size[2] for box in up) - 0.8
     for _ in range(100):
         if len(platforms) >= 5:
             break
@@ -52,10 +53,12 @@ def level(rng: np.random.Generator) -> tuple[list[Box], list[Box], list[Pillar]]
         other = np.abs(way[::-1])
         half = 0.5 * (np.array(last.size)[[0, 2]] + size)
         place = np.array(last.centre)[[0, 2]] + (half @ np.abs(way) + gap) * way + rng.uniform(-0.4, 0.4) * (half @ other) * other
-        if all(np.any(np.abs(place - np.array(box.centre)[[0, 2]]) > 0.5 * (size + np.array(box.size)[[0, 2]]) + 0.3) for box in (*platforms, *up)):
+        taken = *platforms, *up, Box((0.0, 0.0, begins), (1.0, 0.0, 1.0))
+        if all(np.any(np.abs(place - np.array(box.centre)[[0, 2]]) > 0.5 * (size + np.array(box.size)[[0, 2]]) + 0.3) for box in taken):
             platforms.append(Box((place[0], 0.5 * high, place[1]), (size[0], high, size[1])))
-    pillars = [Pillar((box.centre[0] + 0.3 * box.size[0], box.size[1], box.centre[2] - 0.3 * box.size[2]), 0.15, 1.8) for box in platforms[1:] if min(box.size[0], box.size[2]) > 3.0]
-    return platforms, up, pillars
+    broad = [box for box in platforms[1:] if min(box.size[0], box.size[2]) > 3.0]
+    pillars = [Pillar((box.centre[0] + 0.3 * box.size[0], box.size[1], box.centre[2] - 0.3 * box.size[2]), 0.15, 1.8) for box in broad]
+    return platforms, up, pillars, float(begins)
 
 
 def goals(rng: np.random.Generator, platforms: list[Box], things: Sequence[Any]) -> Iterator[tuple[float, float]]:
@@ -96,8 +99,9 @@ def sent(somebody: Any, state: Any, goal: Goal, things: tuple[Any, ...], name: t
         backs += now.back and not back
         if loud and (step % 30 == 0 or len(active) > 1 and active[-1] != active[-2] or now.back != back):
             leap = now.crossings[0] if now.crossings else None
+            leaps = f"leap {np.round(leap.ground, 2)} -> {np.round(leap.place, 2)}" if leap else ""
             print(f"{step * DT:6.2f} {state.active:10s} {np.round(state.ground, 2)} floor {floors[-1]:.2f} {'back' if now.back else ''} pace {now.pace:.2f} "
-                  + (f"leap {np.round(leap.ground, 2)} -> {np.round(leap.place, 2)}" if leap else "") + f" barred {len(now.barred)} {somebody.status(state).reason}")
+                  f"{leaps} barred {len(now.barred)} {somebody.status(state).reason}")
         back, barred = now.back, max(barred, len(now.barred))
         status = somebody.status(state)
         if status.kind != "running":
@@ -119,10 +123,10 @@ def main() -> None:
     somebody, told = person(), []
     for number in [given.only[0]] if given.only else range(given.levels):
         rng = np.random.default_rng([given.seed, number])
-        platforms, up, pillars = level(rng)
+        platforms, up, pillars, begins = level(rng)
         things = *platforms, *up, *pillars
         asked = goals(rng, platforms, things)
-        state = somebody.start((0.0, -1.5, 0.0))
+        state = somebody.start((0.0, begins, 0.0))
         for k in range(given.goals):
             place = next(asked)
             loud = given.only == [number, k]
@@ -135,7 +139,8 @@ def main() -> None:
             if loud:
                 print(one)
     there = [one for one in told if not one.reason]
-    print(f"{len(told)} goals on {given.levels} levels: {len(there)} reached, in {np.median([one.slow for one in there]):.2f} times what it might take (at most {max(one.late for one in there):.0f} s late)")
+    slow, late = np.median([one.slow for one in there] or [np.nan]), max((one.late for one in there), default=np.nan)
+    print(f"{len(told)} goals: {len(there)} reached, in {slow:.2f} times what it might take (at most {late:.0f} s late)")
     print(f"{sum(one.leaps for one in told)} leaps, {sum(one.elsewhere for one in told)} of which could not be made or ended elsewhere; {sum(one.fell for one in told)} falls; "
           f"{sum(one.backs for one in told)} times back for a run-up")
     for why, count in Counter(one.reason for one in told if one.reason).most_common():

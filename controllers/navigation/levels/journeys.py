@@ -38,8 +38,9 @@ LEAP = 1.8, 1.5
 leapt and nobody goes down into a gap that he can leap over."""
 ASKED = 60
 """About no more leaps is asked."""
-ALIKE, BY = 2, 1.0
-"""Of leaps side by side, as far and as high, so many are asked about that can't be made for the same reason; no others are then within so far [m]."""
+ALIKE, BY, ALL = 2, 1.0, 6
+"""Of leaps side by side, no farther from each other than this [m], as far and as high, so many are asked about that can't be made for the same reason,
+and so many wherever they are."""
 WEAK = "too "
 """How reasons begin by which nobody leaps farther or higher, either."""
 
@@ -95,19 +96,19 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
             return Journey(())  # nobody here leaps: whoever plans the walk says what is in its way
         faulty = leaps[bad][0]
         faults.append((why, faulty))
-        alike = sum(other == why and _alike(leap, faulty) for other, leap in faults) >= ALIKE
+        apart = [_apart(leap, faulty) for other, leap in faults if other == why]
+        near = np.inf if sum(far < np.inf for far in apart) >= ALL else BY if sum(far < BY for far in apart) >= ALIKE else 0.0
         for k, (leap, *_) in enumerate(leaps):
             worse = why.startswith(WEAK) and all(np.array(leap.asks) >= np.array(faulty.asks) - 1e-6)
-            if k == bad or (worse or alike and _alike(leap, faulty)) and k not in good:
+            if k == bad or (worse or _apart(leap, faulty) < near) and k not in good:
                 times[:, k + 1] = np.inf
     whys = [why for why, _ in faults]
     return Journey((), "no walk leads there, and no leap: " + max(sorted(set(whys)), key=whys.count) if whys else "")
 
 
-def _alike(one: Crossing, other: Crossing) -> bool:
-    """Whether leaps go as far and as high, side by side."""
-    return bool(np.allclose(one.asks, other.asks, atol=0.01) and math.dist(one.ground[:2], other.ground[:2]) < BY
-                and abs(math.remainder(one.ground[2] - other.ground[2], math.tau)) < 0.1)
+def _apart(one: Crossing, other: Crossing) -> float:
+    """How far from each other [m] leaps go off that go as far and as high, inf for others."""
+    return math.dist(one.ground[:2], other.ground[:2]) if np.allclose(one.asks, other.asks, atol=0.01) else np.inf
 
 
 def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray, end: int) -> np.ndarray:

@@ -81,7 +81,7 @@ def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for:
             continue
         places = np.concatenate([leap.ground[:2] - np.linspace(0.0, back, 7)[:, None] * _ahead(leap), begins + CLEAR * ROUND])
         which, heights = levels.ground(places, leap.height + STEP)
-        walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights)
+        walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights) & (abs(heights - leap.height) <= STEP)
         if walked.all() and np.all(abs(heights[:7] - leap.height) <= LEVEL) and not levels.shut(begins[None], heights[6:7], CLEAR)[0]:
             return begins
     return None
