@@ -176,6 +176,7 @@ def over_crevice(place: np.ndarray, way: np.ndarray, floor: float, around: Seque
     ahead = way / max(float(np.hypot(*way)), 1e-9)
     wide = 0.0
     for along in (ahead, -ahead):
-        stands = (far for far in EDGES if abs(floor_at(*(place + far * along), around, floor + STEP) - floor) <= STEP)
+        places = place + EDGES[:, None] * along
+        stands = (far for far, (x, z) in zip(EDGES, places) if abs(floor_at(x, z, around, floor + STEP) - floor) <= STEP)
         wide += next(stands, np.inf)
     return wide <= ASKEW

@@ -5,7 +5,7 @@ import pytest
 
 from gambol.controllers.contract import Goal, Intent, Leap
 from gambol.controllers.navigation import floor_at
-from gambol.controllers.navigation.levels import journey, journeys, levels_of, named
+from gambol.controllers.navigation.levels import journey, journeys, levels_of, named, next_leg
 from gambol.controllers.navigation.levels.run_up import start_of
 from gambol.controllers.navigation.routes import distance, shapes_of
 from gambol.controllers.person import person
@@ -88,6 +88,15 @@ def test_nobody_goes_down_into_a_gap_that_he_can_leap_over(height):
     down = Box((0.0, -0.05, 3.0 + 1.0 + 2.5), (1.4, height + 0.1, 5.0), 0.0, slope=-height / 5.0)
     leaps = crossed((near, far, down), (0.3, 0.3), (0.0, 10.0), lambda _: "", height).crossings
     assert [leap.place[1] for leap in leaps] == pytest.approx([height])
+
+
+def test_walks_between_leaps_count_as_they_lead(someone):
+    """A long wall begins beside a platform: down from it on that side of the wall on which the goal is, though the other is nearer."""
+    things = (Box((0.4, 0.2, 0.0), (5.4, 0.4, 2.0)), Box((2.0, 1.0, 5.0), (0.2, 2.0, 7.6)))
+    begins, goal = (2.6, 0.0), (1.4, 3.0)
+    straight = crossed(things, begins, goal, lambda leap: "", 0.4)
+    led = next_leg(someone, someone.start((*begins, 0.0), 0.4), Goal(goal), things)
+    assert straight.crossings[0].place[0] > 2.1 and led.crossings[0].place[0] < 1.9
 
 
 def test_why_no_leaps_lead_there_is_said():
@@ -203,8 +212,8 @@ def test_run_ups_begin_on_the_level_from_which_the_leap_goes_off(someone):
     """A platform of 1.3 m with the floor joined to it by stairs: nobody runs up from beside or below it."""
     stairs = tuple(Box((0.0, 0.075 * (k + 1), -0.3 + 0.3 * k), (1.6, 0.15 * (k + 1), 0.3)) for k in range(3))
     for deep, room in ((1.3, False), (3.4, True)):
-        things = (*stairs, Box((0.0, 0.3, 0.45 + 0.5 * deep), (2.0, 0.6, deep)))
-        for x, heading in ((0.0, 0.0), (0.64, np.pi / 2)):
+        things = (*stairs, Box((0.0, 0.3, 0.45 + 0.5 * deep), (1.6, 0.6, deep)))
+        for x, heading in ((0.0, 0.0), (0.44, np.pi / 2)):
             edge = (x, 0.45 + deep - 0.36) if heading == 0.0 else (x, 1.5)
             ahead = np.array([np.sin(heading), np.cos(heading)])
             leap = journeys.Crossing(np.array([*edge, heading]), np.array([edge[0] + 1.8 * ahead[0], 0.6, edge[1] + 1.8 * ahead[1]]), 0.6)

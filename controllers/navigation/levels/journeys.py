@@ -41,6 +41,8 @@ ASKED = 60
 ALIKE, BY, ALL = 2, 1.0, 6
 """Of leaps side by side, no farther from each other than this [m], as far and as high, so many are asked about that can't be made for the same reason,
 and so many wherever they are."""
+WALKED = 200
+"""So many walks between leaps are looked at: the others count as straight ones."""
 WEAK = "too "
 """How reasons begin by which nobody leaps farther or higher, either."""
 
@@ -67,10 +69,11 @@ class Journey(NamedTuple):
 
 
 def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end: int, able: Callable[[Crossing], str | None],
-            barred: Iterable[tuple[float, ...]] = ()) -> Journey:
+            barred: Iterable[tuple[float, ...]] = (), walk: Callable[[int, np.ndarray, np.ndarray], float] | None = None) -> Journey:
     """The quickest way from a place (2,) on one surface to a goal (2,) on another.
 
     able: says why nobody can leap so, "" where one can, None where nobody leaps at all. barred: leaps, as `named`, that are not to be tried again.
+    walk: says how long [m] a walk is in a region from one place (2,) to another; straight, where nothing says it.
     """
     if levels.regions[start] == levels.regions[end]:
         return Journey(())
@@ -78,8 +81,8 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
 
     barred = set(barred)
     leaps = [leap for leap in crossings(levels, np.array([here, goal])) if named(leap[0]) not in barred]
-    times = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
-    good, faults = set(), list[tuple[str, Crossing]]()
+    times, from_, to, regions = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
+    good, faults, walked = set(), list[tuple[str, Crossing]](), set[tuple[int, int]]()
     while len(good) + len(faults) < ASKED:
         _, before = dijkstra(times, indices=0, return_predecessors=True)
         way, at = [], int(before[-1])
@@ -88,6 +91,12 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
             at = int(before[at])
         if not way:
             break
+        legs = [leg for leg in zip([0, *(k + 1 for k in way)], [*(k + 1 for k in way), -1]) if leg not in walked]
+        if walk is not None and legs and len(walked) < WALKED:
+            walked.update(legs)
+            for i, j in legs:  # they were thought to be straight
+                times[i, j] += max(walk(int(regions[i]), from_[i], to[j]) - math.dist(from_[i], to[j]), 0.0) / SPEED
+            continue
         bad = next((k for k in way if k not in good and (why := able(leaps[k][0])) != ""), None)
         good.update(way if bad is None else way[:way.index(bad)])
         if bad is None:
@@ -111,8 +120,10 @@ def _apart(one: Crossing, other: Crossing) -> float:
     return math.dist(one.ground[:2], other.ground[:2]) if np.allclose(one.asks, other.asks, atol=0.01) else np.inf
 
 
-def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray, end: int) -> np.ndarray:
-    """How long it takes (L + 2, L + 2) [s] from the start (0), or where each leap ends, over each next leap, or to the goal (the last)."""
+def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray,
+           end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """How long it takes (L + 2, L + 2) [s] from the start (0), or where each leap ends, over each next leap, or to the goal (the last), by straight walks;
+    the places (L + 2, 2) that these begin at, and lead to, and the regions that they are in."""
     off, onto = (np.array([start, *(leap[k] for leap in leaps), end]) for k in (1, 2))
     from_, to = (np.array([end_, *(getattr(leap[0], name)[axes] for leap in leaps), goal])
                  for end_, name, axes in ((here, "place", [0, 2]), (goal, "ground", [0, 1])))
@@ -121,7 +132,7 @@ def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int,
     times[onto[:, None] != off[None]] = np.inf
     times[-1], times[:, 0] = np.inf, np.inf
     np.fill_diagonal(times, np.inf)
-    return times
+    return times, from_, to, onto
 
 
 def named(leap: Crossing) -> tuple[float, ...]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...contract import CharacterState, Controller, Goal, Intent, Leap
-from .journeys import Crossing, journey, named
+from .journeys import LANDING, Crossing, journey, named
 from .run_up import TRIES, farther, near, start_of
 from .surfaces import levels_of
 
@@ -18,6 +19,10 @@ Refusal = Callable[[CharacterState, Intent], str | None]
 
 TOO_FAR = "too far"
 """How the reasons begin by which one leaps there only from a walk."""
+NARROW = LANDING - 0.02
+"""Walks between leaps, which end so near to edges, keep at least so far from them as their lengths are looked at [m]; ..."""
+WALKS = 20
+"""... so many of them take as long as to ask about a leap."""
 RUN_UPS = 2
 """A leap that did not go off at so many run-ups is left."""
 
@@ -44,6 +49,7 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     stands: leaps, as `named`, that did not go off from a walk, once for each time. ask: is called for what takes long, so often as it counts for leaps.
     """
     refusal, tried = walker.refusal if refusal is None else refusal, set[tuple[float, ...]]()
+    shapes, walks = dict[int, np.ndarray](), 0
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
     start = levels.under(here, float(state.floor))
     region = int(levels.regions[start])
@@ -65,6 +71,19 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
         tried.add(asks)
         return "" if farther(walker, leap, around) else why
 
+    def walk(region: int, begins: np.ndarray, ends: np.ndarray) -> float:
+        """How long [m] a walk in a region is; as if it were straight where no way is found."""
+        from ..routes import shapes_of, ways  # who never goes to a goal loads no planner
+
+        nonlocal walks
+        walks += 1
+        if walks % WALKS == 0:
+            ask()
+        if region not in shapes:
+            shapes[region] = shapes_of(levels.stops(region))
+        found = ways(begins, ends, shapes[region], NARROW, most=1)
+        return float(np.linalg.norm(np.diff(found[0], axis=0), axis=1).sum()) if found else math.dist(begins, ends)
+
     def to(crossings: tuple[Crossing, ...]) -> Leg:
         """The walk to the first of them; back, where he is too near for the run-up without which it is too far."""
         first = crossings[0]
@@ -74,5 +93,5 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
 
     if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:
         return to(tuple(known))
-    way = journey(levels, here, start, goal.floor, end, able, barred)
+    way = journey(levels, here, start, goal.floor, end, able, barred, walk)
     return to(way.crossings) if way.crossings else Leg(goal.floor, goal.heading, stops, (), way.reason)
