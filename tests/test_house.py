@@ -101,7 +101,7 @@ PLAN = {
         "reconstruction.live": "files body",
         "navigation": "compiled body contract",
         "navigation.routes": "compiled",
-        "navigation.levels": "contract navigation.planning",
+        "navigation.levels": "contract navigation.planning navigation.routes",
         "navigation.thinking": "contract navigation.levels navigation.planning navigation.routes",
         "navigation.crowd": "compiled contract navigation.routes",
         "navigation.passing": "compiled body navigation.routes",

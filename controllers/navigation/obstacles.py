@@ -25,6 +25,12 @@ SHOULDER = 0.30
 """A walker keeps so far from walls [m] ..."""
 DEPTH = 0.25, 0.20
 """... where he faces them, and where they are behind him, so far: what a body takes that side-steps [m] ..."""
+CREVICE = 0.25
+"""One steps over what is no wider than this [m] ..."""
+ASKEW = 0.4
+"""... along his way, who comes to it askew."""
+EDGES = np.arange(0.01, ASKEW, 0.03)
+"""Where its edges are looked for [m]."""
 LOOK = 0.75
 """... and looks so far ahead [s]: about what stopping from a run takes."""
 PACE = 0.15
@@ -129,13 +135,13 @@ def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[
     speed = float(np.hypot(*velocity))
     if speed < 1e-6 or not len(around):
         return velocity
-    left = room(place, floor, around)
+    left = room(place, floor, around, velocity)
     # as far as it takes to stop, looked at step by step, lest a thin wall be missed
     ahead = np.arange(1, 2 + int(max(LOOK * speed / agile, 0.25) / PACE)) * PACE / speed
     for turn in DEVIATIONS:
         c, s = np.cos(turn), np.sin(turn)
         tried = c * np.array([c * velocity[0] + s * velocity[1], -s * velocity[0] + c * velocity[1]])
-        if _free(place, tried, ahead, floor, around) if left > 0.0 else room(place + tried * ahead[0], floor, around) > left:
+        if _free(place, tried, ahead, floor, around) if left > 0.0 else room(place + tried * ahead[0], floor, around, tried) > left:
             return tried
     return np.zeros(2)
 
@@ -144,16 +150,33 @@ def _free(place: np.ndarray, velocity: np.ndarray, ahead: np.ndarray, floor: flo
     """Whether there is room wherever one comes in the times ahead [s], going up and down steps and ramps as they come."""
     for later in ahead:
         there = place + velocity * later
-        if room(there, floor, around) <= 0.0:
+        if room(there, floor, around, velocity) <= 0.0:
             return False
-        floor = floor_at(there[0], there[1], around, floor + STEP)
+        below = floor_at(there[0], there[1], around, floor + STEP)
+        floor = below if floor - below <= STEP else floor  # over a crevice
     return True
 
 
-def room(place: np.ndarray, floor: float, around: Sequence[Any]) -> float:
-    """How much room a walker has left at a place (2,) x, z [m] on a floor so high [m]: [m], negative where a wall is too near, or the floor does not go on."""
+def room(place: np.ndarray, floor: float, around: Sequence[Any], way: np.ndarray | None = None) -> float:
+    """How much room a walker has left at a place (2,) x, z [m] on a floor so high [m]: [m], negative where a wall is too near, or the floor does not go on.
+
+    way: (2,) where he goes, who steps over crevices.
+    """
     here = floor_at(place[0], place[1], around, floor + STEP)
     if abs(here - floor) > STEP:
-        return -SHOULDER
+        if way is None or not over_crevice(place, way, floor, around):
+            return -SHOULDER
+        here = floor
     body = np.array([[place[0], here + height, place[1]] for height in (STEP + SHOULDER + KNEE, 1.0, HEAD - SHOULDER)])
     return min(gap(body, thing).min() for thing in around) - SHOULDER
+
+
+def over_crevice(place: np.ndarray, way: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
+    """Whether what lies lower than the floor [m] at a place (2,) is so narrow, along the way (2,), that one steps over it."""
+    ahead = way / max(float(np.hypot(*way)), 1e-9)
+    wide = 0.0
+    for along in (ahead, -ahead):
+        places = place + EDGES[:, None] * along
+        stands = (far for far, (x, z) in zip(EDGES, places) if abs(floor_at(x, z, around, floor + STEP) - floor) <= STEP)
+        wide += next(stands, np.inf)
+    return wide <= ASKEW

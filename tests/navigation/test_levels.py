@@ -5,7 +5,8 @@ import pytest
 
 from gambol.controllers.contract import Goal, Intent, Leap
 from gambol.controllers.navigation import floor_at
-from gambol.controllers.navigation.levels import journey, levels_of, named
+from gambol.controllers.navigation.levels import journey, journeys, levels_of, named, next_leg
+from gambol.controllers.navigation.levels.run_up import start_of
 from gambol.controllers.navigation.routes import distance, shapes_of
 from gambol.controllers.person import person
 from gambol.game.scene import Box, Pillar
@@ -80,6 +81,24 @@ def test_the_quickest_leaps_that_can_be_made_lead_to_a_goal():
     assert other.crossings and named(other.crossings[0]) != named(way.crossings[0])
 
 
+@pytest.mark.parametrize("height", [0.6, 0.8, 1.0])
+def test_nobody_goes_down_into_a_gap_that_he_can_leap_over(height):
+    """Beyond the gap a ramp leads down, and the goal lies behind it, on the floor."""
+    near, far = (Box((0.0, 0.5 * height, z), (2.4, height, 2.0)) for z in (0.0, 3.0))
+    down = Box((0.0, -0.05, 3.0 + 1.0 + 2.5), (1.4, height + 0.1, 5.0), 0.0, slope=-height / 5.0)
+    leaps = crossed((near, far, down), (0.3, 0.3), (0.0, 10.0), lambda _: "", height).crossings
+    assert [leap.place[1] for leap in leaps] == pytest.approx([height])
+
+
+def test_walks_between_leaps_count_as_they_lead(someone):
+    """A long wall begins beside a platform: down from it on that side of the wall on which the goal is, though the other is nearer."""
+    things = (Box((0.4, 0.2, 0.0), (5.4, 0.4, 2.0)), Box((2.0, 1.0, 5.0), (0.2, 2.0, 7.6)))
+    begins, goal = (2.6, 0.0), (1.4, 3.0)
+    straight = crossed(things, begins, goal, lambda leap: "", 0.4)
+    led = next_leg(someone, someone.start((*begins, 0.0), 0.4), Goal(goal), things)
+    assert straight.crossings[0].place[0] > 2.1 and led.crossings[0].place[0] < 1.9
+
+
 def test_why_no_leaps_lead_there_is_said():
     assert "no leap: too far" in crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: "too far", 0.6).reason
     nobody = crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: None, 0.6)
@@ -130,7 +149,7 @@ def test_he_leaps_from_a_walk_and_walks_on(someone):
     assert np.abs([state.ground[0] for state in states]).max() < 0.3, "the leap on the way is taken, not another as short"
 
 
-WIDE = (LONG[0], Box((0.0, 0.3, 6.08), (2.0, 0.6, 5.0)))
+WIDE = (LONG[0], Box((0.0, 0.3, 6.22), (2.0, 0.6, 5.0)))
 
 
 def test_a_walk_leads_over_gaps_that_are_too_wide_from_a_stand(someone):
@@ -152,7 +171,7 @@ def test_who_stands_too_near_for_his_run_up_steps_back_for_it(someone):
 @pytest.mark.parametrize("begins", [-1.2, 0.6, 1.17, 1.8])
 def test_whoever_is_sent_across_leaps_at_the_first_or_second_run_up(someone, far, begins):
     """Where he begins decides which of his steps ends at the edge; 1.17: so far before it as the room on a platform of 2 m lets him."""
-    gap = far - 0.72  # he leaps, and lands, 0.36 m from the edges
+    gap = far - journeys.INSET - journeys.LANDING
     things = (LONG[0], Box((0.0, 0.3, 5.0 + gap), (2.0, 0.6, 5.0)))
     states = going(someone, things, (0.0, begins - 0.36, 0.0), 0.6, Goal((0.0, 5.5 + gap)))
     assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
@@ -161,14 +180,81 @@ def test_whoever_is_sent_across_leaps_at_the_first_or_second_run_up(someone, far
 
 
 def test_leaps_alike_are_not_all_asked_about():
-    """What is refused in the same words for two leaps, as far and as high, is refused for all: who is asked for each stands and thinks for seconds."""
+    """What is refused in the same words for two leaps side by side, as far and as high, and for six anywhere, is refused for all: who is asked for each
+    stands and thinks for seconds."""
     asked = []
 
     def able(leap):
         asked.append(leap.asks)
         return "its legs would hit something 0.3 m ahead" if leap.asks[1] > 0.5 else ""
     way = crossed(STAGES["course"], (3.4, 1.6), (5.9, 12.4), able)
-    assert way.crossings and not way.reason and sum(up > 0.5 for _, up in asked) <= 4
+    assert way.crossings and not way.reason and sum(up > 0.5 for _, up in asked) <= 2 * 6
+
+
+def test_leaps_go_off_from_the_side_that_one_stands_at():
+    """Whoever stands amid a platform was thought to land as far from its middle."""
+    asked = []
+    way = crossed(FAR, (0.2, 0.0), (0.4, 3.2), lambda leap: asked.append(leap) or "", floor=0.6)
+    leap, = way.crossings
+    assert leap.ground[1] == pytest.approx(1.0 - journeys.INSET) and leap.place[2] == pytest.approx(2.0 + journeys.LANDING)
+
+
+def test_leaps_keep_clear_of_what_nobody_stands_beside():
+    """A pillar at the edge: its place is left to leaps beside it, which a walk can lead to."""
+    things = (*FAR, Pillar((0.0, 0.6, 0.9), 0.15, 1.8), Pillar((0.6, 0.6, 2.2), 0.15, 1.8))
+    for leap, *_ in journeys.crossings(levels_of(things), np.array([[0.0, 0.0], [0.0, 3.0]])):
+        for place, height in ((leap.ground[:2], leap.height), (leap.place[[0, 2]], leap.place[1])):
+            for pillar in things[2:]:
+                assert height < 0.1 or np.hypot(*(place - np.array(pillar.foot)[[0, 2]])) >= 0.30 + pillar.radius
+
+
+def test_run_ups_begin_on_the_level_from_which_the_leap_goes_off(someone):
+    """A platform of 1.3 m with the floor joined to it by stairs: nobody runs up from beside or below it."""
+    stairs = tuple(Box((0.0, 0.075 * (k + 1), -0.3 + 0.3 * k), (1.6, 0.15 * (k + 1), 0.3)) for k in range(3))
+    for deep, room in ((1.3, False), (3.4, True)):
+        things = (*stairs, Box((0.0, 0.3, 0.45 + 0.5 * deep), (1.6, 0.6, deep)))
+        for x, heading in ((0.0, 0.0), (0.44, np.pi / 2)):
+            edge = (x, 0.45 + deep - 0.36) if heading == 0.0 else (x, 1.5)
+            ahead = np.array([np.sin(heading), np.cos(heading)])
+            leap = journeys.Crossing(np.array([*edge, heading]), np.array([edge[0] + 1.8 * ahead[0], 0.6, edge[1] + 1.8 * ahead[1]]), 0.6)
+            begins = start_of(someone, leap, things)
+            assert (begins is not None) == (room and heading == 0.0)
+
+
+@pytest.mark.parametrize("up", [0.2, 0.4])
+def test_run_ups_lead_onto_what_is_higher(someone, up):
+    """Too far from a stand, and on."""
+    things = (LONG[0], Box((0.0, 0.3 + 0.5 * up, 6.1), (2.0, 0.6 + up, 5.0)))
+    leap = Intent(leap=Leap(np.array([0.0, 0.6 + up, 3.82])), around=things)
+    assert "too far" in someone.refusal(someone.start((0.0, 2.14, 0.0), 0.6), leap)
+    states = going(someone, things, (0.0, -2.0, 0.0), 0.6, Goal((0.0, 7.0)))
+    assert someone.status(states[-1]).kind == "done" and float(states[-1].floor) == pytest.approx(0.6 + up)
+    assert min(float(state.floor) for state in states) == pytest.approx(0.6)
+
+
+def test_who_went_back_for_a_run_up_makes_that_leap(someone):
+    """Another way that had become as short was begun, and the first one again from there, without an end."""
+    states = going(someone, WIDE, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)))
+    leaps = [named(state.going.crossings[0]) for state in states if state.going is not None and state.going.crossings]
+    assert len(set(leaps)) == 1
+
+
+@pytest.mark.parametrize("wide", [0.01, 0.06, 0.12, 0.25])
+def test_crevices_are_stepped_over(someone, wide):
+    things = (LONG[0], Box((0.0, 0.3, 5.0 + wide), (2.0, 0.6, 5.0)))
+    assert len(set(levels_of(things).regions[:2])) == 1 and levels_of(things).regions[-1] != levels_of(things).regions[0]
+    states = going(someone, things, (0.0, 0.5, 0.0), 0.6, Goal((0.3, 4.4)))
+    assert someone.status(states[-1]).kind == "done" and {state.active for state in states} == {"locomotion"}
+    assert {float(state.floor) for state in states} == {0.6}
+    heights = levels_of(things).floors(np.column_stack([np.zeros(40), np.linspace(2.0, 3.0, 40)]), 0.6)
+    assert np.allclose(heights, 0.6), "the way that is drawn leads across"
+
+
+def test_what_is_wider_than_a_crevice_parts_levels():
+    regions = levels_of((LONG[0], Box((0.0, 0.3, 5.4), (2.0, 0.6, 5.0)))).regions
+    assert len(set(regions)) == 3
+    down = levels_of((LONG[0], Box((0.0, 0.05, 5.4), (2.0, 0.1, 5.0)))).floors(np.column_stack([np.zeros(5), np.linspace(2.3, 3.5, 5)]), 0.6)
+    assert down[-1] == pytest.approx(0.1), "and who comes down stays there"
 
 
 def test_without_room_to_step_back_a_gap_is_too_wide(someone):

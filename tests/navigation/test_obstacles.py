@@ -58,3 +58,19 @@ def test_edges_stop_and_what_hangs_high_does_not():
     assert slide((0.0, 4.3), (0.0, 1.0), 0.6, [BOX])[1] < 0.5, "it is an edge"
     beam = Box((0.0, HEAD + SHOULDER + 0.2, 1.0), (2.0, 0.2, 0.2), 0.0)
     assert np.array_equal(slide((0.0, 0.0), (0.0, 1.0), 0.0, [beam]), (0.0, 1.0))
+
+
+@pytest.mark.parametrize("wide, stops", [(0.03, False), (0.12, False), (0.25, False), (0.5, True)])
+@pytest.mark.parametrize("askew", [0.0, 0.6])
+def test_sticks_lead_over_crevices_and_stop_at_gaps(wide, stops, askew):
+    """From any place before it, on it and beyond: who stood with his middle over a crevice could not go on."""
+    things = [Box((0.0, 0.3, 0.0), (9.0, 0.6, 4.0)), Box((0.0, 0.3, 4.0 + wide), (9.0, 0.6, 4.0))]
+    wish = 1.3 * np.array([np.sin(askew), np.cos(askew)])
+    if not stops:
+        for z in np.arange(1.5, 2.5, 0.02):
+            assert np.array_equal(slide((0.0, z), wish, 0.6, things), wish)
+    else:
+        place = np.array([0.0, 0.0])
+        for _ in range(240):
+            place = place + slide(place, wish, 0.6, things) / 60
+        assert place[1] < 2.0

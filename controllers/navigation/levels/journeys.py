@@ -7,7 +7,6 @@ leap there is asked only of those that the quickest way so far has.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
@@ -17,7 +16,11 @@ from ..obstacles import SHOULDER
 from .surfaces import Levels
 
 INSET = SHOULDER + 0.06
-"""Leaps begin and end so far from where a surface ends [m]: where walks lead to."""
+"""Leaps begin so far from where a surface ends [m]: where walks lead to; ..."""
+LANDING = 0.22
+"""... and end so far from it: from there one walks on."""
+CLEAR = SHOULDER + 0.02
+"""Nothing that lets nobody stand there is nearer to where they begin and end than this [m]."""
 ROOM = 0.5
 """Nobody leaps onto, or off, what is narrower than this [m]."""
 APART = 0.5
@@ -31,11 +34,15 @@ NEAREST = 6
 SPEED = 1.2
 """How fast one walks between them [m/s]."""
 LEAP = 1.8, 1.5
-"""What a leap counts for [s]: turning, crouching and getting up; and for each metre, more than to walk it, so that the shortest is leapt."""
+"""What a leap counts for [s]: turning, crouching and getting up; and for each metre, up and down, too, more than to walk it, so that the shortest is
+leapt and nobody goes down into a gap that he can leap over."""
 ASKED = 60
 """About no more leaps is asked."""
-ALIKE = 2
-"""Of leaps as far and as high so many are asked about that can't be made for the same reason."""
+ALIKE, BY, ALL = 2, 1.0, 6
+"""Of leaps side by side, no farther from each other than this [m], as far and as high, so many are asked about that can't be made for the same reason,
+and so many wherever they are."""
+WALKED = 200
+"""So many walks between leaps are looked at: the others count as straight ones."""
 WEAK = "too "
 """How reasons begin by which nobody leaps farther or higher, either."""
 
@@ -62,10 +69,11 @@ class Journey(NamedTuple):
 
 
 def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end: int, able: Callable[[Crossing], str | None],
-            barred: Iterable[tuple[float, ...]] = ()) -> Journey:
+            barred: Iterable[tuple[float, ...]] = (), walk: Callable[[int, np.ndarray, np.ndarray], float] | None = None) -> Journey:
     """The quickest way from a place (2,) on one surface to a goal (2,) on another.
 
     able: says why nobody can leap so, "" where one can, None where nobody leaps at all. barred: leaps, as `named`, that are not to be tried again.
+    walk: says how long [m] a walk is in a region from one place (2,) to another; straight, where nothing says it.
     """
     if levels.regions[start] == levels.regions[end]:
         return Journey(())
@@ -73,8 +81,8 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
 
     barred = set(barred)
     leaps = [leap for leap in crossings(levels, np.array([here, goal])) if named(leap[0]) not in barred]
-    times = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
-    good, faults, alike = set(), [], Counter[tuple[str, float, float]]()
+    times, from_, to, regions = _times(leaps, here, levels.regions[start], goal, levels.regions[end])
+    good, faults, walked = set(), list[tuple[str, Crossing]](), set[tuple[int, int]]()
     while len(good) + len(faults) < ASKED:
         _, before = dijkstra(times, indices=0, return_predecessors=True)
         way, at = [], int(before[-1])
@@ -83,34 +91,48 @@ def journey(levels: Levels, here: np.ndarray, start: int, goal: np.ndarray, end:
             at = int(before[at])
         if not way:
             break
+        legs = [leg for leg in zip([0, *(k + 1 for k in way)], [*(k + 1 for k in way), -1]) if leg not in walked]
+        if walk is not None and legs and len(walked) < WALKED:
+            walked.update(legs)
+            for i, j in legs:  # they were thought to be straight
+                times[i, j] += max(walk(int(regions[i]), from_[i], to[j]) - math.dist(from_[i], to[j]), 0.0) / SPEED
+            continue
         bad = next((k for k in way if k not in good and (why := able(leaps[k][0])) != ""), None)
         good.update(way if bad is None else way[:way.index(bad)])
         if bad is None:
             return Journey(tuple(leaps[k][0] for k in way))
         if why is None:
             return Journey(())  # nobody here leaps: whoever plans the walk says what is in its way
-        asks = leaps[bad][0].asks
-        faults.append(why)
-        alike[why, *np.round(asks, 2)] += 1
+        faulty = leaps[bad][0]
+        faults.append((why, faulty))
+        apart = [_apart(leap, faulty) for other, leap in faults if other == why]
+        near = np.inf if sum(far < np.inf for far in apart) >= ALL else BY if sum(far < BY for far in apart) >= ALIKE else 0.0
         for k, (leap, *_) in enumerate(leaps):
-            worse = why.startswith(WEAK) and leap.asks[0] >= asks[0] - 1e-6 and leap.asks[1] >= asks[1] - 1e-6
-            same = alike[why, *np.round(asks, 2)] >= ALIKE and np.allclose(leap.asks, asks, atol=1e-6)
-            if k == bad or (worse or same) and k not in good:
+            worse = why.startswith(WEAK) and all(np.array(leap.asks) >= np.array(faulty.asks) - 1e-6)
+            if k == bad or (worse or _apart(leap, faulty) < near) and k not in good:
                 times[:, k + 1] = np.inf
-    return Journey((), "no walk leads there, and no leap: " + max(sorted(set(faults)), key=faults.count) if faults else "")
+    whys = [why for why, _ in faults]
+    return Journey((), "no walk leads there, and no leap: " + max(sorted(set(whys)), key=whys.count) if whys else "")
 
 
-def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray, end: int) -> np.ndarray:
-    """How long it takes (L + 2, L + 2) [s] from the start (0), or where each leap ends, over each next leap, or to the goal (the last)."""
+def _apart(one: Crossing, other: Crossing) -> float:
+    """How far from each other [m] leaps go off that go as far and as high, inf for others."""
+    return math.dist(one.ground[:2], other.ground[:2]) if np.allclose(one.asks, other.asks, atol=0.01) else np.inf
+
+
+def _times(leaps: list[tuple[Crossing, int, int]], here: np.ndarray, start: int, goal: np.ndarray,
+           end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """How long it takes (L + 2, L + 2) [s] from the start (0), or where each leap ends, over each next leap, or to the goal (the last), by straight walks;
+    the places (L + 2, 2) that these begin at, and lead to, and the regions that they are in."""
     off, onto = (np.array([start, *(leap[k] for leap in leaps), end]) for k in (1, 2))
     from_, to = (np.array([end_, *(getattr(leap[0], name)[axes] for leap in leaps), goal])
                  for end_, name, axes in ((here, "place", [0, 2]), (goal, "ground", [0, 1])))
-    spent = np.array([0.0, *(LEAP[0] + LEAP[1] * sum(leap[0].asks) for leap in leaps), 0.0])
+    spent = np.array([0.0, *(LEAP[0] + LEAP[1] * (leap[0].asks[0] + abs(leap[0].place[1] - leap[0].height)) for leap in leaps), 0.0])
     times = np.linalg.norm(from_[:, None] - to[None], axis=-1) / SPEED + spent + 1e-9
     times[onto[:, None] != off[None]] = np.inf
     times[-1], times[:, 0] = np.inf, np.inf
     np.fill_diagonal(times, np.inf)
-    return times
+    return times, from_, to, onto
 
 
 def named(leap: Crossing) -> tuple[float, ...]:
@@ -129,15 +151,16 @@ def crossings(levels: Levels, ends: np.ndarray) -> list[tuple[Crossing, int, int
         without = places + (INSET + BESIDE) * normals
         which, ground = levels.ground(without, height)  # what is higher is another box's matter
         own, theirs = int(levels.regions[box]), levels.regions[which]
-        free = ~levels.shut(without, ground) & (theirs != own) & _within(levels, which, without)
+        free = ~levels.shut(without, ground, CLEAR) & (theirs != own) & _within(levels, which, without)
         for k in np.flatnonzero(free):
             here, there = (places[k], height), (without[k], float(ground[k]))
             _add(found, here, there, own, int(theirs[k]))
             _add(found, there, here, int(theirs[k]), own)
         for other in broad:
             if levels.regions[other] != own and len(edges[other][0]):
-                onto = _nearest_on(levels, other, places)
-                far = np.linalg.norm(onto - places, axis=1)
+                onto = _nearest_on(levels, other, places, LANDING)
+                shut = levels.shut(onto, np.full(len(onto), edges[other][2]), CLEAR)
+                far = np.where(shut, np.inf, np.linalg.norm(onto - places, axis=1))
                 detour = np.linalg.norm(places - ends[0], axis=1) + np.linalg.norm(onto - ends[1], axis=1)
                 for k in np.argsort(far.round(2) + 1e-3 * detour, kind="stable")[:NEAREST]:  # of those as short the ones on the way
                     if far[k] > 0.1:
@@ -149,16 +172,18 @@ def _edge(levels: Levels, box: int, ends: np.ndarray) -> tuple[np.ndarray, np.nd
     """Places (S, 2) near a box's sides that can be stood on, those among them that are nearest to the ends; outward normals (S, 2); its height [m]."""
     out = levels.outline(box, INSET, APART)
     nearest = _nearest_on(levels, box, ends)
-    normals = out.normals[[int(np.linalg.norm(out.places - place, axis=1).argmin()) for place in nearest]]
+    side = [int(np.linalg.norm(out.places - place, axis=1).argmin()) for place in nearest]
+    normals = out.normals[side]
+    nearest = nearest + np.sum((out.places[side] - nearest) * normals, axis=-1, keepdims=True) * normals  # who stands on it leaps from its side
     places, normals = np.concatenate([out.places, nearest]), np.concatenate([out.normals, normals])
     height = float(levels.centres[box, 1] + levels.halves[box, 1])
-    free = (levels.ground(places)[0] == box) & ~levels.shut(places, np.full(len(places), height))
+    free = (levels.ground(places)[0] == box) & ~levels.shut(places, np.full(len(places), height), CLEAR)
     return places[free], normals[free], height
 
 
-def _nearest_on(levels: Levels, box: int, places: np.ndarray) -> np.ndarray:
-    """The places (P, 2) on a box, an inset from its sides, that are nearest to others (P, 2)."""
-    half = np.maximum(levels.halves[box, [0, 2]] - INSET, 0.0)
+def _nearest_on(levels: Levels, box: int, places: np.ndarray, inset: float = INSET) -> np.ndarray:
+    """The places (P, 2) on a box, an inset [m] from its sides, that are nearest to others (P, 2)."""
+    half = np.maximum(levels.halves[box, [0, 2]] - inset, 0.0)
     c, s = np.cos(levels.headings[box]), np.sin(levels.headings[box])
     return np.clip(levels.local(places)[:, box], -half, half) @ np.array([[c, -s], [s, c]]) + levels.centres[box, [0, 2]]
 

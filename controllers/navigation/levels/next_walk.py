@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...contract import CharacterState, Controller, Goal, Intent, Leap
-from .journeys import Crossing, journey, named
+from .journeys import LANDING, Crossing, journey, named
 from .run_up import TRIES, farther, near, start_of
 from .surfaces import levels_of
 
@@ -16,6 +17,12 @@ Refusal = Callable[[CharacterState, Intent], str | None]
 """Says why nobody could leap from a state as an intent says, as `Controller.refusal`."""
 
 
+TOO_FAR = "too far"
+"""How the reasons begin by which one leaps there only from a walk."""
+NARROW = LANDING - 0.02
+"""Walks between leaps, which end so near to edges, keep at least so far from them as their lengths are looked at [m]; ..."""
+WALKS = 20
+"""... so many of them take as long as to ask about a leap."""
 RUN_UPS = 2
 """A leap that did not go off at so many run-ups is left."""
 
@@ -41,7 +48,8 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     is asked for leaps, by default his own. known: the leaps that are left of a way that he is on: they are not sought again where they lead on from here.
     stands: leaps, as `named`, that did not go off from a walk, once for each time. ask: is called for what takes long, so often as it counts for leaps.
     """
-    refusal, tried = walker.refusal if refusal is None else refusal, set[float]()
+    refusal, tried = walker.refusal if refusal is None else refusal, set[tuple[float, ...]]()
+    shapes, walks = dict[int, np.ndarray](), 0
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
     start = levels.under(here, float(state.floor))
     region = int(levels.regions[start])
@@ -55,11 +63,26 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
         return refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
 
     def able(leap: Crossing) -> str | None:
-        why, far = from_stand(leap), round(leap.asks[0], 2)
-        for _ in range(TRIES if why and far not in tried else 0):
+        why, asks = from_stand(leap), tuple(np.round(leap.asks, 1))
+        if why is None or not why.startswith(TOO_FAR):
+            return why
+        for _ in range(TRIES if asks not in tried else 0):
             ask()
-        tried.add(far)
-        return "" if why and farther(walker, leap, around) else why
+        tried.add(asks)
+        return "" if farther(walker, leap, around) else why
+
+    def walk(region: int, begins: np.ndarray, ends: np.ndarray) -> float:
+        """How long [m] a walk in a region is; as if it were straight where no way is found."""
+        from ..routes import shapes_of, ways  # who never goes to a goal loads no planner
+
+        nonlocal walks
+        walks += 1
+        if walks % WALKS == 0:
+            ask()
+        if region not in shapes:
+            shapes[region] = shapes_of(levels.stops(region))
+        found = ways(begins, ends, shapes[region], NARROW, most=1)
+        return float(np.linalg.norm(np.diff(found[0], axis=0), axis=1).sum()) if found else math.dist(begins, ends)
 
     def to(crossings: tuple[Crossing, ...]) -> Leg:
         """The walk to the first of them; back, where he is too near for the run-up without which it is too far."""
@@ -70,5 +93,5 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
 
     if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:
         return to(tuple(known))
-    way = journey(levels, here, start, goal.floor, end, able, barred)
+    way = journey(levels, here, start, goal.floor, end, able, barred, walk)
     return to(way.crossings) if way.crossings else Leg(goal.floor, goal.heading, stops, (), way.reason)

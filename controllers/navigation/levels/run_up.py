@@ -11,8 +11,8 @@ import numpy as np
 
 from ...contract import CharacterState, Controller, Intent, Leap, but
 from ..goal import wish
-from ..obstacles import SHOULDER, STEP
-from .journeys import Crossing
+from ..obstacles import STEP
+from .journeys import CLEAR, Crossing
 from .surfaces import levels_of
 
 if TYPE_CHECKING:  # who leaps from a walk has planned it
@@ -22,7 +22,7 @@ SHARE = 0.9
 """Plans keep to this share of what is walked: what is left serves to catch up."""
 PACES = 1.35, 1.6, 1.9
 """So fast one may walk as one leaps on [m/s], as slowly as will do; slower, and both feet push off as from a stand, faster, and legs run."""
-FAR, UP = 2.3, 0.1
+FAR, UP = 2.3, 0.5
 """Nobody leaps from a walk farther than this [m], or higher up."""
 LONG = 1.65
 """Who leaps from a walk leaps so far at least [m]: landing nearer, he would come to a stand."""
@@ -46,8 +46,12 @@ PAST = 0.08
 """No farther beyond where the leap was to go off it does [m]."""
 EVERY = 3
 """About every so manieth step is asked [steps]."""
-FINE = 0.05
-"""Run-ups are measured for leaps as far as so much more or less [m]."""
+ROUND = np.stack([np.sin(np.arange(8) * math.pi / 4.0), np.cos(np.arange(8) * math.pi / 4.0)], axis=-1)
+"""Ways (8, 2) all round."""
+LEVEL = 0.05
+"""Where one walks up to a leap, the ground is no higher or lower than where it goes off [m]."""
+FINE, HIGH = 0.05, 0.1
+"""Run-ups are measured for leaps as far, and as high up, as so much more or less [m]."""
 TRIES = 4
 """What measuring a run-up counts for, in leaps that are asked about."""
 
@@ -70,13 +74,15 @@ def _top(planes: np.ndarray) -> float:
 def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for: np.ndarray | None = None) -> np.ndarray | None:
     """Where (2,) who can leap only from a walk begins to walk to it; None where there is no room, or he could leap from nowhere. but_for: (2,) not there."""
     levels = levels_of(around)
-    for back in measured(walker, FINE * math.ceil(leap.asks[0] / FINE - 1e-6)):
+    far, up = leap.asks
+    for back in measured(walker, FINE * math.ceil(far / FINE - 1e-6), HIGH * math.ceil(up / HIGH - 1e-6)):
         begins = leap.ground[:2] - back * _ahead(leap)
         if but_for is not None and math.dist(begins, but_for) < ELSEWHERE:
             continue
-        places = leap.ground[:2] - np.linspace(0.0, back + SHOULDER, 8)[:, None] * _ahead(leap)
+        places = np.concatenate([leap.ground[:2] - np.linspace(0.0, back, 7)[:, None] * _ahead(leap), begins + CLEAR * ROUND])
         which, heights = levels.ground(places, leap.height + STEP)
-        if np.all(levels.regions[which] == levels.regions[which[0]]) and not levels.shut(places, heights).any():
+        walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights) & (abs(heights - leap.height) <= STEP)
+        if walked.all() and np.all(abs(heights[:7] - leap.height) <= LEVEL) and not levels.shut(begins[None], heights[6:7], CLEAR)[0]:
             return begins
     return None
 
@@ -92,10 +98,10 @@ def farther(walker: Controller, leap: Crossing, around: Sequence[Any]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def measured(walker: Controller, far: float) -> tuple[float, ...]:
-    """How long [m] the run-ups are from a stand, on a level floor, after which a leap so far [m] goes off, played ahead."""
+def measured(walker: Controller, far: float, up: float) -> tuple[float, ...]:
+    """How long [m] the run-ups are from a stand, on a level floor, after which a leap so far and so high up [m] goes off, played ahead."""
     planes = walker.limits(SHARE)
-    leap, found = Crossing(np.zeros(3), np.array([0.0, 0.0, far]), 0.0), []
+    leap, found = Crossing(np.zeros(3), np.array([0.0, up, far]), 0.0), []
     if planes is None or _top(planes) < PACES[0]:
         return ()
     for back in BACKS:
@@ -138,8 +144,8 @@ def _room(leap: Crossing, around: Sequence[Any]) -> bool:
     ahead, levels = _ahead(leap), levels_of(around)
     beyond = leap.place[[0, 2]] + max(LONG - far, 0.0) * ahead + np.linspace(0.0, ROOM, 6)[:, None] * ahead
     which, heights = levels.ground(beyond)
-    on = (levels.regions[which] == levels.regions[levels.under(leap.place[[0, 2]], float(leap.place[1]))]) & ~levels.shut(beyond, heights)
-    return bool(on.all()) and abs(float(heights[0]) - float(leap.place[1])) < 0.05
+    on = (levels.regions[which] == levels.regions[levels.under(leap.place[[0, 2]], float(leap.place[1]))]) & ~levels.shut(beyond, heights, CLEAR)
+    return bool(on.all()) and abs(float(heights[0]) - float(leap.place[1])) <= LEVEL
 
 
 def onto(leap: Crossing, pace: float) -> np.ndarray:

@@ -1,18 +1,19 @@
 """What can be stood on, and how far feet get on it.
 
-The floor and the tops of boxes are surfaces. Two are one region where one steps from the one onto the other: over kerbs, up stairs, onto
-ramps. Where the ground falls off by more than a step, a region ends, and a rail says so to whoever plans a walk.
+The floor and the tops of boxes are surfaces. Two are one region where one steps from the one onto the other: over kerbs and crevices, up stairs,
+onto ramps. Where the ground falls off by more than a step, a region ends, and a rail says so to whoever plans a walk.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..obstacles import HEAD, STEP, is_box, is_pillar, slope
+from ..obstacles import ASKEW, CREVICE, HEAD, STEP, is_box, is_pillar, slope
 
 OUTLINE = 0.1
 """How far apart the places are at which a box's sides are looked at [m]."""
@@ -83,19 +84,27 @@ class Levels:
 
     def floors(self, places: np.ndarray, floor: float) -> np.ndarray:
         """How high (P,) [m] somebody stands at one place (P, 2) after the other, who begins on a floor so high [m] and takes no higher step."""
-        heights = []
-        for row in self.tops(np.asarray(places, float)):
-            floor = float(row[row <= floor + STEP].max(initial=0.0))
+        places, heights, brink = np.asarray(places, float), [], 0
+        for k, row in enumerate(self.tops(places)):
+            before, floor = floor, float(row[row <= floor + STEP].max(initial=0.0))
+            if floor < before - STEP:
+                brink = k  # where he comes down to something, or to a crevice
+            elif brink and math.dist(places[k], places[brink - 1]) < ASKEW:
+                beyond = float(row[row <= heights[brink - 1] + STEP].max(initial=0.0))
+                if beyond >= heights[brink - 1] - STEP:
+                    floor, heights[brink:], brink = beyond, [heights[brink - 1]] * (k - brink), 0
             heights.append(floor)
         return np.array(heights)
 
-    def shut(self, places: np.ndarray, heights: np.ndarray) -> np.ndarray:
-        """Whether something stands or hangs over places (P, 2) on ground of heights (P,) that lets nobody stand there."""
-        tops = self.tops(places)[:, :-1]
-        bottoms = tops - 2.0 * self.halves[:, 1]
-        shut = np.any((tops > heights[:, None] + STEP) & (bottoms < heights[:, None] + HEAD), 1)
+    def shut(self, places: np.ndarray, heights: np.ndarray, room: float = 0.0) -> np.ndarray:
+        """Whether something stands or hangs over places (P, 2) on ground of heights (P,), or so near to them [m], that lets nobody stand there."""
+        local, half = self.local(places), self.halves[:, [0, 2]]
+        over = np.clip(local, -half, half)
+        tops = self.centres[:, 1] + self.halves[:, 1] + self.slopes * over[..., 1]
+        near = np.linalg.norm(local - over, axis=-1) <= room + 1e-9
+        shut = np.any(near & (tops > heights[:, None] + STEP) & (tops - 2.0 * self.halves[:, 1] < heights[:, None] + HEAD), 1)
         for one in self.pillars:
-            near = np.hypot(places[:, 0] - one[0], places[:, 1] - one[2]) <= one[3]
+            near = np.hypot(places[:, 0] - one[0], places[:, 1] - one[2]) <= one[3] + room
             shut |= near & (one[1] < heights + HEAD) & (one[1] + one[4] > heights + STEP)
         return shut
 
@@ -129,6 +138,11 @@ class Levels:
             onto, there = self.ground(without, here + STEP)
             open_ = own & ~self.shut(without, np.maximum(there, here))
             step = open_ & (here - there <= STEP)
+            for wide in np.arange(2.0 * BESIDE, CREVICE + BESIDE, BESIDE):  # nearest first
+                over = without + wide * out.normals
+                beyond, high = self.ground(over, here + STEP)
+                across = open_ & ~step & (abs(here - high) <= STEP) & ~self.shut(over, np.maximum(here, high))
+                onto, step = np.where(across, beyond, onto), step | across
             found.append((out, np.where(step, onto, -1), open_ & ~step))
         return found
 

@@ -45,7 +45,8 @@ def began(now: Going, state: CharacterState, intent: Intent, walker: Controller,
         def refusal(there: CharacterState, asked: Intent) -> str | None:
             counted()
             return walker.refusal(there, asked)
-        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, now.crossings[1:] if now.leapt else (), now.stands, counted)
+        known = now.crossings[1:] if now.leapt else now.crossings if now.back else ()  # who went back for a run-up makes it
+        leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, known, now.stands, counted)
         failed = now.stands.count(named(leg.crossings[0])) if leg.crossings else 0
         run = bool(leg.crossings) and not leg.back and failed <= now.back and runs(leg.crossings[0], state.ground[:2], intent.around, planes)
         for _ in range(TRIES if run else 0):
