@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
-from .motion import (FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
-                     settling, sinking)
+from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
+                     lifted, lowest, settling, sinking)
 from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
@@ -20,6 +20,8 @@ GATHERS = 0.2
 SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
 """But none of its joints turns faster than the first as recorded ones do, nor by more than what is then left of the second as it comes to them, but with the third
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
+CLEARED, SOON = 12, 0.12
+"""At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
 SWINGS_ON = 0.15
@@ -153,7 +155,18 @@ class _Draft(Airborne):
             lasts = max(lasts, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
         swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)
         swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)
+        some = np.unique(np.linspace(0, len(swung) - 1, CLEARED).round().astype(int))
+        more = self._lifted(side, swung, some)
+        swung[:, :EACH, 0] += hermite(self.times[some], more, monotone(self.times[some], more), self.times) if more.any() else 0.0
         return turns(swung)
+
+    def _lifted(self, side: int, swung: np.ndarray, some: np.ndarray) -> np.ndarray:
+        """By how much more (M, EACH) [rad] a swing leg that turns by swung (N, 4, 3) bends in samples (M,), lest its foot be in the floor as the body goes down: no
+        sooner than it can from where it is."""
+        floor, low = self.planted[0, 1] - self.body.sole, lowest(self.physique, side, self.start.root, self.start.rotations)
+        room = CLEARS * self.physique.size
+        clears = min(low - floor, room) + max(room - low + floor, 0.0) * np.minimum(self.times[some] / SOON, 1.0)
+        return lifted(self.physique, side, floor, swung[some], clears, self.angles[some], self.offsets[some], self.turns[some], self.centres[some], self.feet[some], self.start.root)
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""

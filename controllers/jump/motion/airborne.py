@@ -24,6 +24,8 @@ SHORT = 0.5
 """Flights that last longer [s] are slower, and need fewer poses a second."""
 RUNS_ON = 0.06, 0.14
 """Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
+PASSES = 0.12
+"""The leg that swings on passes the other in so long at least [s], as recorded, however soon that has given."""
 WAITS = 0.06
 """Who could hop on off one foot and goes too fast to stop over it walks on so long after the lowest point [s]."""
 DOWN = 0.34
@@ -87,7 +89,8 @@ class Airborne:
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]))
         if way.lands is not None:
-            times = np.concatenate([[0.0], landed, [TIME]])
+            later = max(PASSES - self.lowest, 0.0)
+            times = np.concatenate([np.linspace(0.0, self.lowest + later, BETWEEN + 1), np.append(landed[BETWEEN:], TIME) + later])
             until = times[:BETWEEN + 1]
             centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[way.land], self.sunk[0]]).T], 1)
             angles = self.carriage(self.down + until)
@@ -190,6 +193,7 @@ class Airborne:
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         if self.way.lands is not None:
             local[:, self.swings] = self.swung(after)
+            local[:, self.swings.start] = np.swapaxes(turned, -1, -2) @ upright @ local[:, self.swings.start]  # else a trunk that turns on puts its toes into the floor
         pose = partial(ground_kernel, body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c)
         pose(feet, self.air_roots[-1].copy(), roots, local)
         if np.isfinite(self.stands):
