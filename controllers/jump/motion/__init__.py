@@ -2,7 +2,7 @@
 the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
 """
 
-from .airborne import FADE, GROUND_RATE, HEEL, PLANT, SAME, Airborne
+from .airborne import FADE, GROUND_RATE, HEEL, MOMENT, PLANT, SAME, Airborne
 from .descent import sinking
 from .edges import over_nothing, steps_over
 from .fall import fall, struck
@@ -19,7 +19,7 @@ from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
+    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "MOMENT", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
     "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "lifted", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sinking", "sole_places", "steps_over", "struck", "tumbled",
 ]
