@@ -55,8 +55,7 @@ def lifted(physique: Physique, free: int, floor: float, bent: np.ndarray, clears
         leg_now[:, :EACH, 0] += more
         local[:, leg] = turns(leg_now)
         ground_kernel(body, flex, angles, joints, offsets, turned, centres, feet, root.copy(), roots, local)
-        low = np.array([lowest(physique, free, *pose) for pose in zip(roots, local)])
-        missing = np.maximum(clears - (low - floor), 0.0) / (LIFT * physique.size)
+        missing = np.maximum(clears - (lowest(physique, free, roots, local) - floor), 0.0) / (LIFT * physique.size)
         if missing.max() < 1e-3:
             break
         wanted += missing
@@ -66,11 +65,12 @@ def lifted(physique: Physique, free: int, floor: float, bent: np.ndarray, clears
     return more
 
 
-def lowest(physique: Physique, side: int, root: np.ndarray, local: np.ndarray) -> float:
-    """How high [m] the lowest of a foot is, 0 left or 1 right, in a pose (3,), (J, 3, 3)."""
-    positions, turned = np.empty((len(local), 3)), np.empty((len(local), 3, 3))
-    place_kernel(physique.tables, root, local, positions, turned)
-    return float(sole_corners(physique.skeleton, positions[None], turned[None])[0].reshape(2, -1, 3)[side, :, 1].min())
+def lowest(physique: Physique, side: int, roots: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """How high (M,) [m] the lowest of a foot is, 0 left or 1 right, in poses (M, 3), (M, J, 3, 3)."""
+    positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
+    for root, pose, places, facing in zip(roots, local, positions, turned):
+        place_kernel(physique.tables, root, pose, places, facing)
+    return sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)[:, side, :, 1].min(-1)
 
 
 def keyed_leg(times: np.ndarray, rows: np.ndarray):
