@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
-from .motion import (FADE, FREE, GROUND_RATE, HEEL, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
-                     settling, sinking)
+from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, MOMENT, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
+                     lifted, lowest, settling, sinking)
 from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
@@ -20,6 +20,10 @@ GATHERS = 0.2
 SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
 """But none of its joints turns faster than the first as recorded ones do, nor by more than what is then left of the second as it comes to them, but with the third
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
+ARMS = 14.0
+"""Arms are swung no faster than this [rad/s] before take-off, as recorded ones in leaps off one foot."""
+CLEARED, SOON = 12, 0.12
+"""At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
 SWINGS_ON = 0.15
@@ -61,7 +65,16 @@ class _Draft(Airborne):
         self.sinks = max(self.off - way.dip, 0.0)  # nobody bows who has not begun to go down
         self.events = np.array([self.sinks, self.off, leave, leave + way.airtime])
         self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
-        super().__init__(physique, start, way, landing, leave, self.due, way.keys[:3 * BETWEEN + 1, :LEGS])
+        super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()))
+
+    def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:
+        """Keys (K, LEGS) of the carriage until touch-down, arms swung less far until take-off where they have less time than recorded ones."""
+        off = 2 * BETWEEN
+        swung = keys[:off + 1, 3:].reshape(off + 1, 2, 4)[..., :3]
+        fastest = float((np.linalg.norm(np.diff(swung, axis=0), axis=-1) / np.maximum(np.diff(self.due[:off + 1]), 1e-9)[:, None]).max())
+        share = min(ARMS / max(fastest, 1e-9), 1.0) if start.runs else 1.0
+        keys[:off, 3:] = keys[off, 3:] + share * (keys[:off, 3:] - keys[off, 3:])
+        return keys
 
     def plan(self) -> Plan:
         """Everything, in order."""
@@ -100,7 +113,7 @@ class _Draft(Airborne):
         self.forces = np.concatenate([a - self.gravity, self.push.force(pushing)])
         self._along_the_floor()
         self.angles = self.carriage(np.maximum(self.times, self.sinks))
-        self._differ(self.angles[0])
+        self._differ(self.angles[0], (self.carriage(max(MOMENT, self.sinks)) - self.angles[0]) / MOMENT)
         self.offsets = self._left_over(self.times)
         root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
         self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0], self.times)
@@ -153,7 +166,18 @@ class _Draft(Airborne):
             lasts = max(lasts, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
         swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)
         swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)
+        some = np.unique(np.linspace(0, len(swung) - 1, CLEARED).round().astype(int))
+        more = self._lifted(side, swung, some)
+        swung[:, :EACH, 0] += hermite(self.times[some], more, monotone(self.times[some], more), self.times) if more.any() else 0.0
         return turns(swung)
+
+    def _lifted(self, side: int, swung: np.ndarray, some: np.ndarray) -> np.ndarray:
+        """By how much more (M, EACH) [rad] a swing leg that turns by swung (N, 4, 3) bends in samples (M,), lest its foot be in the floor as the body goes down: no
+        sooner than it can from where it is."""
+        floor, low = self.planted[0, 1] - self.body.sole, float(lowest(self.physique, side, self.start.root[None], self.start.rotations[None])[0])
+        room = CLEARS * self.physique.size
+        clears = min(low - floor, room) + max(room - low + floor, 0.0) * np.minimum(self.times[some] / SOON, 1.0)
+        return lifted(self.physique, side, floor, swung[some], clears, self.angles[some], self.offsets[some], self.turns[some], self.centres[some], self.feet[some], self.start.root)
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""

@@ -16,7 +16,7 @@ from . import fourier
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel, time_kernel
 from .library import DURATION, HIPS, LABELS
 from .memory import RUN, WALK
-from .step import HEAVY, SINKS
+from .step import HEAVY, SINKS, sway_kernel
 
 WALKS_ON = 0.35
 """A body that moves faster than this [m/s] walks on; a slower one stands."""
@@ -53,6 +53,8 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
             memory["ground"] = ground
     shown = _row(locomotion, state.pose, ground, state.floor)
     memory["blend"][:LABELS_AT] = shown - memory["row"][:LABELS_AT]
+    calm = float(memory["weights"][locomotion.library.rest])
+    memory["blend"][HIPS_AT] -= sway_kernel(float(memory["breath"]), locomotion.settings.breath, calm)  # it comes on top
     own = _rate(locomotion, memory)  # the gait moves by itself, and what is left of what was taken over by the rest
     memory["row"][:LABELS_AT] = shown
     memory["fade"] = FADES[0]

@@ -244,5 +244,10 @@ def show_row(m, settings, fresh, legs, dt):
     fresh[legs.neck] += lift
     for side in range(2):
         fresh[2 * LANES + legs.shoulder[side]] += (1.0 - 2.0 * side) * 1.5 * lift
-    sway = settings.breath * calm * math.sin(2.0 * math.pi * m.breath + 1.0)
-    fresh[HIPS_AT] += 0.3 * sway
+    fresh[HIPS_AT] += sway_kernel(float(m.breath), float(settings.breath), float(calm))
+
+
+@kernel
+def sway_kernel(phase, breath, calm):
+    """How far aside hips sway [m] in a phase (0 … 1) of a breath that turns the chest so far [rad], of somebody so calm (0 … 1)."""
+    return 0.3 * breath * calm * math.sin(2.0 * math.pi * phase + 1.0)

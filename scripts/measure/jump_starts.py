@@ -3,7 +3,9 @@
     python scripts/measure/jump_starts.py [--targets 100] [--phases 8] [--leaps 100] [--seed 0]
 
 Somebody stands, aims at random targets for a while and lets go. Runners of many speeds aim as one plays, let go at many moments of
-their strides, leap over the ring and run on. Others leap from walks and runs to random places ahead: how much faster along the floor they leave than they came. Everything but that is told from the poses that are played.
+their strides, leap over the ring and run on. Others leap from walks and runs to random places ahead: how much faster along the floor they leave than they came. Some leap from a stand, a walk
+or a run to random places all over what is before them: how deep soles come into the floor, and how far hips are off their way as walking takes over. Everything but how fast they leave is told from the poses
+that are played.
 """
 
 from __future__ import annotations
@@ -17,8 +19,10 @@ import numpy as np
 
 from jump_trials import FPS
 
+from gambol.controllers.body import forward_kinematics, sole_corners
 from gambol.controllers.contract import CharacterState, Intent, Leap, Unable
 from gambol.controllers.jump import Jumping
+from gambol.controllers.jump.motion import Plan
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
@@ -28,6 +32,8 @@ AIMED = 1.2
 """So long one aims before one lets go [s]."""
 PATIENCE = 0.9
 """So long a jump that was asked waits, in play [s]."""
+BEFORE = 4
+"""So many steps before a leap are looked at, too."""
 SPEEDS = 2.2, 2.6, 3.0, 3.4
 
 
@@ -124,6 +130,57 @@ def report_gains(someone: Supervisor, leaps: int, rng: np.random.Generator) -> N
           f"(median), {max(gains):.2f} (most); by more than 0.1 m/s {sum(g > 0.1 for g in gains)}, 0.3 m/s {sum(g > 0.3 for g in gains)}")
 
 
+def random_leap(someone: Supervisor, rng: np.random.Generator) -> tuple[str, Plan, list[CharacterState]] | None:
+    """How somebody came, the plan of his leap to a random place, his states from `BEFORE` steps ahead of it until a second after it; None where he can't leap."""
+    kind = ("stand", "walk", "run")[rng.choice(3, p=(0.2, 0.4, 0.4))]
+    pace = {"stand": 0.0, "walk": rng.uniform(0.6, 2.0), "run": rng.uniform(2.0, 3.6)}[kind]
+    state = led(someone, someone.start(), Intent(np.array([pace, 0.0, 0.0])), rng.uniform(2.0, 3.0))
+    aside = rng.uniform(-1.2, 1.2) if rng.random() < 0.6 else rng.normal(0.0, 0.15)
+    far, up = rng.uniform(0.4, 0.9) * pace if kind == "run" else rng.uniform(0.3, 1.6), rng.choice([0.0, 0.0, 0.0, rng.uniform(-0.5, 0.4)])
+    on = np.array([pace if rng.random() < 0.6 else 0.0, 0.0, 0.0])
+    states = [state]
+    for _ in range(75):
+        way = state.ground[2] + aside
+        leap = Leap(np.array([state.ground[0] + far * np.sin(way), up, state.ground[1] + far * np.cos(way)]))
+        state, _ = someone.step(state, Intent(np.array([pace, 0.0, 0.0]), leap), 1 / FPS)
+        states.append(state)
+        if len(states) > BEFORE and isinstance(state.memory.memory, Jumping):
+            made, states = state.memory.memory.plan, states[-BEFORE - 1:]
+            while len(states) < (made.duration + 1.0) * FPS + BEFORE:
+                states.append(someone.step(states[-1], Intent(on), 1 / FPS)[0])
+            return kind, made, states
+    return None
+
+
+def report_feet(someone: Supervisor, leaps: int, rng: np.random.Generator) -> None:
+    """How deep soles are in the floor before take-off, from touch-down on and 0.6 s on as the walk has taken over; how far hips are off the mean of their way
+    before and after as it does; and how hard hands are pulled until the take-off off one foot."""
+    hands, pulls = [someone.skeleton.index(side + "Hand") for side in ("Left", "Right")], []
+    rows: dict[str, list[tuple[float, ...]]] = {"stand": [], "walk": [], "run": []}
+    for number in range(leaps):
+        played = random_leap(someone, np.random.default_rng([int(rng.integers(2**31)), number]))
+        if played is None:
+            continue
+        kind, made, states = played
+        seen = forward_kinematics(someone.skeleton, np.stack([s.pose.root for s in states]), np.stack([s.pose.rotations for s in states]))
+        low = sole_corners(someone.skeleton, *seen)[..., 1].min(-1)
+        taken = next(n for n, s in enumerate(states) if n > BEFORE and s.active != "jump")
+        off, down = BEFORE + int(made.take_off * FPS), BEFORE + int(np.ceil(made.touch_down * FPS))
+        there = float(states[taken].floor)
+        way = np.diff(seen[0][taken - 2:taken + 2, 0], axis=0)
+        rows[kind].append((*(100.0 * max(level - part.min(initial=level), 0.0) for level, part in (
+            (0.0, low[BEFORE:off]), (there, low[down:taken]), (there, low[taken:taken + 36]))), 1e3 * float(np.linalg.norm(way[1] - 0.5 * (way[0] + way[2])))))
+        if made.path.single:
+            place = seen[0][:off + 3, hands]
+            pulls.append(float(np.linalg.norm(place[4:] - 2.0 * place[2:-2] + place[:-4], axis=-1).max()) * (FPS / 2) ** 2)
+    print(f"Random leaps, {leaps}: deepest of soles in the floor before take-off, from touch-down, 0.6 s on as the walk takes over: 95 %, worst cm; hips off their way as it does: median, worst mm")
+    for kind, some in rows.items():
+        before, landing, after, hips = np.array(some).T
+        told = "; ".join(f"{np.percentile(part, 95):.1f}, {part.max():.1f}" for part in (before, landing, after))
+        print(f"  {kind:5s} {len(some)}: {told}; {np.median(hips):.1f}, {hips.max():.1f}")
+    print(f"  hands until the take-off of {len(pulls)} off one foot, over 1/30 s: median {np.median(pulls):.0f}, 90 % {np.percentile(pulls, 90):.0f}, worst {max(pulls):.0f} m/s²")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--targets", type=int, default=100)
@@ -137,6 +194,7 @@ def main() -> None:
     report_release(someone, given.targets, np.random.default_rng(given.seed))
     report_strides(someone, given.phases)
     report_gains(someone, given.leaps, np.random.default_rng(given.seed))
+    report_feet(someone, 4 * given.leaps, np.random.default_rng(given.seed))
 
 
 if __name__ == "__main__":

@@ -37,6 +37,13 @@ def test_the_first_step_goes_on_with_the_pose_as_it_was(locomotion, at, floor):
     assert entered.ground[2] == pytest.approx(at[2]) and entered.floor == floor
 
 
+def test_hips_stay_where_they_were_as_somebody_is_taken_over_at_rest(locomotion):
+    """Breath, which begins somewhere in its sway, moved them 3 mm aside at once."""
+    state = someone(locomotion)
+    _, pose = locomotion.step(locomotion.enter(state, Intent()), Intent(), 1e-4)
+    assert np.abs(pose.root - state.pose.root).max() < 2e-4
+
+
 def test_what_is_odd_about_the_pose_fades(locomotion):
     state = locomotion.enter(someone(locomotion), Intent())
     for _ in range(120):

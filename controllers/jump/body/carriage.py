@@ -71,11 +71,11 @@ def carry_kernel(angles, joints, local):
         exp_kernel(0.0, -side * angles[first + 3], 0.0, local[joints[7 + k]])
 
 
-def keyed(times: np.ndarray, keys: np.ndarray) -> Callable[[ArrayLike], np.ndarray]:
+def keyed(times: np.ndarray, keys: np.ndarray, moving: bool = False) -> Callable[[ArrayLike], np.ndarray]:
     """The angles as a function of times within times[0] … times[-1] [s], through `keys` (K, 11) at `times` (K,).
 
-    Monotone between keys (PCHIP's slopes): nothing overshoots; at rest at both ends.
+    Monotone between keys (PCHIP's slopes): nothing overshoots; at rest at the end, and at the beginning but for who is moving.
     """
     slopes = monotone(times, keys)
-    slopes[[0, -1]] = 0.0
+    slopes[[-1] if moving else [0, -1]] = 0.0
     return partial(hermite, times, keys, slopes)

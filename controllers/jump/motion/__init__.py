@@ -2,7 +2,7 @@
 the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
 """
 
-from .airborne import FADE, GROUND_RATE, HEEL, PLANT, SAME, Airborne
+from .airborne import FADE, GROUND_RATE, HEEL, MOMENT, PLANT, SAME, Airborne
 from .descent import sinking
 from .edges import over_nothing, steps_over
 from .fall import fall, struck
@@ -15,10 +15,11 @@ from .path_estimate import SPINS, Course, Path, path
 from .plan import Plan, between_kernel
 from .rolling import SPACED as ROLL_SPACED
 from .rolling import rolled, rolls, room, tumbled
+from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
-    "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "MOMENT", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
+    "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "lifted", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sinking", "sole_places", "steps_over", "struck", "tumbled",
 ]

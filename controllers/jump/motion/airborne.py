@@ -24,6 +24,8 @@ SHORT = 0.5
 """Flights that last longer [s] are slower, and need fewer poses a second."""
 RUNS_ON = 0.06, 0.14
 """Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
+PASSES = 0.12
+"""The leg that swings on passes the other in so long at least [s], as recorded, however soon that has given."""
 WAITS = 0.06
 """Who could hop on off one foot and goes too fast to stop over it walks on so long after the lowest point [s]."""
 DOWN = 0.34
@@ -49,6 +51,8 @@ LEANS, LEANT = (1.8, 0.2), np.array([0.2, 0.5, 0.8, 1.0, 1.0, 0.8, 0.55, 0.3, 0.
 """Who sinks deeper than the second [m] leans farther forward by the first [rad/m], lest the heels rise; and which share of that, from row to row."""
 UP = 0.98
 """Trunk and arms are as in standing once the body has come up so much of the way."""
+MOMENT = 1e-4
+"""How fast angles turn joints is told from poses so far apart [s]."""
 SAME = 1e-3
 """The legs reach for a body turned to within this of how it lands [rad]."""
 
@@ -85,9 +89,10 @@ class Airborne:
         sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
         rows[:, 0] += LEANS[0] * max(sunk - LEANS[1], 0.0) * LEANT
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
-                                       np.concatenate([keys, rows, [carriage.STAND]]))
+                                       np.concatenate([keys, rows, [carriage.STAND]]), start.runs)
         if way.lands is not None:
-            times = np.concatenate([[0.0], landed, [TIME]])
+            later = max(PASSES - self.lowest, 0.0)
+            times = np.concatenate([np.linspace(0.0, self.lowest + later, BETWEEN + 1), np.append(landed[BETWEEN:], TIME) + later])
             until = times[:BETWEEN + 1]
             centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[way.land], self.sunk[0]]).T], 1)
             angles = self.carriage(self.down + until)
@@ -105,11 +110,14 @@ class Airborne:
         up = np.minimum(np.maximum(up, lowest + 0.04 * np.arange(1, BETWEEN + 1)), TIME - 0.04 * np.arange(BETWEEN, 0, -1))
         return np.concatenate([lowest * np.linspace(0.0, 1.0, BETWEEN + 1)[1:], up])
 
-    def _differ(self, angles: np.ndarray) -> None:
-        """What the start's pose differs by from one carried by `angles` (11,): it fades, see `_left_over`."""
-        local = np.tile(np.eye(3), (self.count, 1, 1))
+    def _differ(self, angles: np.ndarray, rates: np.ndarray | float = 0.0) -> None:
+        """What the start's pose differs by from one carried by `angles` (11,), which change at `rates` (11,) [1/s]: it fades, see `_left_over`."""
+        local, later = np.tile(np.eye(3), (2, self.count, 1, 1))
         carriage.carry_kernel(angles, self.joints, local)
-        self.offset, self.offset_rate = vectors(self.start.rotations @ np.swapaxes(local, -1, -2)), self.start.rates.copy()
+        carriage.carry_kernel(angles + MOMENT * rates, self.joints, later)
+        apart = self.start.rotations @ np.swapaxes(local, -1, -2)
+        own = vectors(later @ np.swapaxes(local, -1, -2)) / MOMENT
+        self.offset, self.offset_rate = vectors(apart), self.start.rates - (apart @ own[..., None])[..., 0]
         for part in (self.offset, self.offset_rate):
             part[0] = part[self.legs] = 0.0
 
@@ -190,6 +198,7 @@ class Airborne:
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         if self.way.lands is not None:
             local[:, self.swings] = self.swung(after)
+            local[:, self.swings.start] = np.swapaxes(turned, -1, -2) @ upright @ local[:, self.swings.start]  # else a trunk that turns on puts its toes into the floor
         pose = partial(ground_kernel, body, self.flex, angles, self.joints, self._left_over(self.down + after), turned, c)
         pose(feet, self.air_roots[-1].copy(), roots, local)
         if np.isfinite(self.stands):

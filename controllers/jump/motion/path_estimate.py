@@ -38,7 +38,7 @@ HIGHER = 0.14, 0.9
 """Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
 ahead, the sooner he is off."""
 STRIDES = 1.8, 2.7
-"""A runner lands on one foot who comes down faster along the floor than the first, and falls slower than the second [m/s]."""
+"""A runner lands on one foot who comes down faster ahead than the first, which no gait has aside, and falls slower than the second [m/s]."""
 FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])
 """By so much more than recorded hip and knee of a free leg are bent [rad] as the other lands, and in the rows before."""
 FOLDED = 0.64
@@ -198,7 +198,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
 
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
     """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
-    if start.single is None or np.linalg.norm(velocity * FLAT) < STRIDES[0] * np.sqrt(size):
+    if start.single is None or velocity @ yaw(start.lands)[:, 2] < STRIDES[0] * np.sqrt(size):
         return None
     return 1 - start.single if -(velocity + gravity * flight)[1] < STRIDES[1] * np.sqrt(size) else None
 

@@ -12,6 +12,8 @@ from .ground_kernels import FREE, ground_kernel
 CLEARS, LIFT, LIFTS, BENT = 0.015, 0.35, 4, 2.3
 """A leg that swings on as its body lands on the other clears the floor by so much [m]; a knee that is bent by 1 rad more lifts its foot by so much [m], at standard
 height; tried so often, and bent no farther than this [rad] for it."""
+TOES_UP, FLEXED = 2.5, -0.55
+"""What its knee can't, its ankle does, bent by so many times as much, and as far as this [rad]."""
 
 
 def free_leg(body, lands: int) -> slice:
@@ -27,30 +29,48 @@ def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarr
     landing: (2, 5) the feet on the floor. centres: (BETWEEN + 1, 3) [m] the mass centre until the lowest point, angles (BETWEEN + 1, 11) [rad] and upright
     (BETWEEN + 1, 3, 3) how the body is carried and its pelvis turned. What is given is a function of times, see `keyed_leg`.
     """
-    body, until, count = physique.tables, times[:BETWEEN + 1], len(physique.skeleton)
-    joints, swings, flex = carriage.joints_of(physique.skeleton), free_leg(physique.tables, lands), FLEX * physique.flexibility
-    swung, knee = keyed_leg(times, rows), np.zeros(len(times))
+    body, until = physique.tables, times[:BETWEEN + 1]
     feet = np.ones((len(until), 2, 6))
     feet[..., :5], feet[:, 1 - lands, 5] = landing, FREE
-    roots, local = np.empty((len(until), 3)), np.tile(np.eye(3), (len(until), count, 1, 1))
-    positions, turned = np.empty((count, 3)), np.empty((count, 3, 3))
+    bent = np.zeros((len(until), 4, 3))
+    bent[:, :EACH, 0] = rows[:len(until)]
+    more = lifted(physique, 1 - lands, landing[0, 1] - body.sole, bent, CLEARS * physique.size, angles, np.zeros((len(until), len(physique.skeleton), 3)), upright, centres, feet,
+                  centres[0] - [0.0, 0.05, 0.0])
+    rows = rows.copy()
+    rows[:len(until)] += more
+    rows[len(until):] += 0.5 * more[-1]
+    return keyed_leg(times, rows)
+
+
+def lifted(physique: Physique, free: int, floor: float, bent: np.ndarray, clears: np.ndarray | float, angles: np.ndarray, offsets: np.ndarray,
+           turned: np.ndarray, centres: np.ndarray, feet: np.ndarray, root: np.ndarray) -> np.ndarray:
+    """By how much more (M, EACH) [rad] a leg `free`, 0 left or 1 right, is to bend whose joints are turned by bent (M, 4, 3) [rad], so that its foot is so
+    high (M,) [m] over a floor [m]: its knee, and what that can't its ankle. The other poses are as in `ground_kernel`."""
+    body, count = physique.tables, len(physique.skeleton)
+    joints, leg, flex = carriage.joints_of(physique.skeleton), free_leg(body, 1 - free), FLEX * physique.flexibility
+    roots, local = np.empty((len(bent), 3)), np.tile(np.eye(3), (len(bent), count, 1, 1))
+    more, wanted = np.zeros((len(bent), EACH)), bent[:, 1, 0].copy()
     for _ in range(LIFTS):
-        local[:, swings] = swung(until)
-        ground_kernel(body, flex, angles, joints, np.zeros((len(until), count, 3)), upright, centres, feet, centres[0] - [0.0, 0.05, 0.0], roots, local)
-        low = np.empty(len(until))
-        for n in range(len(until)):
-            place_kernel(body, roots[n], local[n], positions, turned)
-            corners = sole_corners(physique.skeleton, positions[None], turned[None])[0]
-            low[n] = corners.reshape(2, -1, 3)[1 - lands, :, 1].min() - (landing[0, 1] - body.sole)
-        missing = np.maximum(CLEARS * physique.size - low, 0.0) / (LIFT * physique.size)
+        leg_now = bent.copy()
+        leg_now[:, :EACH, 0] += more
+        local[:, leg] = turns(leg_now)
+        ground_kernel(body, flex, angles, joints, offsets, turned, centres, feet, root.copy(), roots, local)
+        missing = np.maximum(clears - (lowest(physique, free, roots, local) - floor), 0.0) / (LIFT * physique.size)
         if missing.max() < 1e-3:
             break
-        knee[:BETWEEN + 1] += missing
-        knee[BETWEEN + 1:] = 0.5 * np.maximum(knee[BETWEEN + 1:], knee[BETWEEN])
-        bent = rows.copy()
-        bent[:, 1] = np.minimum(rows[:, 1] + knee[:len(rows)], np.maximum(rows[:, 1], BENT))
-        swung = keyed_leg(times, bent)
-    return swung
+        wanted += missing
+        knee, ankle = bent[:, 1, 0], bent[:, 2, 0]
+        more[:, 1] = np.minimum(wanted, np.maximum(knee, BENT)) - knee
+        more[:, 2] = np.maximum(ankle - TOES_UP * (wanted - knee - more[:, 1]), np.minimum(ankle, FLEXED)) - ankle
+    return more
+
+
+def lowest(physique: Physique, side: int, roots: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """How high (M,) [m] the lowest of a foot is, 0 left or 1 right, in poses (M, 3), (M, J, 3, 3)."""
+    positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
+    for root, pose, places, facing in zip(roots, local, positions, turned):
+        place_kernel(physique.tables, root, pose, places, facing)
+    return sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)[:, side, :, 1].min(-1)
 
 
 def keyed_leg(times: np.ndarray, rows: np.ndarray):
