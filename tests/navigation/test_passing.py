@@ -59,6 +59,23 @@ def test_they_come_in_smoothly(locomotion):
     assert jerk < 1.5 * own
 
 
+@pytest.mark.parametrize("high", [0.8, 0.9])
+def test_hands_keep_out_of_a_table_that_is_walked_up_to(locomotion, high):
+    """They swing ahead as one comes to rest right before it: an upper arm turns farther back than across, where the trunk is."""
+    table = Box((0.0, 0.5 * high, 2.8), (4.0, high, 0.8))
+    slow = [(pose, ground) for pose, ground in walk(locomotion, (0.7, 0.0, 0.0), (table,), 4.5) if ground[1] > 1.5]
+    places = np.array([arms(locomotion.skeleton, pose) for pose, _ in slow])
+    tips = places[:, [2, 5]] + 0.5 * (places[:, [2, 5]] - places[:, [1, 4]])
+    assert min(gap(one.reshape(-1, 3), table).min() for one in (places[:, [1, 2, 4, 5]], tips)) > 0.015
+
+
+def test_forearms_keep_out_where_an_elbow_is_right_over_a_table(locomotion):
+    table = Box((-0.25 - 0.4, 0.5, 0.0), (0.8, 1.0, 40.0))
+    places = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, (1.8, 0.0, 0.0), (table,))])
+    forearms = places[:, [4]] + np.linspace(0.0, 1.0, 5)[:, None] * (places[:, [5]] - places[:, [4]])
+    assert gap(forearms.reshape(-1, 3), table).min() > 0.035
+
+
 def test_between_two_walls_both_do(locomotion):
     walls = [Box((side * 0.42, 1.0, 0.0), (0.2, 2.0, 40.0)) for side in (-1.0, 1.0)]
     places = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, (1.2, 0.0, 0.0), walls)])
