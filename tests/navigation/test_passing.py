@@ -59,6 +59,23 @@ def test_they_come_in_smoothly(locomotion):
     assert jerk < 1.5 * own
 
 
+def test_an_arm_turns_farther_back_from_a_table_ahead_than_to_the_trunk(locomotion):
+    """Hands swing ahead of who comes up to a table."""
+    most = 0.0
+    for pose, ground in walk(locomotion, (1.8, 0.0, 0.0), (), 2.5)[90:]:
+        drawn = drawn_in(locomotion.skeleton, pose, ground, [Box((float(ground[0]), 0.5, float(ground[1]) + 0.6), (4.0, 1.0, 0.8))])
+        turn = np.einsum("jik,jil->jkl", pose.rotations, drawn.rotations)
+        most = max(most, float(np.arccos(np.clip((np.trace(turn, axis1=1, axis2=2) - 1.0) / 2.0, -1.0, 1.0)).max()))
+    assert 0.37 < most < 0.9
+
+
+def test_forearms_keep_out_where_an_elbow_is_right_over_a_table(locomotion):
+    table = Box((-0.25 - 0.4, 0.5, 0.0), (0.8, 1.0, 40.0))
+    places = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, (1.8, 0.0, 0.0), (table,))])
+    forearms = places[:, [4]] + np.linspace(0.0, 1.0, 5)[:, None] * (places[:, [5]] - places[:, [4]])
+    assert gap(forearms.reshape(-1, 3), table).min() > 0.035
+
+
 def test_between_two_walls_both_do(locomotion):
     walls = [Box((side * 0.42, 1.0, 0.0), (0.2, 2.0, 40.0)) for side in (-1.0, 1.0)]
     places = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, (1.2, 0.0, 0.0), walls)])

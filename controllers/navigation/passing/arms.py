@@ -26,12 +26,12 @@ KEPT = 0.02
 """So much room is left beside them [m]."""
 SOFT = 0.025
 """An arm begins to be drawn in so much before it has to [m]."""
-MOST = 0.35
-"""No farther than this [rad]: there is the trunk."""
+MOST, AHEAD = 0.35, 0.9
+"""No farther than this [rad]: across there is the trunk, and back or ahead a shoulder's own reach."""
 FAR = 0.75
 """What is farther from the body's middle [m] no arm touches."""
-LOW = 0.1
-"""Arms so far above or below something [m] are not drawn in at all."""
+LOW = 0.15
+"""Arms that clear the top or underside of something by so much [m] are not drawn in at all."""
 
 
 def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any]) -> Pose:
@@ -103,7 +103,7 @@ def draw_kernel(root, local, parents, offsets, chains, ground, things, thick):
                 missing = missing if missing >= SOFT else (missing + SOFT) ** 2 / (4.0 * SOFT)
                 dx, dy, dz = points[k, 0] - places[shoulder, 0], points[k, 1] - places[shoulder, 1], points[k, 2] - places[shoulder, 2]
                 lever = math.sqrt((dy * slope[1]) ** 2 + (dz * slope[0] - dx * slope[1]) ** 2 + (dy * slope[0]) ** 2)
-                turn = max(1.0 - over / LOW, 0.0) * missing / max(lever, 0.1)
+                turn = max(1.0 - max(over - thick[k], 0.0) / LOW, 0.0) * missing / max(lever, 0.1)
                 if turn > most:
                     most, worst = turn, k
             if worst < 0:
@@ -113,7 +113,9 @@ def draw_kernel(root, local, parents, offsets, chains, ground, things, thick):
             length = math.sqrt(axis[0] ** 2 + axis[1] ** 2 + axis[2] ** 2)
             if length < 1e-6:
                 continue
-            angle = MOST * math.tanh(most / MOST)
+            along = (slope[0] * math.sin(ground[2]) + slope[1] * math.cos(ground[2])) ** 2
+            limit = MOST + (AHEAD - MOST) * along
+            angle = limit * math.tanh(most / limit)
             _turn(axis / length, angle, turned[shoulder])
             for k in range(3):
                 _turn_point(axis / length, angle, places[shoulder], points[k])
