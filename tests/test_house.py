@@ -156,7 +156,7 @@ PLAN = {
         "hud": "scene hosts world explain session",
         "scenario": "scene files footage input camera world explain session hud",
         "output": "scene files render character input world explain session scenario",
-        "studio": "scene files meshes footage world scenario output",
+        "studio": "scene files render meshes footage world scenario output",
         "app": "scene files render input camera hosts world explain session hud output",
         "cli": "scene files meshes footage character input hosts world session scenario output studio app",
     },

@@ -11,7 +11,7 @@ from gambol.controllers.body import Skeleton, human
 from gambol.controllers.tracking.silhouettes import Surface, skin_kernel
 from gambol.controllers.tracking.twists import chain_of
 
-from ..render import LEVELS, Body, mannequin, scale_of, skin, worn
+from ..render import LEVELS, Body, dressed, mannequin, scale_of, size_of, skin
 from ..scene import Box, Figure, Goal, Pillar, Prop
 
 SIDES = 32
@@ -38,13 +38,10 @@ def surface_of(skeleton: Skeleton | None = None, freedom: Literal["paper", "full
 def posed_meshes(figures: Sequence[Figure]) -> list[tuple[np.ndarray, np.ndarray, bool]]:
     """Each figure's vertices (V, 3) [m] in the world, triangles (T, 3), and whether only their outsides are seen, as it is drawn."""
     out = []
-    for figure in figures:
+    for figure in dressed(figures):
         body = figure.body or mannequin()
         positions, orientations = figure.positions[None].astype(float), figure.orientations[None].astype(float)
-        if body is mannequin():
-            scale = scale_of(positions, skin.REST, skin.STANDARD.parents)
-        else:
-            positions, orientations, scale = worn(body, positions, orientations)
+        scale = scale_of(positions, skin.REST, skin.STANDARD.parents) if body is mannequin() else size_of(body, positions)
         motion = skin.motions(positions, orientations, scale, body.joints)[0].reshape(-1, 8).astype(float)
         mesh = body.levels[0]
         vertices = np.ascontiguousarray(mesh.positions, float) * float(scale[0])

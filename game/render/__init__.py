@@ -10,9 +10,9 @@ from .presets import FAST, FULL, PRESETS, Preset, preset
 from .renderer import Renderer
 from .skin import NAMES
 from .view import NEAR, look_at, scale_of
-from .wear import leg_length, worn
+from .wear import dressed, leg_length, size_of, worn
 
 __all__ = [
-    "FAST", "FULL", "LEVELS", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "gl", "leg_length", "look_at",
-    "mannequin", "occlusion", "pack", "preset", "scale_of", "skin", "view", "worn",
+    "FAST", "FULL", "LEVELS", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "dressed", "gl", "leg_length",
+    "look_at", "mannequin", "occlusion", "pack", "preset", "scale_of", "size_of", "skin", "view", "worn",
 ]

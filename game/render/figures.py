@@ -11,7 +11,7 @@ from ..scene import Figure
 from . import gl, skin
 from .mesh import LEVELS, Body, mannequin
 from .view import scale_of
-from .wear import worn
+from .wear import size_of
 
 BATCH = 16
 """Figures in a draw call: what fits the 16 KiB that every OpenGL 3.3 gives a uniform block."""
@@ -65,7 +65,7 @@ class Figures:
         self._wardrobe(mannequin())
 
     def prepare(self, figures: Sequence[Figure], eye: np.ndarray, origin: np.ndarray, ranges: Sequence[float]) -> None:
-        """Pose what will be drawn, all of it `drawable`. ranges: how far each finer mesh serves [m]."""
+        """Pose what will be drawn, all of it `drawable` and `dressed`. ranges: how far each finer mesh serves [m]."""
         groups: dict[Body, list[Figure]] = {}
         for figure in figures:
             groups.setdefault(figure.body or mannequin(), []).append(figure)
@@ -88,10 +88,7 @@ class Figures:
     def _posed(self, body: Body, figures: list[Figure], eye, origin, ranges) -> list[tuple[Body, str, bytes, int]]:
         positions = np.stack([f.positions for f in figures]).astype(float)
         orientations = np.stack([f.orientations for f in figures])
-        if body is mannequin():
-            scale = scale_of(positions, skin.REST, skin.STANDARD.parents)
-        else:
-            positions, orientations, scale = worn(body, positions, orientations)
+        scale = scale_of(positions, skin.REST, skin.STANDARD.parents) if body is mannequin() else size_of(body, positions)
         motion = skin.motions(positions - origin, orientations, scale, body.joints)
         look = np.concatenate([np.array([f.tint for f in figures]), scale[:, None]], 1).astype(np.float32)
         levels = np.searchsorted(ranges, np.linalg.norm(positions[:, 0] - eye, axis=1))

@@ -20,6 +20,7 @@ from .presets import Preset, preset
 from .props import Goals, Solids
 from .sun import SUN, LightBox, figures_box, solids_box
 from .text import TextPass
+from .wear import dressed
 
 FLOATS = 68
 """In the uniform block of frame.glsl."""
@@ -86,7 +87,8 @@ class Renderer:
         ctx, camera, size = self.ctx, scene.camera, inside[2:]
         origin = view.origin_of(camera)
         eye = np.asarray(camera.eye, float) - origin
-        figures = tuple(figure for figure in scene.figures if figure.opacity > 0.0 and drawable(figure))
+        marked = tuple(figure for figure in scene.figures if figure.opacity > 0.0 and drawable(figure))
+        figures = dressed(marked)
         solids = tuple(prop for prop in scene.props if not isinstance(prop, Goal))
         shown = figures if scene.overlays.mesh else ()
         bodies = tuple(figure for figure in shown if figure.opacity >= 1.0)  # ghosts darken nothing
@@ -112,7 +114,7 @@ class Renderer:
             self.overlays.draw_bones(figures, origin)
         # floor and sky last: the depth test spares what is hidden by then
         self.ground.draw(touched_floor(bodies if boxes[0] else (), solids, origin), np.linalg.inv(matrix))
-        self._over(scene, figures, origin, inside, metre)
+        self._over(scene, marked, origin, inside, metre)
 
     def read(self, out: np.ndarray | None = None) -> np.ndarray:
         """The picture (H, W, 4) uint8, top row first; into `out` where one is given."""

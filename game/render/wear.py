@@ -3,18 +3,22 @@
 The body is scaled until its legs are as long as the figure's, and its hips stand where the figure's
 do; the limbs keep the body's own lengths. Where thigh and shank share the leg differently, two-bone
 inverse kinematics brings the soles to where the figure's are, so that a foot that stands still
-stands still on every body.
+stands still on every body. Arms that would be in the body's own flesh are kept out of it (`girth`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from gambol.controllers.body import two_bone_turns
 
+from ..scene import Figure
 from . import skin
+from .girth import ARMS, arms_out
 from .mesh import Body, mannequin
 
 _UP = [skin.STANDARD.index(f"{side}UpLeg") for side in ("Left", "Right")]
@@ -74,7 +78,27 @@ def worn(body: Body, positions: np.ndarray, orientations: np.ndarray
         upper, lower = two_bone_turns(at[:, up], at[:, knee], at[:, foot], target, pole)
         orientations[:, up] = upper @ orientations[:, up]
         orientations[:, knee] = lower @ orientations[:, knee]
+    at = _placed(hips, bones, orientations)
+    orientations[:, ARMS] = arms_out(body, at, orientations, scale)[:, :, None] @ orientations[:, ARMS]
     return _placed(hips, bones, orientations), orientations, scale
+
+
+def dressed(figures: Sequence[Figure]) -> tuple[Figure, ...]:
+    """Figures with the joints of what they wear, as they are drawn: where its own elbows are, not the standard human's."""
+    out, wearers = list(figures), {}
+    for k, figure in enumerate(figures):
+        if figure.body is not None:
+            wearers.setdefault(figure.body, []).append(k)
+    for body, group in wearers.items():
+        at, turned, _ = worn(body, np.stack([figures[k].positions for k in group]), np.stack([figures[k].orientations for k in group]))
+        for k, positions, orientations in zip(group, at, turned):
+            out[k] = replace(figures[k], positions=positions, orientations=orientations)
+    return tuple(out)
+
+
+def size_of(body: Body, positions: np.ndarray) -> np.ndarray:
+    """The scale (N,) at which a body has joints at (N, 22, 3) [m], `dressed` in it."""
+    return leg_length(positions) / leg_length(body.joints)
 
 
 def _placed(hips, bones, orientations):

@@ -15,6 +15,7 @@ from gambol.controllers.tracking.cameras import Lens
 from gambol.controllers.tracking.silhouettes import View, rendered
 
 from ..files import whole
+from ..render import dressed
 from ..scene import Figure, Prop
 from ..meshes import posed_meshes, solid_meshes
 
@@ -49,7 +50,8 @@ class Truth:
     boxes: list[np.ndarray] = field(default_factory=list)
 
     def add(self, figures: Sequence[Figure], views: Sequence[tuple[np.ndarray, np.ndarray]]) -> None:
-        """A frame: its figures, and of each camera mask and depth."""
+        """A frame: its figures, and of each camera mask and depth. Joints are those of the bodies that are seen."""
+        figures = dressed(figures)
         self.joints.append(np.stack([f.positions for f in figures]))
         self.orientations.append(np.stack([f.orientations for f in figures]))
         self.contacts.append(np.stack([f.contacts for f in figures]))
