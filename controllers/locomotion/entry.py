@@ -52,7 +52,7 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
         if len(sides) == 1 or len(sides) == 2 and _gait(locomotion, velocity)[0]:
             strides = [_stride(locomotion, state, velocity, int(side)) for side in sides]
             like = int(np.argmin([apart for _, apart in strides]))
-            on[1 - sides[like]] = False
+            on = np.arange(2) == sides[like]
             stands &= np.repeat(on, 2)
             _set_off(locomotion, memory, velocity, strides[like][0])
         else:
