@@ -44,10 +44,19 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     rest = locomotion.start(ground, state.floor)
     memory = rest.memory.copy()
     speed = float(np.hypot(state.velocity[0], state.velocity[2]))
+    stands = np.array(state.contacts, bool)
     if speed > WALKS_ON:
-        on = np.asarray(state.contacts, bool).reshape(2, 2).any(1)
-        velocity = np.asarray(state.velocity, float)
-        _set_off(locomotion, memory, velocity, ABOUT_TO_STEP if on.sum() != 1 else _stride(locomotion, state, velocity, int(on.argmax())))
+        on, velocity = stands.reshape(2, 2).any(1), np.asarray(state.velocity, float)
+        sides = np.flatnonzero(on)
+        # no run has a phase in which both feet stand: it goes on off the one that it is more like, lest the other, left behind, pulls its leg straight
+        if len(sides) == 1 or len(sides) == 2 and _gait(locomotion, velocity)[0]:
+            strides = [_stride(locomotion, state, velocity, int(side)) for side in sides]
+            like = int(np.argmin([apart for _, apart in strides]))
+            on = np.arange(2) == sides[like]
+            stands &= np.repeat(on, 2)
+            _set_off(locomotion, memory, velocity, strides[like][0])
+        else:
+            _set_off(locomotion, memory, velocity, ABOUT_TO_STEP)
         if on.sum() == 1:  # its hips go on where they are
             ground = _under_the_hips(state, memory["row"])
             memory["ground"] = ground
@@ -72,7 +81,6 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     c, s = np.cos(ground[2]), np.sin(ground[2])
     aside, ahead = points[:, 0] - ground[0], points[:, 2] - ground[1]
     memory["points"] = np.stack([c * aside - s * ahead, points[:, 1], s * aside + c * ahead], -1)
-    stands = np.asarray(state.contacts, bool)
     memory["standing"] = memory["grip"] = stands
     memory["bears"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
@@ -91,8 +99,8 @@ def _gait(locomotion: Any, velocity: np.ndarray) -> tuple[bool, np.ndarray, np.n
     return running, query, locomotion.library.family(family), space.weights(query)
 
 
-def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: int) -> float:
-    """The phase in which a gait at a velocity (3,) is most like a body that stands on one foot, 0 left or 1 right: feet about the hips, and
+def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: int) -> tuple[float, float]:
+    """The phase in which a gait at a velocity (3,) is most like a body that stands on one foot, 0 left or 1 right, and how unlike [m²]: feet about the hips, and
     how they move about them."""
     _, _, members, weights = _gait(locomotion, velocity)
     library = locomotion.library
@@ -106,7 +114,8 @@ def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: 
     if state.previous is not None and state.elapsed > 0.0:
         apart += np.square(LEAD * (moves - (ours - before) / state.elapsed)).sum((1, 2))
     stands = rows[:, LABELS:DURATION].reshape(PHASES, 2, 2).max(-1)
-    return float(np.argmin(np.where((stands[:, side] > 0.5) & (stands[:, 1 - side] < 0.5), apart, np.inf))) / PHASES
+    apart = np.where((stands[:, side] > 0.5) & (stands[:, 1 - side] < 0.5), apart, np.inf)
+    return float(np.argmin(apart)) / PHASES, float(apart.min())
 
 
 def _fade(locomotion: Any, memory: np.ndarray, foot: int) -> float:

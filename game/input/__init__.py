@@ -15,13 +15,14 @@ from .making import aloft, jumping, landing, leaving
 from .moves import Jump, Move
 from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, shared, user_file
-from .run_up import RUNS, THINKS, WAITED, RunUp, agility, before, last_chance, leaps, ring, rises
+from .run_up import BRAKES, RUNS, THINKS, WAITED, RunUp, braked, last_chance, leaps, ring
 from .script import Script
+from .straight_ahead import agility, before, headlong, rises
 from .wish import STEPS, Wish, push
 
 __all__ = [
-    "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
+    "BRAKES", "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
     "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
-    "before", "button_label", "dead_zone", "drivers", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
+    "before", "braked", "button_label", "dead_zone", "drivers", "headlong", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
     "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "shared", "user_file", "wheel_wish", "wishes",
 ]

@@ -17,7 +17,8 @@ import numpy as np
 from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.navigation import floor_at, in_world
 
-from .run_up import AHEAD, UP
+from .run_up import AHEAD
+from .straight_ahead import UP
 from .wish import Wish, in_view
 
 MOVING = 0.9

@@ -14,40 +14,28 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, but
-from gambol.controllers.navigation import STEP, floor_at, gap, in_world, room
+from gambol.controllers.navigation import STEP, floor_at, in_world, room
 from gambol.controllers.navigation.thinking import Thought
 from gambol.controllers.supervisor import Asked
 
+from .straight_ahead import RISES, SHORT, UP, agility, is_edge, touches
+
 LOOK, EVERY = 2.0, 0.15
 """He looks so far ahead [s], longer if his legs are slower than people's, and so often [s]: a run is stopped in 1.4 s at most."""
-TOUCHES = 0.19
-"""Nearer to its middle nothing solid may come to a body that has not leapt yet [m]: walls hold up at 0.18 who treads on before them."""
-BODY = 0.4, 1.0, 1.6
-"""At these heights of it [m]."""
-SHORT = 0.12, 0.3
-"""He comes to rest so far before he would be too near to something solid, and before an edge [m]."""
 READY = 1.0
 """What a jump bids that could go off at once."""
 THERE, RESTS = 0.3, 0.1
 """So near to that place [m], slower than this [m/s], he stays."""
-
-PACE, FINE = 0.1, 0.01
-"""Places straight ahead are looked at so far apart [m], and the last that is free is found to so much [m]."""
-STOPS = 0.6, 0.45
-"""Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
-
 RUNS = 1.8
 """Hands that ask for more than this [m/s] run [m/s]: a leap that they hold goes off by itself; who walks comes to rest before what is ahead, and aims."""
 AHEAD = 0.60, 0.53
 """How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
 NEARER = 0.2, 0.0, 0.4, -0.2, 0.6, 0.8
 """A leap that goes off by itself lands so much nearer than the ring is [m]: a little, if it can, where he need not become faster for it."""
-UP = 0.95
-"""It lands no higher than this over the feet [m], and no lower than a step."""
-RISES = 0.12
-"""What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
 THINKS, WAITED = 0.5, 0.5
 """He thinks of his leap so much sooner than he would brake [s]; nearer to what is ahead than this share of how far he looks for that he hurries to know."""
+BRAKES = 6
+"""Who brakes already as he thinks of his leap brakes on for so many steps, by when he knows: who let go of that until he knew there is none would come to rest too late."""
 LATE, TURNED = 6, 0.35
 """It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
 
@@ -85,7 +73,8 @@ class RunUp:
     def known(self, hurried: bool, halt: tuple[float, float] | None) -> RunUp:
         """What he has thought of by now; the same a step later as long as he thinks. hurried: he is near. halt: where he is to come to rest if there is no leap."""
         assert self.thought is not None
-        found = self.thought.after(self.thinks, hurried)
+        brakes = self.halt is not None
+        found = None if brakes and self.thinks < BRAKES else self.thought.after(self.thinks, hurried or brakes)
         if found is None:
             return replace(self, thinks=self.thinks + 1)
         free = found.free - self.thinks
@@ -107,40 +96,6 @@ class RunUp:
         return but(intent, halt=np.array([*self.halt, np.nan]), towards=None)
 
 
-def before(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> tuple[float, float] | None:
-    """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
-    where that is far away: farther than he looks, of which `share` counts, and so much `more` [m]."""
-    speed, floor, here = math.hypot(*velocity), float(state.floor), np.asarray(state.ground[:2], float)
-    if speed < 1e-6 or not len(around):
-        return None
-    pace = float(np.hypot(state.velocity[0], state.velocity[2]))
-    ahead = np.asarray(velocity, float) / speed
-    for far in np.arange(1, 2 + int((share * (STOPS[0] + STOPS[1] * max(pace, speed)**2 / agility(controller)) + more) / PACE)) * PACE:
-        if room(here + far * ahead, floor, around) <= 0.0:
-            low, high = far - PACE, far
-            while high - low > FINE:
-                middle = 0.5 * (low + high)
-                low, high = (low, middle) if room(here + middle * ahead, floor, around) <= 0.0 else (middle, high)
-            x, z = here + max(low - SHORT[_edge(here + high * ahead, floor, around)], 0.0) * ahead
-            return float(x), float(z)
-        x, z = here + far * ahead
-        floor = floor_at(float(x), float(z), around, floor + STEP)
-    return None
-
-
-def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> bool:
-    """Whether the floor rises by more than a runner takes in stride where somebody goes with a velocity (2,) [m/s] in the world, no farther away than `before` looks."""
-    floor, ahead, speed = float(state.floor), np.asarray(velocity, float), math.hypot(*velocity)
-    count = 2 + int((share * (STOPS[0] + STOPS[1] * speed**2 / agility(controller)) + more) / PACE)
-    places = np.asarray(state.ground[:2], float) + np.arange(1, count)[:, None] * PACE * ahead / speed
-    return any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in places)
-
-
-def agility(controller: Any) -> float:
-    """How agile somebody is, beside a person, whose number is 1, and no more than that."""
-    return min(getattr(controller.settings, "agility", 1.0), 1.0)
-
-
 def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float, seconds: float) -> RunUp:
     """What comes of going on for so long: whether he leaps is asked only if he would else come to where he can't walk."""
     walks, way, blocked, now = asks(), [state.ground[:2]], None, state
@@ -150,12 +105,20 @@ def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], ar
         way.append(now.ground[:2])
         floor = float(now.floor)
         if blocked is None and room(way[-1], floor, around) <= 0.0:
-            blocked = len(way) - 1, _edge(way[-1], floor, around)
-        if now.active == "jump" or _touches(way[-1], floor, around):
+            blocked = len(way) - 1, is_edge(way[-1], floor, around)
+        if now.active == "jump" or touches(way[-1], floor, around):
             number = leaps(controller, state, asks(), around, dt, len(way) - 1)
             last, edge = blocked or (len(way) - 1, now.active == "jump")
             return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge))
     return RunUp(max(round(EVERY / dt), 1))
+
+
+def braked(controller: Any, state: CharacterState, brakes: RunUp, asks: Asks, around: Sequence[Any], dt: float) -> CharacterState:
+    """The state of somebody who brakes as he thinks by when he knows."""
+    for _ in range(BRAKES):
+        intent = but(brakes.heeded(state, asks(state)), leap=None, aim=Leap(ring(state, around)), around=around)
+        state, _ = controller.step(state, intent, dt)
+    return state
 
 
 def _silent() -> None:
@@ -224,9 +187,10 @@ def _footfalls(controller: Any, state: CharacterState, asks: Asks, around: Seque
         stood = stands
         now, _ = controller.step(now, but(intent, leap=None, aim=intent.leap), dt)
         here = np.array(now.ground[:2])
-        if blocked is None and (room(here, floor, around) <= 0.0 or floor_at(here[0], here[1], around, floor + UP) > floor + RISES):
+        met = touches(here, floor, around)  # what is low enough to step on, too, before his middle is over it
+        if blocked is None and (met or room(here, floor, around) <= 0.0 or floor_at(here[0], here[1], around, floor + UP) > floor + RISES):
             blocked = here
-        if now.active == "jump" or _touches(here, floor, around) or blocked is not None and _edge(here, floor, around):
+        if now.active == "jump" or met or blocked is not None and is_edge(here, floor, around):
             break
     return footfalls, blocked
 
@@ -238,17 +202,6 @@ def _beyond(footfall: Footfall, blocked: np.ndarray, floor: float, around: Seque
         high = floor_at(x, z, around, floor + UP)
         if float((np.array([x, z]) - blocked) @ footfall.ahead) > 0.0 and high >= floor - STEP:
             yield Leap(np.array([x, high, z]))
-
-
-def _edge(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
-    """Whether there is no room at a place (2,) because the floor ends there, and not because something stands there."""
-    return not _touches(place, floor, around, 0.3)
-
-
-def _touches(place: np.ndarray, floor: float, around: Sequence[Any], near: float = TOUCHES) -> bool:
-    """Whether something solid is as near to a body at a place (2,)."""
-    body = np.array([[place[0], floor + height, place[1]] for height in BODY])
-    return any(gap(body, thing).min() < near for thing in around)
 
 
 def _before(way: np.ndarray, last: int, edge: bool) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, landing, last_chance, leaps, leaving, push, ring, rises
+from ..input import BRAKES, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, headlong, landing, last_chance, leaps, leaving, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -83,7 +83,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         command = replace(command, facing=command.facing if aim.facing is None else aim.facing)
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:
-            command = replace(command, velocity=tuple(slide(state.ground[:2], command.velocity, float(state.floor), props, agility(character.controller))))
+            run_up, command = _led(character, command, props)
         known = run_up or RunUp()
         players[-1] = replace(players[-1], run_up=known)
         # how long it can be in the air is not asked before somebody aims: on a first start that is still being compiled
@@ -132,12 +132,23 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
     def asks(now: CharacterState) -> Intent:
         return replace(command.intent(now, player.steering), leap=aim.asked(now, props, gravity, longest) if released else None)
 
+    brakes = RunUp(-1, known.halt, velocity=velocity)
+
     def think(ask: Callable[[], None]) -> RunUp:
-        if released and (number := leaps(controller, state, asks, props, DT, most, ask)):
-            return RunUp(number)
-        found = last_chance(controller, state, velocity, asks, props, DT, ask) if runs else None
-        return found or RunUp(-1)
-    return RunUp(-1, velocity=velocity, thought=Thought(think, DT)).known(near(WAITED, 0.0), halt)
+        later, since = (state, 0) if brakes.halt is None else (braked(controller, state, brakes, asks, props, DT), BRAKES)
+        if released and (number := leaps(controller, later, asks, props, DT, most - since, ask)):
+            return RunUp(number + since)
+        found = last_chance(controller, later, velocity, asks, props, DT, ask) if runs else None
+        return RunUp(-1) if found is None else replace(found, free=found.free + since)
+    return replace(brakes, thought=Thought(think, DT)).known(near(WAITED, 0.0), halt)
+
+
+def _led(character: Character, command: Command, props: Sequence[Prop]) -> tuple[RunUp | None, Command]:
+    """What somebody who neither aims nor has let go does of what hands ask: he goes along what is in his way, but who goes straight at it comes to rest before it."""
+    state, controller = character.state, character.controller
+    velocity = tuple(slide(state.ground[:2], command.velocity, float(state.floor), props, agility(controller)))
+    halt = None if velocity == command.velocity else headlong(controller, state, command.velocity, props)
+    return (None, replace(command, velocity=velocity)) if halt is None else (RunUp(0, halt), command)
 
 
 def refused(before: SessionState, after: SessionState, seen: Sequence[Preview | None] = ()) -> tuple[str, ...]:

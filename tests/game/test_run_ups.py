@@ -15,8 +15,8 @@ from gambol.controllers.navigation import gap
 from gambol.controllers.navigation.thinking import steps_of
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, RunUp, Script, Wish
-from gambol.game.input.run_up import before
-from gambol.game.scene.scene import Box
+from gambol.game.input.straight_ahead import before
+from gambol.game.scene.scene import Box, Pillar
 from gambol.game.session.state import begin
 from gambol.game.session.tick import Timeline, refused
 from gambol.game.world.world import DT, Character, World
@@ -121,7 +121,8 @@ def running(who, things, floor, far, held=True):
     return states
 
 
-@pytest.mark.parametrize("things, floor, far", [((box(-3.0, 1.0, 8.0), box(6.1, 1.0)), 1.0, 5.0), ((box(5.3, 0.35),), 0.0, 5.3), ((box(5.6, 0.4, 0.15),), 0.0, 5.6)])
+@pytest.mark.parametrize("things, floor, far", [((box(-3.0, 1.0, 8.0), box(6.1, 1.0)), 1.0, 5.0), ((box(5.3, 0.35, 8.0),), 0.0, 5.3), ((box(5.6, 0.4, 0.15),), 0.0, 5.6),
+                                                ((box(5.3, 0.25, 8.0),), 0.0, 5.3)])
 def test_a_leap_held_at_a_run_goes_off_at_the_last_footfall_and_he_runs_on(library, things, floor, far):
     who = person(library.tuned(Settings(idle=0.0)))
     states = running(who, things, floor, far)
@@ -205,3 +206,42 @@ def test_a_leap_that_was_thought_of_goes_off_as_many_steps_sooner_as_he_thought(
     assert steps == due + 1
     assert (known.leap, known.free, known.halt) == ((leap, number - due, None) if number >= due else (None, -1, (0.0, 2.0)))
     assert RunUp(-1, thought=Known(RunUp(number, leap=leap), due)).known(True, None).leap is leap, "who is near waits for it"
+
+
+def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=600):
+    """All states of somebody whose hands run straight on and press the leap's key from so near [m] before something `far` away on, if at all, and what was known of his run-up."""
+    line, states, known = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), 1)), [], []
+    for _ in range(steps):
+        states.append(line.now.after.characters[0].state)
+        known.append(line.now.players[0].run_up)
+        line.advance((Wish(move=(0.0, 1.0), run=run, jump=ahead is not None and states[-1].ground[1] > far - ahead).rounded(),))
+    return states, known
+
+
+@pytest.mark.parametrize("things, floor, far", [((box(5.0, 0.33),), 0.0, 5.0), ((box(-3.0, 1.0, 8.0), box(7.0, 1.0)), 1.0, 5.0), ((box(5.0, 1.8),), 0.0, 5.0)])
+@pytest.mark.parametrize("run", [0.0, 0.9])
+def test_hands_that_go_straight_at_what_is_ahead_come_to_rest_before_it_and_are_not_led_aside(library, things, floor, far, run):
+    who = person(library.tuned(Settings(idle=0.0)))
+    states, _ = pressed(who, things, far, None, run, floor)
+    assert max(abs(float(s.ground[0])) for s in states) < 0.05 and all(s.active == "locomotion" for s in states)
+    assert far - 0.8 < states[-1].ground[1] < far and np.hypot(*states[-1].velocity[[0, 2]]) < 0.05
+
+
+def test_hands_that_go_at_a_wall_askew_or_at_a_pillar_are_led_on(library):
+    who, wall = person(library.tuned(Settings(idle=0.0))), Box((0.0, 1.0, 3.0), (30.0, 2.0, 0.2), 0.8)
+    for things, on in (((wall,), 3.0), ((Pillar((0.1, 0.0, 3.0), 0.15, 2.0),), 5.0)):
+        states, known = pressed(who, things, 3.0, None, steps=360)
+        assert np.hypot(*states[-1].ground[:2]) > on and all(one.halt is None for one in known)
+
+
+def test_the_key_pressed_late_by_who_brakes_before_a_box_takes_him_straight_up_onto_it(library):
+    """He was led aside along it and leapt askew, and fell off its side; and who let go of braking while he thought of his leap came to stand in it."""
+    who = person(library.tuned(Settings(idle=0.0)))
+    for ahead in (0.75, 0.9):
+        states, known = pressed(who, (box(6.8, 0.33, 8.0),), 6.8, ahead)
+        thinks = [one for one in known if one.thought is not None]
+        leapt = [s for s in states if s.active == "jump"]
+        assert thinks and all(one.halt is not None for one in thinks), "he brakes on as he thinks"
+        assert deepest(who, states, (box(6.8, 0.33, 8.0),)) < 0.02
+        assert leapt and not any(isinstance(s.memory.memory, Jumping) and s.memory.memory.fault for s in leapt)
+        assert max(abs(float(s.ground[2])) for s in states) < 0.1

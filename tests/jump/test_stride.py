@@ -136,3 +136,23 @@ def test_no_stance_is_passed_in_the_air_after_a_leap(person, late):
         elif off:  # for how many steps no foot has stood
             off.append(0 if state.contacts.any() else off[-1] + 1)
     assert len(off) > 40 and max(off) < 13
+
+
+@pytest.mark.parametrize("down, feet", [(0.33, 1), (1.0, 2)])
+@pytest.mark.parametrize("later", [0, 15])
+def test_no_knee_flips_as_a_runner_who_comes_down_lower_runs_on(person, jump, runner, down, feet, later):
+    """On one foot where one leg takes the fall; else on both, and off one of them, for no run has a phase in which both stand: left behind, the other pulled its leg straight."""
+    state, made, states = runner, None, []
+    for _ in range(later):
+        state, _ = person.step(state, Intent(WISH), 1 / FPS)
+    for _ in range(130):
+        leap = Leap(np.array([state.ground[0], -down, state.ground[1] + 2.4])) if made is None else None
+        state, _ = person.step(state, Intent(WISH, leap), 1 / FPS)
+        if made is None and isinstance(state.memory.memory, Jumping):
+            made = state.memory.memory.plan
+        states.append(state)
+    assert made is not None and (made.path.lands is None) == (feet == 2) and made.through >= min(made.lowest, made.touch_down + 0.14)
+    taken = max(k for k, s in enumerate(states) if s.active == "jump") + 1
+    shown = states[taken - 4:taken + 16]
+    at, _ = forward_kinematics(jump.skeleton, np.stack([s.pose.root for s in shown]).astype(float), np.stack([s.pose.rotations for s in shown]).astype(float))
+    assert np.linalg.norm(np.diff(at, 2, axis=0), axis=-1).max() * FPS**2 < 400.0, "it was up to 3,200 m/s²"

@@ -205,7 +205,7 @@ class Airborne:
             self._put_down(after, feet, roots, local)
             pose(feet, self.air_roots[-1].copy(), roots, local)
         return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, (
-            max(landing.until(after), PLANT + 0.02) if self.way.lands is None else
+            max(landing.until(after), self.lowest) if self.way.lands is None else
             self._steps_on() if self.way.hops else float(np.clip(self.lowest, *RUNS_ON)))
 
     def _steps_on(self) -> float:

@@ -1,0 +1,108 @@
+"""What lies straight ahead of somebody: where he is to come to rest before it, and whether the floor rises there.
+
+Nothing is played ahead here: it is asked in every step of who goes at something.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gambol.controllers.contract import CharacterState
+from gambol.controllers.navigation import STEP, floor_at, gap, room
+
+TOUCHES = 0.19
+"""Nearer to its middle nothing solid may come to a body that has not leapt yet [m]: walls hold up at 0.18 who treads on before them."""
+BODY = 0.4, 1.0, 1.6
+"""At these heights of it [m]."""
+SHORT = 0.12, 0.3
+"""He comes to rest so far before he would be too near to something solid, and before an edge [m]."""
+PACE, FINE = 0.1, 0.01
+"""Places straight ahead are looked at so far apart [m], and the last that is free is found to so much [m]."""
+WIDE, FLAT = 0.5, 0.18
+"""Who comes straight at something looks so far to either side of where he meets it [m]: what recedes there by more than the second [m], as a wall does that he meets
+at more than 20° off its normal, or a pillar, he goes along, or round."""
+STOPS = 0.6, 0.45
+"""Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
+UP = 0.95
+"""A leap lands no higher than this over the feet [m], and no lower than a step."""
+RISES = 0.12
+"""What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
+
+
+def before(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> tuple[float, float] | None:
+    """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
+    where that is far away: farther than he looks, of which `share` counts, and so much `more` [m]."""
+    met = _met(controller, state, velocity, around, share, more)
+    return None if met is None else _short(state, velocity, around, met)
+
+
+def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
+    """The same of somebody who goes so straight at what is ahead that he neither goes along it nor round it; None of everybody else, and of who is too near to something already."""
+    met = _met(controller, state, velocity, around) if room(np.asarray(state.ground[:2], float), float(state.floor), around) > 0.0 else None
+    if met is None:
+        return None
+    ahead = np.asarray(velocity, float) / math.hypot(*velocity)
+    there, left = np.asarray(state.ground[:2], float) + (met.far + FLAT) * ahead, WIDE * np.array([ahead[1], -ahead[0]])
+    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(state, velocity, around, met)
+
+
+class Met(NamedTuple):
+    """What somebody comes to who goes straight on: how far he gets [m], how far away the first place is where he can't be, and how high the floor is before it [m]."""
+
+    last: float
+    far: float
+    floor: float
+
+
+def _met(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> Met | None:
+    """What somebody comes to who goes on as `before` has it; None where that is far away."""
+    speed, floor, here = math.hypot(*velocity), float(state.floor), np.asarray(state.ground[:2], float)
+    if speed < 1e-6 or not len(around):
+        return None
+    pace = float(np.hypot(state.velocity[0], state.velocity[2]))
+    ahead = np.asarray(velocity, float) / speed
+    for far in np.arange(1, 2 + int((share * (STOPS[0] + STOPS[1] * max(pace, speed)**2 / agility(controller)) + more) / PACE)) * PACE:
+        if room(here + far * ahead, floor, around) <= 0.0:
+            low, high = far - PACE, far
+            while high - low > FINE:
+                middle = 0.5 * (low + high)
+                low, high = (low, middle) if room(here + middle * ahead, floor, around) <= 0.0 else (middle, high)
+            return Met(low, high, floor)
+        x, z = here + far * ahead
+        floor = floor_at(float(x), float(z), around, floor + STEP)
+    return None
+
+
+def _short(state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met) -> tuple[float, float]:
+    """Where x, z [m] to come to rest before what one comes to straight on."""
+    here, ahead = np.asarray(state.ground[:2], float), np.asarray(velocity, float) / math.hypot(*velocity)
+    x, z = here + max(met.last - SHORT[is_edge(here + met.far * ahead, met.floor, around)], 0.0) * ahead
+    return float(x), float(z)
+
+
+def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> bool:
+    """Whether the floor rises by more than a runner takes in stride where somebody goes with a velocity (2,) [m/s] in the world, no farther away than `before` looks."""
+    floor, ahead, speed = float(state.floor), np.asarray(velocity, float), math.hypot(*velocity)
+    count = 2 + int((share * (STOPS[0] + STOPS[1] * speed**2 / agility(controller)) + more) / PACE)
+    places = np.asarray(state.ground[:2], float) + np.arange(1, count)[:, None] * PACE * ahead / speed
+    return any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in places)
+
+
+def agility(controller: Any) -> float:
+    """How agile somebody is, beside a person, whose number is 1, and no more than that."""
+    return min(getattr(controller.settings, "agility", 1.0), 1.0)
+
+
+def is_edge(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
+    """Whether there is no room at a place (2,) because the floor ends there, and not because something stands there."""
+    return not touches(place, floor, around, 0.3)
+
+
+def touches(place: np.ndarray, floor: float, around: Sequence[Any], near: float = TOUCHES) -> bool:
+    """Whether something solid is as near to a body at a place (2,)."""
+    body = np.array([[place[0], floor + height, place[1]] for height in BODY])
+    return any(gap(body, thing).min() < near for thing in around)
