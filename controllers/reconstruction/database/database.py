@@ -1,6 +1,6 @@
 """A motion database: takes of many people on one skeleton, float32 and memory-mapped.
 
-One file: a head of `HEAD` bytes, the frames as `chart` has them (N, WIDTH) float32, a byte for each
+One file: a head of `HEAD` bytes, the frames as `pose_vector` has them (N, WIDTH) float32, a byte for each
 frame (1 where it is sound), a JSON table of the takes, and the table's length. It is written from
 front to back, so that a build needs little memory, and is read by mapping it, so that it opens at
 once however large it is.
@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...body import brief
 from ...files import ordinary, reason, whole
 from ..pose_vector import ANGLES, JOINTS, REFERENCE, ROOT, SKELETON, WIDTH, mirror
 
@@ -31,6 +32,8 @@ _CHART = {"joints": [SKELETON.names[j] for j in JOINTS], "root": list(ROOT),
 
 class DatabaseError(ValueError):
     """A file that is no motion database, or a database that has not what is asked of it."""
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ class Take:
 class Database:
     """Frames of motion, and whose they are.
 
-    frames: (N, WIDTH) float32, see `chart`; a memory map. sound: (N,) bool, False where tracking
+    frames: (N, WIDTH) float32, see `pose_vector`; a memory map. sound: (N,) bool, False where tracking
     failed. takes: those that count, in the order of their frames; a mirror image follows its
     original. fps: [Hz]. path: the file.
     """
