@@ -11,9 +11,9 @@ SMALL = 4
 """Arrays of no more numbers than this are printed; of others the type and the shape."""
 
 
-def brief(value: Any) -> str:
+def brief(self: Any) -> str:
     """What a dataclass prints as: put `__repr__ = brief` into it."""
-    return f"{type(value).__name__}({', '.join(f'{one.name}={_said(getattr(value, one.name))}' for one in fields(value) if one.repr)})"
+    return f"{type(self).__name__}({', '.join(f'{one.name}={_said(getattr(self, one.name))}' for one in fields(self) if one.repr)})"
 
 
 def _said(value: Any) -> str:

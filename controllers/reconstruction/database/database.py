@@ -33,8 +33,6 @@ _CHART = {"joints": [SKELETON.names[j] for j in JOINTS], "root": list(ROOT),
 class DatabaseError(ValueError):
     """A file that is no motion database, or a database that has not what is asked of it."""
 
-    __repr__ = brief
-
 
 @dataclass(frozen=True)
 class Take:
@@ -64,6 +62,8 @@ class Database:
     failed. takes: those that count, in the order of their frames; a mirror image follows its
     original. fps: [Hz]. path: the file.
     """
+
+    __repr__ = brief
 
     frames: np.ndarray
     sound: np.ndarray
