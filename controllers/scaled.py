@@ -15,7 +15,7 @@ import numpy as np
 
 from .body import Pose, Skeleton
 from .contract import LONGEST, CharacterState, Controller, Intent, Leap, Status, seconds
-from .navigation import is_box, is_pillar, slope
+from .navigation import checked, is_box, is_pillar, slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +107,12 @@ class Scaled(Controller):
         look = None if intent.look is None else np.asarray(intent.look, float) / self.factor
         halt = None if intent.halt is None else np.asarray(intent.halt, float) / [self.factor, self.factor, 1.0]
         towards = None if intent.towards is None else np.asarray(intent.towards, float) / [1.0, self.factor**0.5]
-        around = tuple(_ShrunkBox(thing, self.factor) if is_box(thing) else _ShrunkPillar(thing, self.factor)
-                       for thing in intent.around if is_box(thing) or is_pillar(thing))
+        try:
+            around = tuple(_ShrunkBox(thing, self.factor) if is_box(thing) else _ShrunkPillar(thing, self.factor)
+                           for thing in intent.around if is_box(thing) or is_pillar(thing))
+        except (AttributeError, TypeError, ValueError):
+            checked(intent.around)
+            raise
         return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, aim=None if intent.aim is None else Leap(None), look=look, halt=halt, towards=towards)
 
     def _grown(self, state: CharacterState) -> CharacterState:

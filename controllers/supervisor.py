@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, seconds
-from .navigation import going
+from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, given, seconds
+from .navigation import checked, going
 from .navigation.passing import drawn_in
 
 
@@ -57,14 +57,20 @@ class Asked:
 class Supervisor(Controller):
     """Several controllers as one. The first is where every character starts and what always can go on.
 
-    controllers: by name, all for the same skeleton. Characters come singly: for a crowd that only
+    controllers: by name, all for the same skeleton; ValueError for what is none. Characters come singly: for a crowd that only
     walks, step the locomotion itself. Who walks closely by something draws his arms in. Where an intent has a goal, the way is planned by what the first can walk, beside the
     steps: what is planned is used some steps later.
     """
 
     def __init__(self, controllers: Mapping[str, Controller]):
+        if not isinstance(controllers, Mapping) or not controllers:
+            raise ValueError(f"a supervisor takes controllers by name, the first one that can always go on first; got {controllers!r}")
         self.parts: Mapping[str, Controller] = dict(controllers)
         self.first = next(iter(self.parts))
+        for name, part in self.parts.items():
+            lacks = [answer for answer in ("precondition", "enter", "step", "status") if not hasattr(part, answer)]
+            if lacks:
+                raise ValueError(f"the controller {name!r} has no {', '.join(lacks)}: inherit from gambol.controllers.contract.Controller; got {part!r}")
 
     @property
     def skeleton(self) -> Skeleton:
@@ -110,7 +116,14 @@ class Supervisor(Controller):
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds (0 < dt ≤ 0.1; ValueError otherwise) by whoever is best for it now. ValueError for a state of another controller."""
-        dt = seconds(dt)
+        given(state, intent)
+        try:
+            return self._stepped(state, intent, seconds(dt))
+        except (AttributeError, IndexError, TypeError):
+            checked(intent.around)
+            raise
+
+    def _stepped(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         duty = state.memory
         if not isinstance(duty, Duty):
             raise ValueError("this state is not of several controllers: enter it first")
@@ -125,6 +138,8 @@ class Supervisor(Controller):
             duty, own = self._choose(duty, own, intent)
         before = state.pose
         after, pose = self.parts[duty.active].step(own, intent, dt)
+        if duty.active != self.first and not (np.isfinite(pose.rotations).all() and np.isfinite(pose.root).all()):
+            raise ValueError(f"the controller {duty.active!r} gave a pose that is not finite")
         if duty.active == self.first and len(intent.around):
             pose = drawn_in(self.skeleton, pose, after.ground, intent.around)
         duty = but(duty, memory=after.memory, strike=kept)
@@ -161,6 +176,9 @@ class Supervisor(Controller):
         gone_wrong = "" if status.kind == "done" else status.reason
         refused = "" if intent.leap is None else duty.refused
         asked = None if intent.leap is None else duty.asked
+        for name, bid in bids.items():
+            if not isinstance(bid, float | int | np.floating) or not bid >= 0.0:
+                raise ValueError(f"the precondition of the controller {name!r} must be a number, 0 or more; got {bid!r}")
         for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break

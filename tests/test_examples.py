@@ -128,3 +128,14 @@ def test_film_example(drawing):
     frames = [[f.to_ndarray(format="gray") for f in av.open(io.BytesIO(film)).decode(video=0)] for film in films]
     assert [len(film) for film in frames] == [25, 25]
     assert all(np.abs(film[0].astype(int) - film[-1]).mean() > 1.0 for film in frames), "something moves"
+
+
+def test_many_environments_example(capsys):
+    pytest.importorskip("gymnasium")
+    ended, reached = example("many_environments").main(count=40, actions=60)
+    assert ended == reached > 40  # everybody arrives, and most begin anew meanwhile
+    assert "at once" in capsys.readouterr().out
+
+
+def test_terrain_example():
+    assert example("terrain").main(seconds=5.0) < 0.06

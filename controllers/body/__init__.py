@@ -2,13 +2,14 @@
 
 from . import rotations
 from .anatomy import Anatomy, anatomy, centre_in_pose, centre_of_mass, joint_limits, segment_centres
+from .brief import brief
 from .ccd import ccd_kernel, foot_turn_kernel
 from .clip import Clip, Pose, mirror_index
 from .contact import (HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact_points, detect_contacts, feet_apart,
                       foot_drift, heel_offset, point_speeds)
 from .ground_frame import advance, compose, relative, screw
 from .human import CONTACT_HEIGHT, HEEL, STATURE, human
-from .ik import distance_kernel, pole_of, two_bone_kernel, two_bone_turns
+from .ik import distance_kernel, pole_of, two_bone, two_bone_kernel, two_bone_turns
 from .rotation_kernels import exp_kernel, log_kernel, product_kernel, quaternion_kernel, relative_kernel
 from .rotations import between, carried, exp, heading_of, log, mean, wrap, yaw
 from .skeleton import Skeleton, end_positions, forward_kinematics, local_rotations
@@ -18,11 +19,11 @@ from .support_polygon import (HALF_SOLE, centroid_kernel, hull, hull_kernel, mar
 
 __all__ = [
     "CONTACT_HEIGHT", "HALF_SOLE", "HEEL", "HEIGHT_GATE", "RELEASE", "STATURE", "WALK_SPEEDS", "Anatomy", "Clip", "Pose",
-    "Skeleton", "advance", "anatomy", "between", "carried", "ccd_kernel", "centre_in_pose", "centre_of_mass", "centroid_kernel", "compose",
+    "Skeleton", "advance", "anatomy", "between", "brief", "carried", "ccd_kernel", "centre_in_pose", "centre_of_mass", "centroid_kernel", "compose",
     "contact_height", "contact_points", "damp", "detect_contacts", "distance_kernel", "end_positions", "exp",
     "exp_kernel", "feet_apart", "foot_drift", "foot_turn_kernel", "forward_kinematics", "heading_of", "heel_offset",
     "hull", "hull_kernel", "human", "joint_limits", "local_rotations", "log", "log_kernel", "margin", "margin_kernel",
     "mean", "mirror_index", "point_speeds", "pole_of", "product_kernel", "quaternion_kernel", "relative", "relative_kernel",
-    "rotations", "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "standing_corners", "two_bone_kernel",
+    "rotations", "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "standing_corners", "two_bone", "two_bone_kernel",
     "two_bone_turns", "wrap", "yaw",
 ]

@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from ..compiled import kernel
+from .brief import brief
 from .clip import Pose
 from .contact import heel_offset
 from .skeleton import Skeleton, end_positions, forward_kinematics
@@ -52,6 +53,8 @@ class Anatomy:
     shares: (S,) of the body's mass, sum 1. centres: (S, 3) [m] centres of mass in the joints'
     frames. inertias: (S, 3, 3) [kg m²] about them, in the joints' frames.
     """
+
+    __repr__ = brief
 
     mass: float
     names: tuple[str, ...]

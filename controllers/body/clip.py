@@ -7,12 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
+from .brief import brief
 from .skeleton import Skeleton, forward_kinematics
 
 
 @dataclass(frozen=True, eq=False)
 class Pose:
     """Where a body is. root: (..., 3) [m] the root joint. rotations: (..., J, 3, 3) local."""
+
+    __repr__ = brief
 
     root: np.ndarray
     rotations: np.ndarray
@@ -25,6 +28,8 @@ class Clip:
     name: what to call it. skeleton: J joints. frame_time: seconds between frames.
     root: (T, 3) [m]. quaternions: (T, J, 4) local rotations, scipy's (x, y, z, w).
     """
+
+    __repr__ = brief
 
     name: str
     skeleton: Skeleton

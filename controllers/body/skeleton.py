@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..compiled import kernel
+from .brief import brief
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +19,8 @@ class Skeleton:
     offsets: (J, 3) [m] each joint in its parent's frame at the zero pose (the root's is ignored).
     end_parents, end_offsets: (E,), (E, 3) [m] the end sites: where the last bones end.
     """
+
+    __repr__ = brief
 
     names: tuple[str, ...]
     parents: np.ndarray

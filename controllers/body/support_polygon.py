@@ -51,7 +51,10 @@ def hull(points: np.ndarray) -> np.ndarray:
     The smallest first; H is 0 for no points, 1 where all are one, 2 on a line.
     ValueError for points that are not finite.
     """
-    points = np.ascontiguousarray(points, float).reshape(-1, 2)
+    points = np.ascontiguousarray(points, float)
+    if points.size and points.shape[1:] != (2,):
+        raise ValueError(f"the points under a support polygon are (N, 2), seen from above; got shape {points.shape}")
+    points = points.reshape(-1, 2)
     if not np.isfinite(points).all():
         raise ValueError("the points under a support polygon must be finite")
     corners = np.empty((len(points) + 1, 2))

@@ -29,10 +29,19 @@ def seconds(dt: Any) -> float:
 
     ValueError unless 0 < dt ≤ 0.1; of single precision, too.
     """
-    plain = float(dt)
+    try:
+        plain = float(dt)
+    except (TypeError, ValueError):
+        raise ValueError(f"dt is one number of seconds, for a whole batch, too; got {dt!r}") from None
     if not 0.0 < plain < LONGEST * (1.0 + 1e-6):
         raise ValueError(f"dt must be in (0, {LONGEST:g}] s, got {dt}")
     return plain
+
+
+def given(state: Any, intent: Any) -> None:
+    """Nothing, if a step is given a state and an intent. ValueError for anything else, or the other way round."""
+    if not isinstance(state, CharacterState) or not isinstance(intent, Intent):
+        raise ValueError(f"a step takes a CharacterState, an Intent and seconds; got a {type(state).__name__} and a {type(intent).__name__}")
 
 
 def level(floor: Any) -> Any:
@@ -81,14 +90,14 @@ class Controller(Protocol):
         raise Unable(f"{type(self).__name__} starts nobody, it takes over from others: put both under a supervisor")
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
-        """How well it could start from here for this intent: 0 not at all … 1 perfectly. Of one that
-        is active already: how firmly it holds on."""
-        raise NotImplementedError
+        """How well it could start from here for this intent: 0 not at all … 1 perfectly; walking says 0.5, who answers a strike 3. Of one that
+        is active already: how firmly it holds on; jumps do with 1.5."""
+        raise NotImplementedError(f"{type(self).__name__} is a controller without precondition: write it")
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state with this controller's own memory, ready to step: it takes over pose and motion as
         they are, so that nothing jumps. Unable, with the reason, if it can't after all."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} is a controller without enter: write it")
 
     def seek(self, state: CharacterState, intent: Intent, onward: Any = None) -> CharacterState:
         """What `enter` gives, of which no more is worked out than a step has time for: Unable, with its `onward`, until it is known whether it can.
@@ -113,8 +122,8 @@ class Controller(Protocol):
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of `dt` seconds. ValueError unless 0 < dt ≤ 0.1, see `seconds`."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} is a controller without step: write it")
 
     def status(self, state: CharacterState) -> Status:
         """Whether it goes on."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} is a controller without status: write it")

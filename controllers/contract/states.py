@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from ..body import Pose
+from ..body import Pose, brief
 from .wishes import Strike
 
 T = TypeVar("T")
@@ -36,6 +36,8 @@ class CharacterState:
     going: how far it is on the way to its goal, a `gambol.controllers.navigation.Going`; None where it has none.
     """
 
+    __repr__ = brief
+
     ground: np.ndarray
     velocity: np.ndarray
     pose: Pose
@@ -45,6 +47,39 @@ class CharacterState:
     previous: Pose | None = None
     elapsed: float = 0.0
     going: Any = None
+
+    def __getitem__(self, some: Any) -> CharacterState:
+        """Those of a batch that an index, a slice or a mask picks, as numpy does: `crowd[3]`, `crowd[late]`. ValueError for one alone."""
+        batch = _batch(self)
+
+        def of(value: Any) -> Any:
+            return np.array(value[some] if np.ndim(value) else np.broadcast_to(value, batch)[some])
+
+        def pose(one: Pose | None) -> Pose | None:
+            return None if one is None else Pose(of(one.root), of(one.rotations))
+        return but(self, ground=of(self.ground), velocity=of(self.velocity), pose=pose(self.pose), contacts=of(self.contacts),
+                   memory=None if self.memory is None else of(self.memory), floor=of(self.floor), previous=pose(self.previous))
+
+    def put(self, some: Any, others: CharacterState) -> CharacterState:
+        """The same batch with others in place of those that an index, a slice or a mask picks: `crowd.put(done, walker.start(places))`.
+        ValueError for one alone, for others of another kind of controller, and where their number does not fit."""
+        batch = _batch(self)
+        if type(others.memory) is not type(self.memory) or getattr(others.memory, "dtype", None) != getattr(self.memory, "dtype", None):
+            raise ValueError("those put into a batch must come of the controller that steps it")
+
+        def of(value: Any, other: Any) -> np.ndarray:
+            value = np.array(np.broadcast_to(value, batch)) if not np.ndim(value) else np.array(value)
+            try:
+                value[some] = other
+            except ValueError:
+                raise ValueError(f"{np.shape(others.ground)[:-1]} do not fit where {np.shape(self.ground[some])[:-1]} of the batch are picked") from None
+            return value
+
+        def pose(one: Pose, other: Pose) -> Pose:
+            return Pose(of(one.root, other.root), of(one.rotations, other.rotations))
+        return but(self, ground=of(self.ground, others.ground), velocity=of(self.velocity, others.velocity), pose=pose(self.pose, others.pose),
+                   contacts=of(self.contacts, others.contacts), memory=None if self.memory is None else of(self.memory, others.memory),
+                   floor=of(self.floor, others.floor), previous=None if self.previous is None else pose(self.previous, others.previous or others.pose))
 
     @property
     def active(self) -> str:
@@ -57,6 +92,14 @@ class CharacterState:
         return self.memory.refused if isinstance(self.memory, Duty) else ""
 
 
+def _batch(state: CharacterState) -> tuple[int, ...]:
+    """The batch axes of a state. ValueError where it has none."""
+    batch = np.shape(state.ground)[:-1]
+    if not batch:
+        raise ValueError("this is the state of one character, not of a batch: there is nothing to pick from")
+    return batch
+
+
 @dataclass(frozen=True, eq=False)
 class Duty:
     """The memory of a supervisor: who is on duty. active: a controller's name. memory: its own. why: why it was
@@ -65,6 +108,8 @@ class Duty:
     refused: why what was asked last can't be done, or goes wrong; empty if it can. asked: what was refused and from where, so that it
     is not tried again until something changes. strike: what struck it in the air, where nobody answers that, until it stands again.
     """
+
+    __repr__ = brief
 
     active: str
     memory: Any

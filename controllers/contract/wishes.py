@@ -9,6 +9,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..body import brief
+
 HARDEST = 1000.0
 """Nobody is struck harder [N·s]: as a car at walking pace would."""
 HIGHEST = 1e5
@@ -70,7 +72,7 @@ class Goal:
     within: float | None = None
 
     def __post_init__(self):
-        place = tuple(float(value) for value in self.place)
+        place = tuple(_numbers("a goal's place", self.place).ravel().tolist())
         if len(place) not in (2, 3) or not all(abs(value) <= HIGHEST for value in place):
             raise ValueError(f"a goal is x, z or x, y, z within ±{HIGHEST:g} m, got {self.place!r}")
         if self.heading is not None and not math.isfinite(self.heading):
@@ -94,7 +96,7 @@ class Strike:
     height: float | None = None
 
     def __post_init__(self):
-        impulse = tuple(float(value) for value in self.impulse)
+        impulse = tuple(_numbers("a strike's impulse", self.impulse).ravel().tolist())
         if len(impulse) != 2 or not math.hypot(*impulse) <= HARDEST:
             raise ValueError(f"an impulse is x, z of at most {HARDEST:g} N·s together, got {self.impulse!r}")
         if self.height is not None and not 0.0 <= self.height <= 3.0:
@@ -138,6 +140,8 @@ class Intent:
     strike: what hits the body as this step begins, whatever is wanted; None for nothing. One in the air is struck once it stands again.
     ValueError for a field of another kind.
     """
+
+    __repr__ = brief
 
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
     leap: Leap | None = None

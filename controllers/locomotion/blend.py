@@ -16,6 +16,8 @@ class Blender:
     """Poses of the walking family in the ground frame, for any number of velocities and phases."""
 
     def __init__(self, locomotion, correct: int = 0):
+        if not hasattr(locomotion, "tables"):
+            raise ValueError(f"a Blender takes a Locomotion, whose tables it reads; got a {type(locomotion).__name__}")
         self._tables = locomotion.tables
         self._count = len(locomotion.library.primitives)
         self._joints = len(locomotion.skeleton)

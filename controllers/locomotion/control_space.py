@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import ConvexHull, Delaunay, QhullError
 
+from ..body import brief
+
 SCALE = np.array([0.54, 0.99, 0.25])
 """Spread of (v_f, ω, v_l) in human walking [m/s, rad/s, m/s]: one unit of distance in the space."""
 EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
@@ -42,6 +44,8 @@ class ControlSpace:
     along each edge has beyond the mean of its ends' velocities.
     """
 
+    __repr__ = brief
+
     points: np.ndarray
     anchor: np.ndarray
     lane: np.ndarray
@@ -53,13 +57,16 @@ class ControlSpace:
 
     @staticmethod
     def build(points: np.ndarray, anchor: np.ndarray | None = None, keep_speed: bool = False) -> ControlSpace:
-        """Triangulate velocities (Q, 3). ValueError if they do not span the space.
+        """Triangulate velocities (Q, 3), finite ones. ValueError if they do not span the space.
 
         anchor: (3,) the mean by default; one that is not well inside is moved towards the mean.
         keep_speed: whether queries outside keep their v_f as far as the hull reaches; the anchor by
         default is then the mean v_f, straight on.
         """
-        scaled = np.asarray(points, float) / SCALE
+        points = np.asarray(points, float)
+        if points.shape[1:] != (3,) or not np.isfinite(points).all():
+            raise ValueError(f"the velocities must be (Q, 3) v_f, ω, v_l, all finite; got an array of shape {points.shape}")
+        scaled = points / SCALE
         if len(scaled) < 4 or np.linalg.matrix_rank(scaled - scaled[0], tol=1e-3) < 3:
             raise ValueError("the velocities must span all three of v_f, ω and v_l: "
                              f"{len(scaled)} points given")

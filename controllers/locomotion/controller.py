@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from gambol import assets
 
 from ..body import Pose, Skeleton
-from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, level, seconds
+from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, given, level, seconds
 from ..navigation.passing import walls_of
 from .control_space import ControlSpace
 from .entry import entered
@@ -135,6 +135,7 @@ class Locomotion(Controller):
         turn just below `Settings.run_above` is walked, not run); a runner keeps the speed and
         turns or side-steps less. Nobody's middle comes nearer to a wall of intent.around than `NEAR`, in the library's size.
         """
+        given(state, intent)
         dt = seconds(dt)
         level(state.floor)
         memory = self._memory(state).reshape(-1)
@@ -170,7 +171,7 @@ class Locomotion(Controller):
     @staticmethod
     def _look(memory: np.ndarray, look: ArrayLike, shape: tuple[int, ...], floor: np.ndarray | float) -> None:
         """Note the places (..., 3) that characters (N,) are told to look at, over their own floors; none that is not finite."""
-        place = np.array(np.broadcast_to(np.asarray(look, float), shape + (3,)))
+        place = _spread(look, shape + (3,))
         place[..., 1] -= floor
         place = place.reshape(-1, 3)
         sound = np.asarray(np.isfinite(place).all(-1))

@@ -15,8 +15,11 @@ HARMONICS = 12
 def fit(samples: np.ndarray, harmonics: int = HARMONICS) -> np.ndarray:
     """Coefficients (..., 2N + 1, D) of one cycle's samples (..., S, D) at phases s / S.
 
-    Row 0 is the mean ½α₀, rows 2k − 1 and 2k are α_k and β_k. ValueError if N > (S − 1) / 2.
+    Row 0 is the mean ½α₀, rows 2k − 1 and 2k are α_k and β_k. ValueError if N > (S − 1) / 2, and for samples of another shape.
     """
+    samples = np.asarray(samples, float)
+    if samples.ndim < 2:
+        raise ValueError(f"samples are (..., S, D), one row a phase; got shape {samples.shape}")
     count = samples.shape[-2]
     if harmonics > (count - 1) // 2:
         raise ValueError(f"{harmonics} harmonics need more than {count} samples: at least {2 * harmonics + 1}")
@@ -38,4 +41,5 @@ def basis(phase: np.ndarray, harmonics: int = HARMONICS) -> np.ndarray:
 
 def evaluate(coefficients: np.ndarray, phase: np.ndarray) -> np.ndarray:
     """Series (..., D) of coefficients (2N + 1, D) at phases (...): eq. (6)."""
+    coefficients = np.asarray(coefficients)
     return basis(phase, (coefficients.shape[-2] - 1) // 2) @ coefficients

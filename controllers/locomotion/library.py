@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..body import Skeleton, human, rotations as rot
+from ..body import Skeleton, brief, human, rotations as rot
 from ..files import ordinary, reason, whole
 from .cycles import Cycle
 
@@ -80,6 +80,8 @@ class Library:
     bends: by family, (E, 5) what its control space knows of blends along its edges.
     accelerations: by family, (J,) [m/s²] the 99th percentile in the recordings, where known.
     """
+
+    __repr__ = brief
 
     skeleton: Skeleton
     primitives: tuple[Primitive, ...]

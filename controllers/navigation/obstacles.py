@@ -76,6 +76,25 @@ def is_pillar(thing: Any) -> TypeGuard[Pillar]:
     return hasattr(thing, "foot")
 
 
+def checked(around: Sequence[Any]) -> None:
+    """Nothing, where all that stands about is sound. ValueError, naming the first thing that is not and what it lacks."""
+    for thing in around:
+        fields = (("centre", (3,)), ("size", (3,)), ("heading", ())) if is_box(thing) else (
+            ("foot", (3,)), ("radius", ()), ("height", ())) if is_pillar(thing) else ()
+        for name, shape in fields:
+            try:
+                value = np.asarray(getattr(thing, name), float)
+                sound = value.shape == shape and np.isfinite(value).all() and not (name in ("size", "radius", "height") and (value < 0.0).any())
+            except (AttributeError, TypeError, ValueError):
+                sound = False
+            if not sound:
+                wanted = "one number" if not shape else "three numbers"
+                least = ", 0 or more" if name in ("size", "radius", "height") else ""
+                raise ValueError(f"around: the {name} of what stands about is {wanted}{least}; got {getattr(thing, name, 'none')!r} in {thing!r}")
+        if is_box(thing) and not math.isfinite(slope(thing)):
+            raise ValueError(f"around: the slope of a ramp is metres a metre, finite; got {slope(thing)!r} in {thing!r}")
+
+
 def gap(points: np.ndarray, thing: Any) -> np.ndarray:
     """How far points (N, 3) [m] are from a box or a pillar: 0 on its surface, negative inside."""
     out = np.empty(len(points))

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..body import STATURE, Pose, Skeleton, human
-from ..contract import CharacterState, Controller, Intent, Status, Unable, level as sound_level, seconds
+from ..contract import CharacterState, Controller, Intent, Status, Unable, given, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
 from .follower import FADE, GLIDE, SWIFTEST, Follower, Following, Reconstructor
@@ -120,6 +120,7 @@ class Reconstruction(Controller):
         than it follows ends it: the body coasts for this step, and `status` says why. No foot is deep in the floor,
         and contacts are with it; `state.floor` may be set to another from step to step.
         """
+        given(state, intent)
         dt = seconds(dt)
         sound_level(state.floor)
         if not isinstance(state.memory, Following):

@@ -1,6 +1,6 @@
 """A motion database: takes of many people on one skeleton, float32 and memory-mapped.
 
-One file: a head of `HEAD` bytes, the frames as `chart` has them (N, WIDTH) float32, a byte for each
+One file: a head of `HEAD` bytes, the frames as `pose_vector` has them (N, WIDTH) float32, a byte for each
 frame (1 where it is sound), a JSON table of the takes, and the table's length. It is written from
 front to back, so that a build needs little memory, and is read by mapping it, so that it opens at
 once however large it is.
@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...body import brief
 from ...files import ordinary, reason, whole
 from ..pose_vector import ANGLES, JOINTS, REFERENCE, ROOT, SKELETON, WIDTH, mirror
 
@@ -57,10 +58,12 @@ class Take:
 class Database:
     """Frames of motion, and whose they are.
 
-    frames: (N, WIDTH) float32, see `chart`; a memory map. sound: (N,) bool, False where tracking
+    frames: (N, WIDTH) float32, see `pose_vector`; a memory map. sound: (N,) bool, False where tracking
     failed. takes: those that count, in the order of their frames; a mirror image follows its
     original. fps: [Hz]. path: the file.
     """
+
+    __repr__ = brief
 
     frames: np.ndarray
     sound: np.ndarray

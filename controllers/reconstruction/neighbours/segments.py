@@ -20,7 +20,7 @@ class Neighbourhood:
     """The K recorded segments nearest to a query: what a local model is learnt from.
 
     X: (K, P) float32 features of the past frames, weighted as the query is (`features`).
-    Y: (K, D) float32 the frame that followed each, as in `chart`: joints and root.
+    Y: (K, D) float32 the frame that followed each, as in `pose_vector`: joints and root.
     distances: (K,) float32, of X from the query, ascending. indices: (K,) int64 the segments' numbers.
     """
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from ...body import brief
 from .frame_kernel import fuse_kernel
 
 
@@ -16,6 +17,8 @@ class Gaussian:
 
     variance: (..., D). factor: (..., R, D); by default R is 0.
     """
+
+    __repr__ = brief
 
     mean: np.ndarray
     variance: np.ndarray

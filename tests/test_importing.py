@@ -1,0 +1,152 @@
+"""Who imports the controllers gets one clear line for a mistake, reads what a value is in a line, and picks from a batch as from an array."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import Pose, hull, human
+from gambol.controllers.contract import Controller, Goal, Intent, Status, Strike
+from gambol.controllers.locomotion import Blender, ControlSpace, Locomotion, fourier
+from gambol.controllers.person import person
+from gambol.controllers.supervisor import Supervisor
+
+DT = 1 / 60
+
+
+def box(**other):
+    """A box, or what lacks or has otherwise what a box has; None for what it lacks."""
+    fields = {"centre": (0.0, 0.5, 2.0), "size": (1.0, 1.0, 1.0), "heading": 0.0} | other
+    return SimpleNamespace(**{name: value for name, value in fields.items() if value is not None})
+
+
+@pytest.fixture(scope="module")
+def walker():
+    return Locomotion.load()
+
+
+@pytest.mark.parametrize("thing, says", [
+    (box(heading=None), "the heading of"), (box(centre=(0.0, 1.0)), "the centre of"), (box(centre=(0.0, np.nan, 2.0)), "the centre of"),
+    (box(size=(1.0, -1.0, 1.0)), "the size of"), (box(size=(-1.0, 1.0, 1.0)), "the size of"), (box(heading="north"), "the heading of"), (box(slope=np.nan), "the slope of"),
+    (SimpleNamespace(foot=(0.0, 0.0, 2.0), radius=1.0), "the height of"), (SimpleNamespace(foot=(0.0, 0.0, 2.0), radius=-1.0, height=1.0), "the radius of")])
+def test_what_stands_about_names_the_field_that_is_unsound(walker, thing, says):
+    for someone in (walker, person(walker)):
+        with pytest.raises(ValueError, match=says):
+            someone.step(someone.start(), Intent(around=(box(), thing)), DT)
+
+
+@pytest.mark.parametrize("dt", [None, "soon", np.array([DT]), np.array([DT, DT])])
+def test_a_step_is_one_number_of_seconds(walker, dt):
+    with pytest.raises(ValueError, match="dt is one number of seconds"):
+        walker.step(walker.start(), Intent(), dt)
+
+
+def test_a_step_takes_a_state_and_an_intent(walker):
+    for someone in (walker, person(walker)):
+        for state, intent in ((someone.start(), np.array([1.0, 0.0, 0.0])), (Intent(), someone.start())):
+            with pytest.raises(ValueError, match="a step takes a CharacterState, an Intent and seconds"):
+                someone.step(state, intent, DT)
+
+
+def test_places_and_impulses_are_numbers():
+    for value in ("ab", None):
+        with pytest.raises(ValueError, match="a goal"):
+            Goal(value)  # pyright: ignore[reportArgumentType]
+        with pytest.raises(ValueError, match="impulse"):
+            Strike(value)  # pyright: ignore[reportArgumentType]
+
+
+class Odd(Controller):
+    """Wants to act at once, as far as it is told how."""
+
+    skeleton = human()
+
+    def __init__(self, bid=0.9):
+        self.bid = bid
+
+    def precondition(self, state, intent):
+        return self.bid
+
+    def enter(self, state, intent):
+        return state
+
+    def status(self, state):
+        return Status()
+
+
+class Nowhere(Odd):
+    """Gives a pose that is none."""
+
+    def step(self, state, intent, dt):
+        return state, Pose(np.full(3, np.nan), state.pose.rotations)
+
+
+@pytest.mark.parametrize("part, says", [(Odd("very"), "the precondition of the controller 'odd'"), (Odd(np.nan), "the precondition of the controller 'odd'"),
+                                        (Nowhere(), "the controller 'odd' gave a pose that is not finite")])
+def test_a_controller_of_ones_own_is_named_where_it_goes_wrong(walker, part, says):
+    somebody = Supervisor({"walk": walker, "odd": part})
+    with pytest.raises(ValueError, match=says):
+        somebody.step(somebody.start(), Intent(), DT)
+
+
+def test_a_controller_that_lacks_an_answer_says_which(walker):
+    somebody = Supervisor({"walk": walker, "odd": Odd()})
+    with pytest.raises(NotImplementedError, match="Odd is a controller without step"):
+        somebody.step(somebody.start(), Intent(), DT)
+    for parts in ({}, [walker], None):
+        with pytest.raises(ValueError, match="a supervisor takes controllers by name"):
+            Supervisor(parts)
+    with pytest.raises(ValueError, match="the controller 'three' has no precondition, enter, step, status"):
+        Supervisor({"walk": walker, "three": 3})  # pyright: ignore[reportArgumentType]
+
+
+def test_what_is_printed_of_a_value_is_short(walker):
+    state = person(walker).start()
+    for value in (state, state.pose, walker.start(np.zeros((5, 3))), walker.library, walker.walk, human(), Intent()):
+        assert type(value).__name__ in repr(value) and len(repr(value)) < 2500 and repr(value).count("\n") < 3, type(value)
+
+
+def test_some_of_a_batch_go_on_as_they_would_have(walker):
+    rng = np.random.default_rng(0)
+    crowd, wishes = walker.start(rng.uniform(-3.0, 3.0, (5, 3))), rng.normal(size=(5, 3))
+    for _ in range(40):
+        crowd, _ = walker.step(crowd, Intent(wishes), DT)
+    _, poses = walker.step(crowd, Intent(wishes), DT)
+    for some in (2, slice(1, 3), np.array([0, 3]), np.array([True, False, False, True, False])):
+        _, few = walker.step(crowd[some], Intent(wishes[some]), DT)
+        assert np.array_equal(few.rotations, poses.rotations[some]) and np.array_equal(few.root, poses.root[some])
+
+
+def test_some_of_a_batch_begin_anew_and_the_others_notice_nothing(walker):
+    rng = np.random.default_rng(0)
+    places, wishes = rng.uniform(-3.0, 3.0, (5, 3)), rng.normal(size=(5, 3))
+    crowd = walker.start(places)
+    for _ in range(40):
+        crowd, _ = walker.step(crowd, Intent(wishes), DT)
+    done = np.array([True, False, False, True, False])
+    fresh = walker.start(places[done], 0.5)
+    mixed = crowd.put(done, fresh)
+    assert np.array_equal(mixed.floor, [0.5, 0.0, 0.0, 0.5, 0.0]) and np.all(crowd.floor == 0.0)
+    _, poses = walker.step(mixed, Intent(wishes), DT)
+    assert np.array_equal(poses.rotations[~done], walker.step(crowd, Intent(wishes), DT)[1].rotations[~done])
+    assert np.array_equal(poses.rotations[done], walker.step(fresh, Intent(wishes[done]), DT)[1].rotations)
+    with pytest.raises(ValueError, match="not of a batch"):
+        walker.start()[0]
+    with pytest.raises(ValueError, match="do not fit where"):
+        crowd.put(done, walker.start(places))
+    with pytest.raises(ValueError, match="of the controller that steps it"):
+        crowd.put(0, person(walker).start())
+
+
+def test_pieces_taken_alone_say_what_they_take(walker):
+    samples = np.random.default_rng(0).normal(size=(64, 3))
+    assert np.allclose(fourier.fit(samples.tolist()), np.linalg.lstsq(fourier.basis(np.arange(64) / 64), samples, rcond=None)[0])
+    with pytest.raises(ValueError, match="samples are"):
+        fourier.fit(samples[:, 0])
+    for points in (samples[:, :2], np.full((10, 3), np.nan)):
+        with pytest.raises(ValueError, match="the velocities must be"):
+            ControlSpace.build(points)
+    with pytest.raises(ValueError, match="seen from above"):
+        hull(samples)
+    with pytest.raises(ValueError, match="a Blender takes a Locomotion"):
+        Blender(walker.library)
