@@ -132,7 +132,7 @@ PLAN = {
         "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",
         "reconstruction.following": "contract body reconstruction.database reconstruction.regression",
         "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
-                                "reconstruction.baselines"),
+                                "reconstruction.baselines reconstruction.following"),
         "reconstruction.trackers": ("compiled files body reconstruction.database reconstruction.regression reconstruction.baselines "
                                     "reconstruction.ours"),
         "reconstruction.calibration": ("compiled files body reconstruction.regression reconstruction.baselines reconstruction.trackers "

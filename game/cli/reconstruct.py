@@ -21,7 +21,7 @@ from .play import watch
 def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC file whose points are taken, or the packets of trackers that --keep kept.")] = None,
                 points: Annotated[str | None, typer.Option(help="Points on the body, with commas: lwrist,rwrist,lankle,rankle, or a set of the paper, 2 … 6. 4 by default.")] = None,
                 out: Annotated[Path | None, typer.Option("-o", "--out", help="A .bvh file of the motion, or a .glb file of the body in motion; a window shows it by default.")] = None,
-                method: Annotated[str | None, typer.Option(help="trackers, the network that ships, by default; ours, learnt from --database; or one that these are measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = None,
+                method: Annotated[str | None, typer.Option(help="trackers, the network that ships, by default; ours, learnt from --database, or turning, the same for trackers that tell how they are turned; or one that these are measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = None,
                 database: Annotated[Path | None, typer.Option("--database", "--network", help="A motion database to learn from, Gambol's own motion by default; or the network, .npz, that gambol database tune taught.")] = None,
                 noise: Annotated[float, typer.Option(min=0.0, max=100.0, help="Blur the clip's points by so many centimetres.")] = 0.0,
                 seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
@@ -69,11 +69,12 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         checked(out)
     if method is not None:
         _known(method)
+        _told_turns(method, clip is None or heard_again or turns)
     if database is not None:  # what is wrong with it is best said before anything is learnt
         _sound(database, method)
     if clip is not None and not heard_again:
         names = _named("4" if points is None else points)
-        method = method or _usual(names, database)
+        method = method or _usual(names, database, turns)
         if out is None:
             watch(method, names, database, clip=clip)
         else:
@@ -83,7 +84,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
 
     worn_on = read_map(trackers) if trackers is not None else usual_map(() if points is None else _named(points).split(","))
     names = ",".join(worn_on.values())
-    method = method or _usual(names, database)
+    method = method or _usual(names, database, True)
     shown = out is None and (not send or window)
     with live.heard(worn_on, clip, port, host, keep, own_time=not shown) as source:
         if shown:
@@ -102,6 +103,13 @@ def _known(method: str) -> None:
         raise Mistake(f"--method {method!r}: there is no such method; choose from {', '.join(METHODS)}")
 
 
+def _told_turns(method: str, told: bool) -> None:
+    from ..world import TURNING
+
+    if method == TURNING and not told:
+        raise Mistake(f"--method {TURNING} goes with --turns or --stream: it hears how trackers are turned")
+
+
 def _sound(file: Path, method: str | None) -> None:
     """DatabaseError or ArraysError for a file that is neither a database nor a network; Mistake for a network with a method that has none."""
     from gambol.controllers.reconstruction.database import Database
@@ -117,10 +125,10 @@ def _sound(file: Path, method: str | None) -> None:
         raise Mistake(f"--network {file}: goes with --method {SHIPPED}; {method} learns from a database")
 
 
-def _usual(points: str, database: Path | None) -> str:
+def _usual(points: str, database: Path | None, turns: bool) -> str:
     from ..world import usual
 
-    return usual(points, database)
+    return usual(points, database, turns)
 
 
 def _named(text: str) -> str:
@@ -161,7 +169,7 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
     clip = _performance(path)
     controller = _controller(method, file, points)
     if turning and not getattr(controller.method, "hears_turns", False):
-        raise Mistake(f"--turns goes with a method that hears them, --method trackers; {method} has points alone")
+        raise Mistake(f"--turns goes with a method that hears them, --method trackers or turning; {method} has points alone")
     source = Recorded.of(clip, controller.controls, turning)
     if noise:
         source = source.noisy(noise, np.random.default_rng(seed))

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from gambol.controllers.reconstruction import SKELETON, parse
 
-from ..world import METHODS, Follows, Hidden
+from ..world import METHODS, TURNING, Follows, Hidden
 from .fields import Moment, Point3, Seconds, Table, beside_the_file, one_of
 
 
@@ -59,6 +59,8 @@ class FollowsTable(Table):
     def _one_performer(self):
         if (self.actor is None) == (self.clip is None):
             raise ValueError('needs either actor = "…", another actor, or clip = "….bvh"')
+        if self.method == TURNING and not self.turns:
+            raise ValueError(f'method = "{TURNING}" hears how points are turned: it goes with turns = true')
         names = parse(self.points, SKELETON).names
         for number, hidden in enumerate(self.hidden):
             for name in parse(hidden.points, SKELETON).names:

@@ -7,7 +7,7 @@ from .courtesy import avoiding
 from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
-from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, Learning, Methods, methods, taught, usual
+from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, TURNING, Learning, Methods, methods, taught, usual
 from .performers import walker_of
 from .primitive import nearest, posed
 from .recorded import Recorded
@@ -17,7 +17,7 @@ from .watched import Watches, rig, switched, tracked_of, tracked_vertices, track
 from .world import DT, RATE, Character, FixedStep, World, figures, ground_between, pose_between
 
 __all__ = [
-    "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "SHIPPED", "STAGES", "TINTS", "Character", "Embodied", "Errors",
+    "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "SHIPPED", "STAGES", "TINTS", "TURNING", "Character", "Embodied", "Errors",
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
     "figures", "follower_of",
     "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "stopped", "switched", "taught",

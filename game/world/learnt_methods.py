@@ -23,18 +23,21 @@ if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: 
     from gambol.controllers.reconstruction.database import Database
     from gambol.controllers.reconstruction.following import Beginning, Starts
 
-METHODS = ("trackers", "ours", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
-"""The network that ships, for any trackers; ours, learnt from a database; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
+METHODS = ("trackers", "ours", "turning", "lpcr", "lpca", "mousas", "nearest", "network", "ridge", "gplvm")
+"""The network that ships, for any trackers; ours, learnt from a database; the same for trackers that tell how they are turned; local PCR (Liu 2011); local PCA (Chai & Hodgins 2005); Mousas 2014 mended; the nearest recording; a small network;
 ridge regression; SGPLVM (Grochow 2004)."""
-TINTS = {"trackers": (0.12, 0.42, 0.10), "ours": (0.03, 0.36, 0.33), "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02),
+TINTS = {"trackers": (0.12, 0.42, 0.10), "ours": (0.03, 0.36, 0.33), "turning": (0.02, 0.26, 0.42),
+         "lpcr": (0.62, 0.05, 0.36), "lpca": (0.86, 0.50, 0.02),
          "mousas": (0.28, 0.20, 0.70), "nearest": (0.40, 0.42, 0.08), "network": (0.06, 0.30, 0.72),
          "ridge": (0.60, 0.18, 0.10), "gplvm": (0.55, 0.36, 0.24)}
 """The colour of each, linear RGB: of its body, its ghost and its line in the legend."""
-NAMES = {"trackers": "trackers", "ours": "ours", "lpcr": "local PCR", "lpca": "local PCA", "mousas": "Mousas mended", "nearest": "nearest",
+NAMES = {"trackers": "trackers", "ours": "ours", "turning": "ours, turning", "lpcr": "local PCR", "lpca": "local PCA", "mousas": "Mousas mended", "nearest": "nearest",
          "network": "network", "ridge": "ridge", "gplvm": "SGPLVM"}
 """What each is called in the picture."""
 SHIPPED = "trackers"
 """The one that needs no database."""
+TURNING = "turning"
+"""The one that is learnt for trackers which tell how they are turned."""
 NETWORK = ".npz"
 """A file that ends so is somebody's own network, which `gambol database tune` taught, in the place of a database."""
 PROGRESS = re.compile(r"(.+): (\d+) of (\d+)")
@@ -73,7 +76,8 @@ class Methods:
             if name == SHIPPED:
                 self._known[name, points] = shipped(controls, self.network)
             else:
-                self.starts(name, points)
+                if name != TURNING:
+                    self.starts(name, points)
                 self._known[name, points] = learnt(name, self.database(progress), controls, progress)
         return self._known[name, points], controls
 
@@ -82,7 +86,7 @@ class Methods:
         from gambol.controllers.reconstruction import SKELETON, parse
         from gambol.controllers.reconstruction.following import Starts
 
-        if name == SHIPPED:
+        if name in (SHIPPED, TURNING):
             return self(name, points)[0]
         if points not in self._starts:
             self._starts[points] = Starts.of(self.database(), parse(points, SKELETON))
@@ -118,9 +122,10 @@ def methods(file: str | Path | None = None) -> Methods:
 def learnt(name: str, database: Database, controls: ControlPoints, progress: Progress | None = None) -> Any:
     """A method of `METHODS`, ready: nothing of it is compiled or read later. Rivals as they are best on recorded takes."""
     from gambol.controllers.reconstruction.evaluation import baseline
-    from gambol.controllers.reconstruction.ours import ours
+    from gambol.controllers.reconstruction.ours import ours, turning
 
-    method = ours(database, controls, progress=progress) if name == "ours" else baseline(name, database, controls)
+    own = {"ours": ours, TURNING: turning}
+    method = own[name](database, controls, progress=progress) if name in own else baseline(name, database, controls)
     rehearse(method, controls)
     return method
 
@@ -139,13 +144,15 @@ def shipped(controls: ControlPoints, own: Path | None = None) -> Any:
     return method
 
 
-def usual(points: str, file: str | Path | None = None) -> str:
+def usual(points: str, file: str | Path | None = None, turns: bool = False) -> str:
     """The method that is taken where none is named: what ships, or is taught, where all the points are on or beside joints that it knows
-    and no database is given, else ours."""
+    and no database is given, else ours, or what hears turns if they are told."""
     from gambol.controllers.reconstruction import SKELETON, parse
     from gambol.controllers.reconstruction.trackers import SLOTS
 
-    return SHIPPED if (file is None or taught(file)) and set(parse(points, SKELETON).joints) <= set(SLOTS) else "ours"
+    if (file is None or taught(file)) and set(parse(points, SKELETON).joints) <= set(SLOTS):
+        return SHIPPED
+    return TURNING if turns else "ours"
 
 
 def _silent(what: str, done: int, total: int) -> None:

@@ -17,6 +17,7 @@ from gambol.controllers.reconstruction.following.point_gate import ENOUGH, LISTE
 from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, WIDTH
 from gambol.controllers.reconstruction.regression import kinematics_kernel
 from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, SLOTS, Trackers, bodies
+from gambol.controllers.reconstruction.trackers.held_soles import Soles
 from gambol.controllers.reconstruction.trackers.samples import FIRST
 from gambol.controllers.reconstruction.trackers.slots import view_kernel
 from gambol.controllers.reconstruction.trackers.solver import misfit_kernel, slopes_kernel
@@ -129,6 +130,17 @@ def test_a_walk_is_found_from_nothing(walk, points, turning, bound):
     root, rotations = played(Trackers(shipped(), controls, DT), positions[:120, controls.joints], orientations[:120, controls.joints] if turning else None)
     away = np.linalg.norm(forward_kinematics(SKELETON, root, rotations)[0] - positions[:120], axis=-1)[:, JOINTS].mean(-1)
     assert away.mean() < bound and away[0] < 2.0 * bound
+
+
+def test_feet_that_stand_carry_nobody_along(walk, monkeypatch):
+    """Head and hands alone, so nobody knows where feet came down: hips, trunk and arms are where they are without soles that are held."""
+    controls = parse(HEAD_AND_HANDS, SKELETON)
+    points, turns = walk[2][:240, controls.joints], walk[3][:240, controls.joints]
+    held = forward_kinematics(SKELETON, *played(Trackers(shipped(), controls, DT), points, turns))
+    monkeypatch.setattr(Soles, "told", lambda soles, standing: Soles.none())
+    loose = forward_kinematics(SKELETON, *played(Trackers(shipped(), controls, DT), points, turns))
+    above = [j for j, name in enumerate(SKELETON.names) if not name.endswith(("Leg", "Foot", "Toe"))]
+    assert np.linalg.norm(held[0] - loose[0], axis=-1)[:, above].max() < 0.03
 
 
 def test_lost_trackers_leave_no_bit_and_no_leap(walk):

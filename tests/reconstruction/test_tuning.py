@@ -87,7 +87,7 @@ def test_the_command_teaches_and_the_network_is_taken(own, tmp_path):
     done = CliRunner().invoke(cli.app, ["database", "tune", str(own[0]), "-o", str(out), "--batches", "10", "--share", "0.01"])
     assert done.exit_code == 0, done.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.npz"]
-    assert usual("4", out) == SHIPPED and usual("4", own[0]) == "ours"
+    assert usual("4", out, True) == SHIPPED and usual("4", own[0]) == "ours" and usual("4", own[0], True) == "turning"
     network = methods(out)(SHIPPED, "4")[0].network
     every = np.ones(len(PLACES), bool)
     assert network.learnt == 10 and not np.array_equal(network.weights[0], shipped().weights[0])

@@ -67,10 +67,11 @@ def of_points(points: np.ndarray, before: np.ndarray, track: np.ndarray, dt: flo
     return both.reshape(*points.shape[:-2], -1)
 
 
-def places(frames: np.ndarray, joints: tuple[int, ...]) -> np.ndarray:
-    """Where some joints are, seen from the body's own ground frame: (N, n, 3) float32 [m].
+def places(frames: np.ndarray, joints: tuple[int, ...], offsets: np.ndarray | None = None) -> np.ndarray:
+    """Where some points are, seen from the body's own ground frame: (N, n, 3) float32 [m].
 
-    frames: (N, WIDTH). joints: n numbers of joints of `SKELETON`. x is leftward, y up, z forward.
+    frames: (N, WIDTH). joints: n numbers of joints of `SKELETON`. offsets: (n, 3) [m] of the points in the joints' frames, none by
+    default. x is leftward, y up, z forward.
     """
     needed = {0}
     for joint in joints:
@@ -84,7 +85,8 @@ def places(frames: np.ndarray, joints: tuple[int, ...]) -> np.ndarray:
     out = np.empty((len(frames), len(joints), 3), np.float32)
     wanted = np.array([slot[int(joint)] for joint in joints], np.int64)
     frames = np.array(frames, np.float32)  # the kernel is compiled for one kind of array
-    _places(frames, parents, columns, SKELETON.offsets[chain], REFERENCE[chain], wanted, out)
+    beside = np.zeros((len(joints), 3)) if offsets is None else np.array(offsets, float)
+    _places(frames, parents, columns, SKELETON.offsets[chain], REFERENCE[chain], wanted, beside, out)
     return out
 
 
@@ -103,19 +105,19 @@ def _coming(here: np.ndarray, there: np.ndarray, frames: np.ndarray, dt: float, 
     return both.reshape(len(both), -1).astype(np.float32)
 
 
-def of_recorded(frames: np.ndarray, last: np.ndarray, joints: tuple[int, ...], dt: float, weights: Weights = Weights()
-                ) -> np.ndarray:
+def of_recorded(frames: np.ndarray, last: np.ndarray, joints: tuple[int, ...], dt: float, weights: Weights = Weights(),
+                offsets: np.ndarray | None = None) -> np.ndarray:
     """Features (W, 6 n) float32 of the control points that follow recorded segments.
 
     frames: (N, WIDTH), a database's. last: (W,) the newest past frame of each segment.
-    joints: numbers of the joints that are the points. dt: between frames [s].
+    joints: numbers of the joints that the points are on. dt: between frames [s]. offsets: as of `places`.
     """
     features = np.empty((len(last), 6 * len(joints)), np.float32)
     for start in range(0, len(last), _CHUNK):
         here = last[start:start + _CHUNK]
         needed = np.unique(np.concatenate([here, here + 1]))
         seen, after = frames[needed], np.searchsorted(needed, here + 1)
-        placed = places(seen, joints)
+        placed = places(seen, joints, offsets)
         features[start:start + _CHUNK] = _coming(placed[after - 1], placed[after], seen[after], dt, weights)
     return features
 
@@ -144,7 +146,7 @@ def _product(a, b, out):
 
 
 @kernel(fastmath=True)
-def _places(frames, parents, columns, offsets, references, wanted, out):
+def _places(frames, parents, columns, offsets, references, wanted, beside, out):
     count = len(parents)
     at, turned = np.empty((count, 3)), np.empty((count, 3, 3))
     local, zero = np.empty((3, 3)), np.empty((3, 3))  # zero: of a joint whose vector is zero
@@ -164,5 +166,7 @@ def _places(frames, parents, columns, offsets, references, wanted, out):
             _product(turned[p], references[j], zero)
             _product(zero, local, turned[j])
         for w in range(len(wanted)):
+            j = wanted[w]
             for i in range(3):
-                out[n, w, i] = at[wanted[w], i]
+                out[n, w, i] = at[j, i] + (turned[j, i, 0] * beside[w, 0] + turned[j, i, 1] * beside[w, 1]
+                                           + turned[j, i, 2] * beside[w, 2])

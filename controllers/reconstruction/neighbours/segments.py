@@ -35,7 +35,7 @@ class Segments:
     """All segments of a database, and their features.
 
     m, stride: a segment is m frames of the past, `stride` apart. joints: numbers of the joints that
-    are control points, in the order of the query's; none for the paper's query. weights: of the features.
+    control points are on, in the order of the query's; none for the paper's query. weights: of the features.
     last: (W,) int64 the newest frame of each segment, ascending; the frame it predicts is the one after.
     points: (W, 6 n) float32 features of the control points.
     Features of the past are made of the mapped frames when they are asked for, not kept.
@@ -50,13 +50,14 @@ class Segments:
     points: np.ndarray
 
     @staticmethod
-    def of(database: Database, m: int = 3, stride: int = 4, joints: Iterable[int] = (), weights: Weights = Weights()
-           ) -> Segments:
-        """The segments of a database. DatabaseError if it has none so long."""
+    def of(database: Database, m: int = 3, stride: int = 4, joints: Iterable[int] = (), weights: Weights = Weights(),
+           offsets: np.ndarray | None = None) -> Segments:
+        """The segments of a database. offsets: (n, 3) [m] of control points that are beside their joints. DatabaseError if it has
+        none so long."""
         last, joints = database.segments(m, stride), tuple(int(joint) for joint in joints)
         if not len(last):
             raise DatabaseError(f"{database.path}: has no sound take of {(m - 1) * stride + 2} frames or more")
-        points = of_recorded(database.frames, last, joints, 1 / database.fps, weights)
+        points = of_recorded(database.frames, last, joints, 1 / database.fps, weights, offsets)
         return Segments(database, m, stride, joints, weights, last, points)
 
     def __len__(self) -> int:

@@ -1,11 +1,12 @@
 """Our own method: small networks that see the points' last half second, joined with the local regression; what lost points
-very likely are, and filters for noise.
+very likely are, and filters for noise; trackers that tell how they are turned as three points each.
 """
 
 from .combined import cells, ours
 from .filters import Motion, noise
 from .networks import ANGLE, DISTANCE, layer_kernel, learn, misfit_kernel, placed, seen_from
+from .virtual_points import Turning, turning, virtual
 
 __all__ = [
-    "ANGLE", "DISTANCE", "Motion", "cells", "layer_kernel", "learn", "misfit_kernel", "noise", "ours", "placed", "seen_from",
+    "ANGLE", "DISTANCE", "Motion", "Turning", "cells", "layer_kernel", "learn", "misfit_kernel", "noise", "ours", "placed", "seen_from", "turning", "virtual",
 ]

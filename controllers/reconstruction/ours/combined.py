@@ -233,9 +233,9 @@ def ours(database: Database, controls: ControlPoints, *, skeleton: Skeleton = SK
 def cells(database: Database, controls: ControlPoints, m: int = 3, stride: int = 4) -> Cells | Lists:
     """A database's segments to search, with these points; made on the first call, and kept on disk. By Faiss where there are many and it is
     at hand."""
-    segments = Segments.of(database, m, stride, controls.joints)
+    segments = Segments.of(database, m, stride, controls.joints, offsets=controls.offsets)
     how: type[Cells | Lists] = Lists if len(segments) >= MANY and at_hand() else Cells
-    return kept("cells", database, (m, stride, segments.joints), lambda: how(segments), lambda made, path: made.save(path),
+    return kept("cells", database, (m, stride, segments.joints, controls.offsets.tolist()), lambda: how(segments), lambda made, path: made.save(path),
                 lambda path: how.load(path, segments),
                 ("pose_vector.py", "neighbours/segments.py", "neighbours/features.py", "neighbours/search.py",
                  "neighbours/lists.py" if how is Lists else "neighbours/cells.py"))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..pose_vector import FORWARD, HEIGHT, JOINTS, LEFTWARD, SKELETON, WIDTH
 from ..regression import in_world, on_ground
 
 TAKES, LEAVES = 0.6, 0.4
@@ -18,6 +19,21 @@ SLIPPED = 0.06
 """A point that is pulled farther than this from where it stands [m] does not stand."""
 EASE = 0.25
 """How much of the way to its full firmness a hold comes in a frame."""
+
+
+def _legs_alone():
+    """The precision (D, D) of a pose whose legs give way to soles that stand: by 10° a joint, while trunk and arms do by a third of a degree,
+    and the hips by 3 mm."""
+    deviation = np.full(WIDTH, np.radians(0.3))
+    for name in ("UpLeg", "Leg", "Foot"):
+        for side in ("Left", "Right"):
+            column = 3 * int(np.flatnonzero(JOINTS == SKELETON.index(side + name))[0])
+            deviation[column:column + 3] = np.radians(10.0)
+    deviation[[HEIGHT, FORWARD, LEFTWARD]] = 0.003
+    return np.diag(deviation ** -2.0)
+
+
+LEGS_ALONE = _legs_alone()
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,8 @@
 """The network as a method: frame by frame, what trackers say becomes the most probable pose on the performer's own skeleton.
 
 The network needs no past and is told what is missing, so a beginning and lost trackers are nothing special. What it was off by in the
-last frame, as the solve found, is expected again, fading (as in `ours`). Soles that it says stand are held where they came down.
+last frame, as the solve found, is expected again, fading (as in `ours`). Soles that it says stand are held where they came down, by the
+legs alone and in what is shown alone: who is solved with them is carried along by feet that came down in a wrong place, more and more.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
 from .solver import fit_kernel
-from .held_soles import Soles
+from .held_soles import LEGS_ALONE, Soles
 
 FADING = 0.9
 """What is left of the network's error a frame later."""
@@ -52,7 +53,8 @@ _WORLD = np.zeros(3)
 
 @dataclass(frozen=True, eq=False)
 class Remembered:
-    """pose: (D,) placed in the world, as it was solved; before: (D,) the one before. off: (D,) what the network was off by.
+    """pose: (D,) placed in the world, as it was solved; before: (D,) the one before. stood: (D,) the same with soles held. off: (D,) what the
+    network was off by.
 
     places (SPAN, S, 3) [m], turns (SPAN, S, 3, 3): what slots said in the world, newest first; NaN where nothing. turning: (n,) bool,
     which trackers have told a turn. recent: (T, n, 3) raw points. points, shown: filtered. soles: which stand, and where.
@@ -60,6 +62,7 @@ class Remembered:
 
     pose: np.ndarray
     before: np.ndarray
+    stood: np.ndarray
     off: np.ndarray
     places: np.ndarray
     turns: np.ndarray
@@ -99,7 +102,7 @@ class Trackers:
             for absent in np.setdiff1d(np.arange(len(SLOTS)), self._slots[self._slots >= 0]):
                 places[:, absent], turns[:, absent] = np.nan, np.nan
         pose, before = frames[0], frames[min(1, len(frames) - 1)]
-        return Remembered(pose, before, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
+        return Remembered(pose, before, pose, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
                           np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before), _LITTLE), Soles.none())
 
     def step(self, memory: Remembered, points: np.ndarray, turns: np.ndarray | None = None) -> tuple[Remembered, Pose]:
@@ -118,7 +121,7 @@ class Trackers:
             filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
             points = np.where(np.isfinite(points), filtered.place, np.nan)
         after = self._followed(memory, points, turns, BLUR * level)
-        found = after.pose
+        found = after.stood
         if not self.steady:
             return replace(after, recent=recent), shown_as(found)
         if np.abs(less(found, memory.shown.place)).max() > _JUMP:
@@ -181,7 +184,7 @@ class Trackers:
             told = self._told(memory, points, turns)
             pose = memory.pose + RESTING * less(memory.pose, memory.before)
             pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
-            return replace(told, pose=pose, before=memory.pose, soles=Soles.none())
+            return replace(told, pose=pose, before=memory.pose, stood=pose, soles=Soles.none())
         return self._solved(self._told(memory, points, turns), points, turns, blur)[0]
 
     def _told(self, memory, points, turns):
@@ -215,22 +218,30 @@ class Trackers:
         expected, standing = self.network.predict(inputs)
         mean = expected + FADING * memory.off
         soles = memory.soles.told(standing)
-        goals, hold = soles.goals(ground)
-        goals, hold = np.concatenate([on_ground(points, ground), goals]), np.concatenate([np.full(len(points), 1.0 / (EXACT_PLACE ** 2 + blur ** 2)), hold])
-        hold[:len(points)][~np.isfinite(points).all(-1)] = 0.0
+        goals, firm = soles.goals(ground)
+        goals, hold = np.concatenate([on_ground(points, ground), goals]), np.zeros(len(points) + len(firm))
+        hold[:len(points)][np.isfinite(points).all(-1)] = 1.0 / (EXACT_PLACE ** 2 + blur ** 2)
         keep = np.zeros(len(hold))
         keep[:len(points)][np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
         wanted = np.zeros((len(hold), 3, 3))
         wanted[:len(points)] = turned_on(turns, ground)
         frame, joints = np.empty(WIDTH), (np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         parents, offsets, first, at, beside = self._body
-        energy = fit_kernel(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), mean, self.network.lower, self.network.upper, parents,
-                            offsets, REFERENCE, first, at, beside, goals, hold, wanted, keep, STEPS, TOLERANCE, frame, *joints)
-        pose = np.empty(WIDTH)
+
+        def solve(mean, precision, out):
+            return fit_kernel(mean, precision, mean, self.network.lower, self.network.upper, parents, offsets, REFERENCE, first, at, beside,
+                              goals, hold, wanted, keep, STEPS, TOLERANCE, out, *joints)
+        energy = solve(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), frame)
+        stood = frame
+        if firm.any():
+            hold[len(points):], stood = firm, np.empty(WIDTH)
+            solve(frame, LEGS_ALONE, stood)
+        pose, shown = np.empty(WIDTH), np.empty(WIDTH)
         seen_kernel(frame, ground, _WORLD, pose)
+        seen_kernel(stood, ground, _WORLD, shown)
         points_found = joints[0][at[-4:]] + np.einsum("nij,nj->ni", joints[1][at[-4:]], beside[-4:])
         soles = soles.found(points_found, ground, contact_height(self.skeleton))
-        return replace(memory, pose=pose, before=memory.pose, off=less(frame, expected), soles=soles), energy
+        return replace(memory, pose=pose, before=memory.pose, stood=shown, off=less(frame, expected), soles=soles), energy
 
     def _hearing(self, turning):
         """Which slots (S,) have a tracker that turns."""
