@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from . import skin
@@ -39,7 +39,8 @@ SOFT = 0.02
 """Arms begin to give way so much before they touch [m]."""
 STIFF = 0.002
 """What a turn costs, beside the squared metres by which places are in too deep [m²]."""
-ROUNDS = 4
+ROUNDS = 5
+"""Of Gauss and Newton."""
 MOST = 0.9
 """No arm turns farther [rad]."""
 
@@ -101,12 +102,12 @@ def arms_out(body: Body, positions: np.ndarray, orientations: np.ndarray, scale:
     frames, at = orientations[:, _SECTIONS], positions[:, _SECTIONS]
     for _ in range(ROUNDS):
         moved = np.einsum("naij,napj->napi", turns, arms)
-        deep, away = _depths(of, frames, at, scale, shoulder[:, :, None] + moved)
+        deep, slope, away = _depths(of, frames, at, scale, shoulder[:, :, None] + moved)
         if not deep.any():
             break
-        rows = np.cross(moved[:, :, :, None], away)
+        rows = slope[..., None] * np.cross(moved[:, :, :, None], away)
         pull = np.einsum("napb,napbi->nai", deep, rows)
-        stiff = np.einsum("napb,napbi,napbj->naij", (deep > 0.0).astype(float), rows, rows) + STIFF * np.eye(3)
+        stiff = np.einsum("napbi,napbj->naij", rows, rows) + STIFF * np.eye(3)
         step = np.linalg.solve(stiff, pull[..., None])[..., 0]
         turns = Rotation.from_rotvec(step.reshape(-1, 3)).as_matrix().reshape(count, 2, 3, 3) @ turns
     whole = Rotation.from_matrix(turns.reshape(-1, 3, 3)).as_rotvec()
@@ -114,8 +115,8 @@ def arms_out(body: Body, positions: np.ndarray, orientations: np.ndarray, scale:
     return Rotation.from_rotvec(whole * (MOST * np.tanh(size / MOST) / np.maximum(size, 1e-12))).as_matrix().reshape(count, 2, 3, 3)
 
 
-def _depths(of: Girth, frames: np.ndarray, at: np.ndarray, scale: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How deep (N, 2, P, B) [m] places (N, 2, P, 3) of arms are in each section, softly, and the ways out (N, 2, P, B, 3)."""
+def _depths(of: Girth, frames: np.ndarray, at: np.ndarray, scale: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """How deep (N, 2, P, B) [m] places (N, 2, P, 3) of arms are in each section, softly, how much deeper they get with each metre, and the ways out (N, 2, P, B, 3)."""
     size = scale[:, None, None, None]
     local = np.einsum("nbji,napbj->napbi", frames, places[:, :, :, None] - at[:, None, None]) / size[..., None]
     share = (local[..., 1] - of.low) / (of.high - of.low)
@@ -133,7 +134,7 @@ def _depths(of: Girth, frames: np.ndarray, at: np.ndarray, scale: np.ndarray, pl
     upper = of.reach[b, one + 1, left] * (1 - bit) + of.reach[b, one + 1, right] * bit
     deep = size * (lower + part * (upper - lower) + of.thick[:, None] - far - beyond)
     soft = np.where(deep >= SOFT, deep, np.maximum(deep + SOFT, 0.0) ** 2 / (4.0 * SOFT))
-    return soft, np.einsum("nbij,napbj->napbi", frames, np.stack([x / far, np.zeros_like(x), z / far], -1))
+    return soft, np.clip((deep + SOFT) / (2.0 * SOFT), 0.0, 1.0), np.einsum("nbij,napbj->napbi", frames, np.stack([x / far, np.zeros_like(x), z / far], -1))
 
 
 def _samples(mesh: Mesh, joints: list[int]) -> np.ndarray:
@@ -173,7 +174,7 @@ def _reach(skinned: np.ndarray, line: np.ndarray, centre: np.ndarray) -> np.ndar
             ring[:] = np.interp(np.arange(ANGLES), known, ring[known], period=ANGLES)
     known = np.flatnonzero(out[:, 0] >= 0.0)
     out = np.stack([np.interp(np.arange(len(line)), known, out[known, k]) for k in range(ANGLES)], 1)
-    return gaussian_filter(out, (1.0, 0.7), mode=("nearest", "wrap"))
+    return gaussian_filter1d(gaussian_filter1d(out, 1.0, axis=0, mode="nearest"), 0.7, axis=1, mode="wrap")
 
 
 def _thickness(mesh: Mesh, joints: np.ndarray) -> np.ndarray:
