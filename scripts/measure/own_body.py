@@ -1,9 +1,9 @@
 """Measure how deep arms come into the body's own trunk and legs, on bodies of several builds, as they are drawn.
 
-    python scripts/measure/own_body.py [--bodies NAME ...] [--character FILE ...] [--pictures DIR]
+    python scripts/measure/own_body.py [--bodies NAME ...] [--character FILE ...]
 
 Forearms and hands are the skin that hangs on them; what they may not be in is the skin of trunk, pelvis and thighs, posed by the same motion. Whether a place is inside is told
-by the solid angle under which that skin is seen from there (the generalised winding number), and how deep by the nearest place on it. Ten motions, fifteen frames a second.
+by the solid angle under which that skin is seen from there (the generalised winding number), and how deep by the nearest place on it. Ten motions, five frames a second.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gambol.controllers.person import person
 from gambol.game.character import Build, load, tailored
 from gambol.game.render import Body, mannequin, skin, worn
 
-RATE, EVERY = 60, 4
+RATE, EVERY = 60, 12
 """Steps a second, and every which of them is looked at."""
 BUILDS = {"usual": None, "slim": Build(weight=-1.0), "heavy": Build(weight=1.0), "heavy, broad hips": Build(weight=1.0, hips=1.2),
           "narrow shoulders": Build(shoulders=0.85, hips=1.1), "child of six": Build(height=1.2, child=1.0)}
@@ -51,7 +51,7 @@ def motions(somebody) -> Iterator[tuple[str, list]]:
     yield "leaps", poses
 
 
-def hung_on(mesh, names, most: bool = False) -> np.ndarray:
+def hung_on(mesh, names) -> np.ndarray:
     """Which vertices (V,) hang on joints of those names, left or right, more than on any other."""
     main = np.take_along_axis(mesh.joints, mesh.weights.argmax(1)[:, None], 1)[:, 0]
     return np.isin(main, [k for k, name in enumerate(skin.NAMES) if name in names])
