@@ -8,9 +8,11 @@ from film_set import CAMERAS, Drawing
 from gambol.controllers.body import forward_kinematics, human
 from gambol.controllers.tracking.cameras import looking_at, read_cameras
 from gambol.game import hosts
+from gambol.game.character import Build, tailored
 from gambol.game.footage import FootageError
+from gambol.game.render import worn
 from gambol.game.scene import Box, Figure, Pillar, Scene
-from gambol.game.studio import COCO, LensWarp, Sensor, Stage, coco_points, read_sensor, seen_by
+from gambol.game.studio import COCO, LensWarp, Sensor, Stage, Truth, coco_points, read_sensor, seen_by
 
 BENT = (-0.2, 0.05, 0.001, 0.002, 0.0)
 
@@ -82,6 +84,18 @@ def test_who_covers_a_pixel_and_what_hides_whom():
     assert np.all(depth[mask == 1] > 4.0) and not mask[depth < 3.7].any(), "the wall hides legs"
     ghost = Figure(figure().positions, figure().orientations, opacity=0.5)
     assert not seen_by(lens, still, [ghost])[0].any()
+
+
+def test_the_truth_is_of_the_body_that_is_seen():
+    """Wide shoulders and short arms have their wrists where their own skin is, not where the standard human's would be."""
+    lens, standard = looking_at("a", (80, 60), (0.0, 1.2, 5.0), (0, 0.9, 0), 0.7), figure()
+    broad = Figure(standard.positions, standard.orientations, body=tailored(Build(child=1.0, shoulders=1.4)))
+    truth = Truth([lens], ["broad"])
+    truth.add([broad], [seen_by(lens, Stage([lens], []).views[0], [broad])])
+    own = worn(broad.body, standard.positions[None], standard.orientations[None])[0][0]
+    hand = human().index("LeftHand")
+    assert np.array_equal(truth.joints[0][0], own) and np.linalg.norm(own[hand] - standard.positions[hand]) > 0.03
+    assert np.allclose(truth.pixels[0][0, 0, hand, :2], lens.project(own[hand])[0])
 
 
 def test_a_warped_picture_is_where_the_lens_looks():
