@@ -40,7 +40,7 @@ SOFT = 0.02
 STIFF = (0.06, 0.01, 0.002)
 """What a turn costs about the chest's axes, beside the squared metres by which places are in too deep [m²]: arms go out to their side rather than ahead or back, where they
 would glide off round flanks and swing faster than they do."""
-ROUNDS = 5
+ROUNDS = 4
 """Of Gauss and Newton."""
 MOST = 0.9
 """No arm turns farther [rad]."""
@@ -93,7 +93,7 @@ def arms_out(body: Body, positions: np.ndarray, orientations: np.ndarray, scale:
     positions, orientations: (N, 22, 3) [m], (N, 22, 3, 3) of the body as it is posed, at a scale (N,). No turn where nothing touches.
     """
     of, count = girth(body), len(positions)
-    turns = np.broadcast_to(np.eye(3), (count, 2, 3, 3))
+    turns = np.tile(np.eye(3), (count, 2, 1, 1))
     if of is None:
         return turns
     shoulder, elbow, hand = (positions[:, ARMS[:, k]] for k in range(3))
@@ -103,16 +103,19 @@ def arms_out(body: Body, positions: np.ndarray, orientations: np.ndarray, scale:
     frames, at = orientations[:, _SECTIONS], positions[:, _SECTIONS]
     chest = frames[:, len(_TRUNK) - 1]
     cost = np.einsum("nij,j,nkj->nik", chest, STIFF, chest)[:, None]
+    near = np.arange(count)
     for _ in range(ROUNDS):
-        moved = np.einsum("naij,napj->napi", turns, arms)
-        deep, slope, away = _depths(of, frames, at, scale, shoulder[:, :, None] + moved)
-        if not deep.any():
+        moved = np.einsum("naij,napj->napi", turns[near], arms[near])
+        deep, slope, away = _depths(of, frames[near], at[near], scale[near], shoulder[near, :, None] + moved)
+        touched = deep.any((1, 2, 3))
+        if not touched.any():
             break
+        near, moved, deep, slope, away = near[touched], moved[touched], deep[touched], slope[touched], away[touched]
         rows = slope[..., None] * np.cross(moved[:, :, :, None], away)
         pull = np.einsum("napb,napbi->nai", deep, rows)
-        stiff = np.einsum("napbi,napbj->naij", rows, rows) + cost
+        stiff = np.einsum("napbi,napbj->naij", rows, rows) + cost[near]
         step = np.linalg.solve(stiff, pull[..., None])[..., 0]
-        turns = Rotation.from_rotvec(step.reshape(-1, 3)).as_matrix().reshape(count, 2, 3, 3) @ turns
+        turns[near] = Rotation.from_rotvec(step.reshape(-1, 3)).as_matrix().reshape(-1, 2, 3, 3) @ turns[near]
     whole = Rotation.from_matrix(turns.reshape(-1, 3, 3)).as_rotvec()
     size = np.linalg.norm(whole, axis=-1, keepdims=True)
     return Rotation.from_rotvec(whole * (MOST * np.tanh(size / MOST) / np.maximum(size, 1e-12))).as_matrix().reshape(count, 2, 3, 3)

@@ -19,7 +19,7 @@ from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.person import person
 from gambol.game.character import Build, load, tailored
-from gambol.game.render import Body, mannequin, skin, worn
+from gambol.game.render import Body, mannequin, scale_of, skin, worn
 
 RATE, EVERY = 60, 12
 """Steps a second, and every which of them is looked at."""
@@ -59,7 +59,10 @@ def hung_on(mesh, names) -> np.ndarray:
 
 def depths(body: Body, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
     """How deep (T, 2) [m] the left and the right arm are in trunk and thighs of a body in the poses of figures (T, 22, 3), (T, 22, 3, 3); 0 outside."""
-    at, turned, scale = worn(body, positions, orientations)
+    if body is mannequin():  # which is drawn as it is
+        at, turned, scale = positions, orientations, scale_of(positions, skin.REST, skin.STANDARD.parents)
+    else:
+        at, turned, scale = worn(body, positions, orientations)
     moved = skin.motions(at, turned, scale, body.joints)
     coarse, fine = body.levels[-1], body.levels[1]
     trunk = hung_on(coarse, TRUNK)
