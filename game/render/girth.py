@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from . import skin
@@ -155,6 +154,8 @@ def _samples(mesh: Mesh, joints: list[int]) -> np.ndarray:
 
 def _centre(skinned: np.ndarray, line: np.ndarray) -> np.ndarray:
     """The middle (H, 2) of a trunk at heights (H,): x, z."""
+    from scipy.ndimage import gaussian_filter1d  # not what a game without other bodies starts with
+
     out = np.full((len(line), 2), np.nan)
     step = line[1] - line[0]
     for k, y in enumerate(line):
@@ -168,6 +169,8 @@ def _centre(skinned: np.ndarray, line: np.ndarray) -> np.ndarray:
 
 def _reach(skinned: np.ndarray, line: np.ndarray, centre: np.ndarray) -> np.ndarray:
     """How far (H, ANGLES) the outermost skin is from the middle (H, 2) at heights (H,), in each direction; what has none is between its neighbours."""
+    from scipy.ndimage import gaussian_filter1d
+
     row = np.round((skinned[:, 1] - line[0]) / (line[1] - line[0])).astype(int)
     inside = (row >= 0) & (row < len(line))
     row, skinned = row[inside], skinned[inside]

@@ -111,7 +111,7 @@ FAULTS = [
     ('actor = "A", points = 4', 'clip = "none.bvh"', "actors[1].follows.clip: there is no file 'none.bvh' beside the scenario"),
     ("points = 4", 'points = "9"', "actors[1].follows.points: no control point '9': there are root,"),
     ("points = 4", 'points = "lwrist,lwrist"', "actors[1].follows.points: control point 'lwrist' is given twice"),
-    ("points = 4", 'points = 4, method = "best"', "actors[1].follows.method: input should be 'trackers', 'ours', 'lpcr'"),
+    ("points = 4", 'points = 4, method = "best"', "actors[1].follows.method: input should be 'trackers', 'ours', 'turning', 'lpcr'"),
     ("points = 4", "points = 4, noise = -1", "actors[1].follows.noise: input should be greater than or equal to 0"),
     ('points = "lwrist", from', 'points = "head", from', "actors[1].follows: hidden[0].points: head is none of the points that are followed"),
     ("from = 1, to = 2", "from = 2, to = 1", "actors[1].follows.hidden[0]: `from` comes before `to`"),

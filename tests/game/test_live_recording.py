@@ -79,10 +79,20 @@ def test_waiting_for_somebody_to_stand_still_ends_where_time_is_limited(clock, t
     assert ("two programs" in " ".join(said)) == bool(rivals)
 
 
+class Idler:
+    """A controller that could always go on, and is never asked to."""
+
+    skeleton = SKELETON
+    enter = step = status = None
+
+    def precondition(self, state, intent):
+        return 0.0
+
+
 @pytest.mark.parametrize("seconds", [0.5, 50.0])
 def test_a_recording_of_some_seconds_of_nobody_ends(clock, seconds, monkeypatch):
     monkeypatch.setattr(live, "say", lambda line: None)
-    follower = SimpleNamespace(skeleton=SKELETON, precondition=lambda *_: 0.0)
+    follower = Idler()
     with pytest.raises(Mistake, match="nobody has stood still"):
         live.record(Restless(False), lambda skeleton: follower, None, None, seconds)
     assert clock.now - 100.0 == pytest.approx(max(seconds, 30.0), abs=0.05)
@@ -124,6 +134,6 @@ def test_who_was_never_heard_is_told_after_a_take(clock, worn, monkeypatch):
     monkeypatch.setattr(live, "say", said.append)
     monkeypatch.setattr(live, "stand", lambda *_, **__: None)
     monkeypatch.setattr(live, "write_take", lambda *_: None)
-    follower = SimpleNamespace(skeleton=SKELETON, precondition=lambda *_: 0.0)
+    follower = Idler()
     live.record(Late(1e9), lambda skeleton: follower, None, None, 1.0)
     assert "nothing was heard of lwrist, rwrist" in said and "on no point: LHR-1; --map says where they are" in said
