@@ -41,7 +41,7 @@ def posed_meshes(figures: Sequence[Figure]) -> list[tuple[np.ndarray, np.ndarray
     for figure in dressed(figures):
         body = figure.body or mannequin()
         positions, orientations = figure.positions[None].astype(float), figure.orientations[None].astype(float)
-        scale = scale_of(positions, skin.REST, skin.STANDARD.parents) if body is mannequin() else size_of(body, positions)
+        scale = size_of(body, positions)
         motion = skin.motions(positions, orientations, scale, body.joints)[0].reshape(-1, 8).astype(float)
         mesh = body.levels[0]
         vertices = np.ascontiguousarray(mesh.positions, float) * float(scale[0])

@@ -10,7 +10,6 @@ import numpy as np
 from ..scene import Figure
 from . import gl, skin
 from .mesh import LEVELS, Body, mannequin
-from .view import scale_of
 from .wear import size_of
 
 BATCH = 16
@@ -88,7 +87,7 @@ class Figures:
     def _posed(self, body: Body, figures: list[Figure], eye, origin, ranges) -> list[tuple[Body, str, bytes, int]]:
         positions = np.stack([f.positions for f in figures]).astype(float)
         orientations = np.stack([f.orientations for f in figures])
-        scale = scale_of(positions, skin.REST, skin.STANDARD.parents) if body is mannequin() else size_of(body, positions)
+        scale = size_of(body, positions)
         motion = skin.motions(positions - origin, orientations, scale, body.joints)
         look = np.concatenate([np.array([f.tint for f in figures]), scale[:, None]], 1).astype(np.float32)
         levels = np.searchsorted(ranges, np.linalg.norm(positions[:, 0] - eye, axis=1))

@@ -20,6 +20,7 @@ from ..scene import Figure
 from . import skin
 from .girth import ARMS, arms_out
 from .mesh import Body, mannequin
+from .view import scale_of
 
 _UP = [skin.STANDARD.index(f"{side}UpLeg") for side in ("Left", "Right")]
 _KNEES = [skin.STANDARD.index(f"{side}Leg") for side in ("Left", "Right")]
@@ -98,7 +99,7 @@ def dressed(figures: Sequence[Figure]) -> tuple[Figure, ...]:
 
 def size_of(body: Body, positions: np.ndarray) -> np.ndarray:
     """The scale (N,) at which a body has joints at (N, 22, 3) [m], `dressed` in it."""
-    return leg_length(positions) / leg_length(body.joints)
+    return scale_of(positions, skin.REST, skin.STANDARD.parents) if body is mannequin() else leg_length(positions) / leg_length(body.joints)
 
 
 def _placed(hips, bones, orientations):
