@@ -123,6 +123,14 @@ def leg_length(skeleton: Skeleton) -> float:
     return float(np.mean(legs)) if legs else np.nan
 
 
+def unit_of(leg: float) -> float:
+    """Metres in the unit in which thigh and shin together are most like an adult's. MotionFileError where they are in none."""
+    best = min(UNITS, key=lambda unit: abs(np.log(unit * max(leg, 1e-12) / LEG)))
+    if not 0.4 < best * leg < 1.4:
+        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches")
+    return best
+
+
 def _joints(skeleton: Skeleton, pattern: str) -> list[int]:
     """Joints whose name matches, the first of each branch."""
     fits = [re.search(pattern, name, re.IGNORECASE) is not None for name in skeleton.names]
@@ -136,10 +144,7 @@ def _unit(leg: float, skeleton: Skeleton) -> float:
         names = ", ".join(skeleton.names[:6]) + ", …" * (len(skeleton) > 6)
         raise MotionFileError(f"no foot or ankle by which to judge the unit among its joints ({names}); wanted are names such as "
                               "LeftFoot, L_Ankle or mixamorig:LeftFoot")
-    best = min(UNITS, key=lambda unit: abs(np.log(unit * leg / LEG)))
-    if not 0.4 < best * leg < 1.4:
-        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches")
-    return best
+    return unit_of(leg)
 
 
 def _direction(up: str) -> np.ndarray:

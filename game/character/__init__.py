@@ -4,9 +4,10 @@ from . import gltf, materials
 from .bind import load
 from .fitted_mannequin import Build, BuildError, tailored
 from .gltf import CharacterError
+from .onto import Rigged, rigged, write_onto
 from .write import Actor, Motion, joints_of, write
 
 __all__ = [
-    "Actor", "Build", "BuildError", "CharacterError", "Motion", "gltf", "joints_of", "load", "materials", "tailored",
-    "write",
+    "Actor", "Build", "BuildError", "CharacterError", "Motion", "Rigged", "gltf", "joints_of", "load", "materials", "rigged", "tailored",
+    "write", "write_onto",
 ]

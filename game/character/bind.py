@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gambol.controllers.body import between, yaw
+from gambol.controllers.mocap import complete, to_t_pose, upright
 
 from ..render import Body, Mesh, leg_length, skin
 from . import gltf, materials
@@ -21,7 +21,6 @@ from .surface import Surface, bound_world, gathered, unit
 
 MIDDLE, FAR = 0.016, 0.034
 """Cells in which the coarser levels merge vertices, over the length of the legs."""
-_ALIGNED = {"Arm": "ForeArm", "ForeArm": "Hand", "UpLeg": "Leg", "Leg": "Foot"}
 _SIDES = ("Left", "Right")
 _INDEX = {name: k for k, name in enumerate(skin.NAMES)}
 
@@ -45,56 +44,19 @@ def load(path: str | Path) -> Body:
             surface = gathered(document, tree, world, joints)
         except np.linalg.LinAlgError:
             raise ValueError(gltf.scaled_to_nothing(tree)) from None
-        turn = _upright(document, world, found)
-        standing = _complete({name: turn @ world[n, :3, 3] for name, n in found.items()})
+        try:
+            turn = upright({name: world[n, :3, 3] for name, n in found.items()})
+        except ValueError as error:
+            raise CharacterError(f"{document.path}: {error}") from None
+        standing = complete({name: turn @ world[n, :3, 3] for name, n in found.items()})
         return _body(document, tree, surface, found, turn, standing)
-
-
-def _upright(document: Document, world: np.ndarray, found: dict[str, int]) -> np.ndarray:
-    """The rotation (3, 3) that lets the human stand along +Y and face +Z."""
-    at = {name: world[n, :3, 3] for name, n in found.items()}
-    left = at["LeftUpLeg"] - at["RightUpLeg"]
-    up = at["Head"] - 0.5 * (at["LeftUpLeg"] + at["RightUpLeg"])
-    length = np.linalg.norm(up)
-    if not np.linalg.norm(np.cross(left, up)) > 1e-3 * length**2 > 0.0:
-        raise CharacterError(f"{document.path}: its hips and head are in one place; export it with its rest pose")
-    x = unit(left)
-    y = unit(up - x * (x @ up))
-    frame = np.stack([x, y, np.cross(x, y)])
-    toes = [frame @ (at[side + "Toe"] - at[side + "Foot"]) for side in _SIDES if side + "Toe" in at]
-    if toes and all(toe[2] < -0.5 * np.linalg.norm(toe) for toe in toes):
-        raise CharacterError(f"{document.path}: its toes point backward as its joints are named: left and right are exchanged; name them anew")
-    near = np.round(frame)  # a spine may lean where the world does not
-    return near if np.linalg.det(near) > 0.5 and np.trace(near @ frame.T) > 1 + 2 * np.cos(np.radians(30)) else frame
-
-
-def _complete(at: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Places for all our joints: those that the file lacks where they would be on the standard human."""
-    rest = dict(zip(skin.STANDARD.names, skin.REST))
-    size = np.mean([np.linalg.norm(at[s + a] - at[s + b]) / np.linalg.norm(rest[s + a] - rest[s + b])
-                    for s in _SIDES for a, b in (("UpLeg", "Leg"), ("Leg", "Foot"))])
-    if not size > 1e-6:
-        raise ValueError("its legs have no length")
-    at = dict(at)
-    if "Spine2" not in at:
-        at["Spine2"] = 0.35 * at["Hips"] + 0.65 * 0.5 * (at["LeftArm"] + at["RightArm"])
-    for name, low, share in (("Spine", "Hips", 0.23), ("Spine1", "Spine", 0.5), ("Neck", "Spine2", 0.625)):
-        high = "Head" if name == "Neck" else "Spine2"
-        at.setdefault(name, at[low] + share * (at[high] - at[low]))
-    for side in _SIDES:
-        at.setdefault(side + "Shoulder", at[side + "Arm"] + 0.75 * (
-            0.5 * (at["LeftArm"] + at["RightArm"]) - at[side + "Arm"]))
-        fore = unit(at[side + "ForeArm"] - at[side + "Arm"])
-        at.setdefault(side + "Hand", at[side + "ForeArm"] + size * 0.2689 * fore)
-        at.setdefault(side + "Toe", at[side + "Foot"] + size * (rest[side + "Toe"] - rest[side + "Foot"]))
-    return at
 
 
 def _body(document: Document, tree: Nodes, surface: Surface, found: dict[str, int], turn: np.ndarray,
           standing: dict[str, np.ndarray]) -> Body:
     names, parents = skin.STANDARD.names, skin.STANDARD.parents
     here = np.stack([standing[name] for name in names])
-    turns = _to_t_pose(standing)
+    turns = to_t_pose(standing)
     joints = here.copy()
     for j, parent in enumerate(parents[1:], 1):
         joints[j] = joints[parent] + turns[parent] @ (here[j] - here[parent])
@@ -126,24 +88,6 @@ def _body(document: Document, tree: Nodes, surface: Surface, found: dict[str, in
     legs = float(leg_length(joints))
     levels = whole, clustered(whole, MIDDLE * legs), clustered(whole, FAR * legs)
     return Body(document.path.stem, levels, joints - shift, layers, materials.two_sided(document))
-
-
-def _to_t_pose(at: dict[str, np.ndarray]) -> np.ndarray:
-    """World rotations (22, 3, 3) that carry each joint's flesh from the file's pose into T-pose."""
-    out: dict[str, np.ndarray] = {}
-    for name, parent in zip(skin.STANDARD.names, skin.STANDARD.parents):
-        side, part = next(((s, name[len(s):]) for s in _SIDES if name.startswith(s)), ("", name))
-        if part in _ALIGNED:
-            child = side + _ALIGNED[part]
-            out[name] = between(at[child] - at[name], skin.REST[_INDEX[child]] - skin.REST[_INDEX[name]])
-        elif part == "Foot":
-            ahead = (at[side + "Toe"] - at[name]) * [1.0, 0.0, 1.0]
-            out[name] = yaw(-np.arctan2(ahead[0], ahead[2])) if np.linalg.norm(ahead) > 1e-6 else np.eye(3)
-        elif part in ("Hand", "Toe"):
-            out[name] = out[skin.STANDARD.names[parent]]
-        else:
-            out[name] = np.eye(3)
-    return np.stack([out[name] for name in skin.STANDARD.names])
 
 
 def _collapsed(tree: Nodes, surface: Surface, found: dict[str, int]) -> np.ndarray:

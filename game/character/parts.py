@@ -23,7 +23,7 @@ def parts(document: Document, tree: Nodes, joints: set[int]) -> dict[str, int]:
 
     joints: the nodes that skins bend. CharacterError, naming what is missing, if they make no human.
     """
-    found = _by_table(document)
+    found = table(document)
     if not found:
         if set(skin.STANDARD.names) <= {tree.names[n] for n in joints}:
             return {tree.names[n]: n for n in sorted(joints, reverse=True) if tree.names[n] in skin.NAMES}
@@ -38,7 +38,8 @@ def parts(document: Document, tree: Nodes, joints: set[int]) -> dict[str, int]:
     return found
 
 
-def _by_table(document: Document) -> dict[str, int]:
+def table(document: Document) -> dict[str, int]:
+    """Node number by our joint's name, as VRM's table has it; empty where the file has none."""
     extensions = document.json.get("extensions", {})
     new = extensions.get("VRMC_vrm", {}).get("humanoid", {}).get("humanBones", {})
     old = extensions.get("VRM", {}).get("humanoid", {}).get("humanBones", [])

@@ -114,7 +114,7 @@ def write(path: str | Path, actors: Sequence[Actor], fps: float = 60.0) -> Path:
             if count not in times:
                 times[count] = glb.array(np.arange(count) / fps, bounds=True)
             _tracks(glb, actor.motion, nodes, times[count], channels, samplers)
-            bits = (np.asarray(actor.motion.contacts, int) @ [1, 2, 4, 8]).tolist()
+            bits = contact_bits(actor.motion.contacts)
             glb.json["nodes"][top]["extras"] = {"fps": fps, "contacts": bits}
             extras[actor.name] = bits
     if channels:
@@ -193,11 +193,21 @@ def _pictured(glb: Glb, pixels: np.ndarray, layer: int, thin: bool) -> int:
     return glb.add("materials", entry | ({"alphaMode": "MASK"} if pixels[..., 3].min() < 128 else {}))
 
 
-def _tracks(glb: Glb, motion: Motion, nodes: list[int], times: int, channels: list, samplers: list) -> None:
-    turns = np.array(motion.turns, float)
-    # q and -q turn alike: neighbours in time take the same side, or they are blended the long way round
+def contact_bits(contacts: np.ndarray) -> list[int]:
+    """Contacts (T, 4) as one number a frame: 1 left heel, 2 left ball, 4 right heel, 8 right ball."""
+    return (np.asarray(contacts, int) @ [1, 2, 4, 8]).tolist()
+
+
+def same_side(turns: np.ndarray) -> np.ndarray:
+    """Quaternions (T, ..., 4), of q and -q, which turn alike, the one on the side of the one before: else they are blended the long way round."""
+    turns = np.array(turns, float)
     flips = np.sum(turns[1:] * turns[:-1], -1) < 0.0
     turns[1:] *= np.where(np.cumsum(flips, 0) % 2 == 1, -1.0, 1.0)[..., None]
+    return turns
+
+
+def _tracks(glb: Glb, motion: Motion, nodes: list[int], times: int, channels: list, samplers: list) -> None:
+    turns = same_side(motion.turns)
     if not (np.isfinite(turns).all() and np.isfinite(motion.hips).all()):
         raise ValueError("the motion holds numbers that are not finite")
     for node, path, values in [(nodes[0], "translation", motion.hips),

@@ -15,34 +15,58 @@ from .base import Library, Mistake, Wearing, app, known, learn, person_of, plain
 def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml file of one, or an input log (.gambol).")],
            out: Annotated[Path, typer.Option("-o", "--out", help="A .glb file (bodies, motion, contacts) or a .bvh file (motion).")],
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
+           onto: Annotated[Path | None, typer.Option(help="A .glb, .gltf or .vrm file with a rigged human: -o becomes a copy of it that moves, with its own bones, skin and names.")] = None,
+           actor: Annotated[str | None, typer.Option(help="Whose motion goes --onto a file; the first one's by default.")] = None,
            library: Library = None, character: Wearing = None) -> None:
     """Write the motion of a scenario or an input log for other programs."""
-    from ..output import checked, sampled, takes, write
+    from ..output import checked, sampled, takes
     from ..session import SUFFIX, replay
 
     checked(out)
+    if actor is not None and onto is None:
+        raise Mistake("--actor: says whose motion goes --onto a file; without it everybody's is written")
+    rig = _rig(onto, out) if onto is not None else None
     if not what.lower().endswith(SUFFIX):
         from ..scenario import scenario as scenarios
 
         film = scenarios.load(what)
         say_doubts(what, film)
-        write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character))
+        if actor is not None and actor not in [one.name for one in film.actors]:
+            raise Mistake(f"--actor: nobody in {what} is called {actor!r}; there are {', '.join(one.name for one in film.actors)}")
+        write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character), rig, actor)
         return
     known(Path(what))
     log, controller = replayed(Path(what), person_of(library, character))
     with progress_bar() as bar:
         moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)
         done = takes(sampled(moments, fps or 60))
-    for path in write(out, done, fps or 60):
+    for path in _written(out, done, fps or 60, rig, actor):
         say(f"{path}: {len(done[0].poses)} frames, {log.duration:.1f} s")
 
 
-def write_motion(film: Any, out: str | Path, controller: Any) -> None:
-    """Write the motion of a scenario, told of as it goes."""
-    from ..output import checked, takes, write
+def _rig(onto: Path, out: Path) -> Any:
+    """The rig in a file, and whether the motion on it can be written."""
+    from ..character import rigged
+    from ..files import output_file
+
+    output_file(out, ".glb")
+    if onto.exists() and out.exists() and out.samefile(onto):
+        raise Mistake(f"--onto {onto}: would be overwritten; give -o another name")
+    return rigged(onto)
+
+
+def _written(out: str | Path, done: list, fps: float, rig: Any, actor: str | None) -> list[Path]:
+    from ..output import chosen, write, write_onto
+
+    return write(out, done, fps) if rig is None else [write_onto(out, rig, chosen(done, actor), fps)]
+
+
+def write_motion(film: Any, out: str | Path, controller: Any, rig: Any = None, actor: str | None = None) -> None:
+    """Write the motion of a scenario, told of as it goes; onto a rig, if one is given, an actor's."""
+    from ..output import checked, takes
     from ..scenario import run
 
-    checked(out, [actor.name for actor in film.actors])
+    checked(out, [one.name for one in film.actors] if rig is None else ())
     learn(film.wanted, film.database)
     refused: dict[str, None] = {}
 
@@ -52,7 +76,7 @@ def write_motion(film: Any, out: str | Path, controller: Any) -> None:
             yield frame.before, frame.after, frame.alpha
     with progress_bar() as bar:
         done = takes(bar.track(moments(), film.frames, description=film.title))
-    for path in write(out, done, film.fps):
+    for path in _written(out, done, film.fps, rig, actor):
         say(f"{path}: {film.frames} frames, {film.duration:g} s")
     say_refused(refused)
 

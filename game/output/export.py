@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.body import Pose, Skeleton, forward_kinematics
+from gambol.controllers.body import Pose, Skeleton, forward_kinematics, local_rotations
 
 from .. import character as glb
 from ..files import OutputError, output_file
-from ..render import Body, mannequin, scale_of, skin, worn
+from ..render import ARMS, Body, mannequin, scale_of, skin, worn
 from ..scene import TINT
 from ..world import RATE, World, pose_between
 from .recorder import motion_clip, write_motion
@@ -105,10 +105,37 @@ def write(path: str | Path, takes: Sequence[Take], fps: float = RATE) -> list[Pa
     return paths
 
 
-def _actor(take: Take) -> glb.Actor:
+def chosen(takes: Sequence[Take], name: str | None) -> Take:
+    """The take of whoever has that name, of the first one by default. OutputError, saying who there is, where nobody has it."""
+    if name is None and takes:
+        return takes[0]
+    found = [take for take in takes if take.name == name]
+    if not found:
+        raise OutputError(f"nobody is called {name!r} here; there are {', '.join(take.name for take in takes) or 'none'}")
+    return found[0]
+
+
+def write_onto(path: str | Path, onto: glb.Rigged, take: Take, fps: float = RATE) -> Path:
+    """Write what somebody did as an animation of a rig's own file, skin, fingers, names and all, into a .glb file.
+
+    Ways are as many times as long as the rig is taller; arms keep out of its own flesh. OutputError where it can't be written, or where nothing was played.
+    """
+    if not len(take.poses):
+        raise OutputError(f"{path}: nothing was played yet that could be written")
+    root, at, turned = _kinematics(take)
+    turned[:, ARMS] = worn(glb.load(onto.document.path), at, turned)[1][:, ARMS]
+    moved = onto.rig.pose(take.skeleton, root, local_rotations(take.skeleton, turned))
+    return glb.write_onto(path, onto, moved, take.contacts, fps, take.name)
+
+
+def _kinematics(take: Take) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Roots (T, 3), and all joints' places (T, 22, 3) [m] and orientations (T, 22, 3, 3)."""
     root = np.stack([pose.root for pose in take.poses]).astype(float)
-    rotations = np.stack([pose.rotations for pose in take.poses]).astype(float)
-    at, turned = forward_kinematics(take.skeleton, root, rotations)
+    return root, *forward_kinematics(take.skeleton, root, np.stack([pose.rotations for pose in take.poses]).astype(float))
+
+
+def _actor(take: Take) -> glb.Actor:
+    _, at, turned = _kinematics(take)
     if take.body is None:
         rest, _ = forward_kinematics(take.skeleton, take.skeleton.offsets[0],
                                      np.broadcast_to(np.eye(3), (len(take.skeleton), 3, 3)))

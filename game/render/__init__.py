@@ -5,6 +5,7 @@ pixels, `blit` shows them elsewhere. Importing this package touches no GL; hosts
 """
 
 from . import gl, occlusion, skin, view
+from .girth import ARMS
 from .mesh import LEVELS, Body, Mesh, mannequin, pack
 from .presets import FAST, FULL, PRESETS, Preset, preset
 from .renderer import Renderer
@@ -13,6 +14,6 @@ from .view import NEAR, look_at, scale_of
 from .wear import dressed, leg_length, size_of, worn
 
 __all__ = [
-    "FAST", "FULL", "LEVELS", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "dressed", "gl", "leg_length",
+    "ARMS", "FAST", "FULL", "LEVELS", "NAMES", "NEAR", "PRESETS", "Body", "Mesh", "Preset", "Renderer", "dressed", "gl", "leg_length",
     "look_at", "mannequin", "occlusion", "pack", "preset", "scale_of", "size_of", "skin", "view", "worn",
 ]
