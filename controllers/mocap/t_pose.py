@@ -18,6 +18,8 @@ for _joint, _parent in enumerate(HUMAN.parents[1:], 1):
 REST.setflags(write=False)
 """Places (22, 3) [m] of the standard human's joints in T-pose."""
 SIDES = ("Left", "Right")
+LEANS, ASKEW = np.radians(30.0), np.radians(3.0)
+"""Up is an axis of the world if a body leans from it by less than the first, and to the left one if its hips are turned from it by less than the second [rad]."""
 _AT = dict(zip(HUMAN.names, REST))
 _ALIGNED = {"Arm": "ForeArm", "ForeArm": "Hand", "UpLeg": "Leg", "Leg": "Foot"}
 
@@ -32,15 +34,24 @@ def upright(at: Mapping[str, np.ndarray]) -> np.ndarray:
     length = np.linalg.norm(up)
     if not np.linalg.norm(np.cross(left, up)) > 1e-3 * length**2 > 0.0:
         raise ValueError("its hips and head are in one place; export it with its rest pose")
-    x = left / np.linalg.norm(left)
-    y = up - x * (x @ up)
-    y /= np.linalg.norm(y)
+    y = _near(up / length, LEANS)  # a spine may lean where the world does not
+    x = left - y * (y @ left)
+    x = _near(x / np.linalg.norm(x), ASKEW)
+    x = x - y * (y @ x)
+    x /= np.linalg.norm(x)
     frame = np.stack([x, y, np.cross(x, y)])
     toes = [frame @ (at[side + "Toe"] - at[side + "Foot"]) for side in SIDES if side + "Toe" in at]
     if toes and all(toe[2] < -0.5 * np.linalg.norm(toe) for toe in toes):
         raise ValueError("its toes point backward as its joints are named: left and right are exchanged; name them anew")
-    near = np.round(frame)  # a spine may lean where the world does not
-    return near if np.linalg.det(near) > 0.5 and np.trace(near @ frame.T) > 1 + 2 * np.cos(np.radians(30)) else frame
+    return frame
+
+
+def _near(direction: np.ndarray, angle: float) -> np.ndarray:
+    """The axis (3,) that a direction is no farther from than that [rad], else the direction."""
+    axis = np.zeros(3)
+    k = int(np.abs(direction).argmax())
+    axis[k] = np.sign(direction[k])
+    return axis if axis @ direction > np.cos(angle) else direction
 
 
 def complete(at: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
