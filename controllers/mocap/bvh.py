@@ -97,8 +97,10 @@ def write_bvh(clip: Clip, path, order: str = "ZXY", unit: float = 0.01) -> None:
     order: in which order the three rotation channels stand, which is the order of the intrinsic
     turns. unit: metres in one unit of the file; 0.01 writes centimetres. White space and braces in
     joint names become underscores. The root's OFFSET is written as zero, so that a reader that adds
-    it and one that doesn't agree. ValueError for another order, or numbers that are not finite.
+    it and one that doesn't agree. ValueError for another order, for what is no clip, or numbers that are not finite.
     """
+    if not isinstance(clip, Clip):
+        raise ValueError(f"write_bvh(clip, path) takes a Clip first, not {type(clip).__name__}")
     if sorted(order.upper()) != ["X", "Y", "Z"]:
         raise ValueError(f"the order of rotations is X, Y and Z in some order, not '{order}'")
     order = order.upper()

@@ -6,9 +6,10 @@ out. Legs then reach for where our ankles are, by two-bone inverse kinematics, s
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -89,7 +90,7 @@ class Rig:
         if known.trunk:
             at["Spine2"] = places[known.trunk[-1]]
         axes = upright(at)
-        legs = np.mean([np.linalg.norm(at[s + a] - at[s + b]) for s in SIDES for a, b in zip(_LEG, _LEG[1:])]) * 2
+        legs = _length(at, str)
         unit = unit_of(legs) if metres is None else float(metres)
         standing = unit * places @ axes.T
         sole = np.mean([standing[known.limbs[s + "Foot"], 1] for s in SIDES])
@@ -230,8 +231,8 @@ def _sole(standing: np.ndarray, known: Roles, legs: float) -> float:
     return float(np.mean(toes) + size * REST[HUMAN.index("LeftToe"), 1]) if toes else size * float(REST[HUMAN.index("LeftFoot"), 1])
 
 
-def _length(places: np.ndarray, index) -> float:
-    """Mean length [m] of thigh and shank together."""
+def _length(places: Any, index: Callable[[str], Any]) -> float:
+    """Mean length [m] of thigh and shank together, of places (3,) by an index of our joint's name."""
     return float(np.mean([np.linalg.norm(places[index(s + a)] - places[index(s + b)]) for s in SIDES for a, b in zip(_LEG, _LEG[1:])]) * 2)
 
 

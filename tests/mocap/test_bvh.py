@@ -201,6 +201,8 @@ def test_a_walker_that_is_no_human_walks_too(tmp_path):
 
 def test_writing_refuses_what_it_can_not_write(tmp_path):
     clip = random_clip(1)
+    with pytest.raises(ValueError, match="takes a Clip first, not (Posix|Windows)Path"):
+        write_bvh(tmp_path / "a.bvh", clip)
     with pytest.raises(ValueError, match="not 'XYX'"):
         write_bvh(clip, tmp_path / "a.bvh", "XYX")
     clip.root[0, 0] = np.nan
