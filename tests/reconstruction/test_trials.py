@@ -254,7 +254,7 @@ def five(tmp_path_factory) -> Database:
     path, rng = tmp_path_factory.mktemp("five") / "five.gambolmotion", np.random.default_rng(0)
     with Writer(path) as writer:
         for number in range(20):
-            action, count = ("walk", "run", "jump", "punch", "swing")[number % 5], 64 + 36 * (number % 5 == 0)
+            action, count = ("walk", "run", "jump", "punch", "swing")[number % 5], 62 + 20 * (number % 5 == 0)
             writer.add(f"take{number:02}", f"subject{number % 2}", action, made_up(rng, count, number % 4), np.ones(count, bool),
                        interpolated=number % 5 > 2)
     return Database.open(path)
