@@ -20,7 +20,7 @@ from gambol.game.world import RATE, Watches
 from gambol.game.world.learnt_methods import methods
 from stand_in import same
 
-CROWD, BEGINNING = 20, 3.0
+CROWD, BEGINNING = 20, 2.5
 """So many people cost as much as all other films together: of them the first seconds are enough."""
 NOTHING = "nothing to step on"
 COMPARED = 15
@@ -31,7 +31,7 @@ def compared(scenario):
     """For how long [s] a film is made again: a minute of the medley, and the beginnings of the others."""
     if any(actor.tracks is not None for actor in scenario.actors):
         return 0.75
-    few = 5.0 if len(scenario.actors) <= 4 else 2.0 if len(scenario.actors) <= CROWD else 1.0
+    few = 4.0 if len(scenario.actors) <= 4 else 1.5 if len(scenario.actors) <= CROWD else 1.0
     return scenario.duration if scenario.title == load("medley").title else 1.5 if scenario.followers else few
 
 

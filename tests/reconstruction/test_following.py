@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from followed import DT, bodies, build, follower, known, person, played, points, pulls  # noqa: F401, fixtures among them
+from followed import DT, bodies, build, clip, follower, known, person, played, points, pulls  # noqa: F401, fixtures among them
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.body.human import STATURE
 from gambol.controllers.contract import Intent, Leap, Unable
@@ -22,13 +22,6 @@ from gambol.controllers.reconstruction.following.feet import GIVE
 from gambol.controllers.reconstruction.pose_vector import SKELETON
 from gambol.controllers.supervisor import Duty
 from gambol.game.world.followers import Follows, carried
-
-
-@pytest.fixture(scope="module")
-def clip(known):
-    """Four seconds of a walk: it sets off, goes straight on and into a bend."""
-    whole = known[1][0]
-    return replace(whole, root=whole.root[:240], quaternions=whole.quaternions[:240])
 
 
 @pytest.mark.parametrize("points", [*SETS, "lwrist,rwrist,Head+0/0.09/0.09"])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from followed import DT, bodies, build, clip, follower, known, points  # noqa: F401
+from followed import DT, bodies, follower, known  # noqa: F401
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.reconstruction import Reconstruction
@@ -18,6 +18,11 @@ from gambol.controllers.supervisor import Supervisor
 from test_stream import bundle, message, tracker
 
 SECONDS = 3.0
+
+
+@pytest.fixture(scope="module")
+def points(follower, known):  # noqa: F811
+    return follower.controls.extract(known[1][0])
 
 
 def told(stalls, own_time):
