@@ -1,11 +1,11 @@
-"""A walk, and a body from points: `python tests/rehearsal.py` compiles what most tests of them need."""
+"""A body from points: `python tests/rehearsal.py` compiles what most tests of one need. Of a made-up motion: to walk is compiled by others, at the same time."""
 
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 sys.path.insert(0, str(Path(__file__).parent / "reconstruction"))
-import walks  # noqa: E402
+import trajectories  # noqa: E402
 
 from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
 from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
@@ -18,7 +18,7 @@ from gambol.game.world.learnt_methods import rehearse  # noqa: E402
 
 if __name__ == "__main__":
     with TemporaryDirectory() as folder:
-        known, _ = walks.database(Path(folder) / "walks.gambolmotion")
+        known = trajectories.calm_database(Path(folder) / "calm.gambolmotion")
         four = parse("4", SKELETON)
         search = Cells(Segments.of(known, 3, 4, four.joints))
         rehearse(Method(Local(LocalRegression(LISTENED), search, 50), Solver(four, 1 / known.fps)), four)

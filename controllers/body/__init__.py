@@ -7,7 +7,7 @@ from .ccd import ccd_kernel, foot_turn_kernel
 from .clip import Clip, Pose, mirror_index
 from .contact import (HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact_points, detect_contacts, feet_apart,
                       foot_drift, heel_offset, point_speeds)
-from .ground_frame import advance, compose, relative, screw
+from .ground_frame import advance, compose, relative, screw, stacked
 from .human import CONTACT_HEIGHT, HEEL, STATURE, human
 from .ik import distance_kernel, pole_of, two_bone, two_bone_kernel, two_bone_turns
 from .rotation_kernels import exp_kernel, log_kernel, product_kernel, quaternion_kernel, relative_kernel
@@ -24,6 +24,6 @@ __all__ = [
     "exp_kernel", "feet_apart", "foot_drift", "foot_turn_kernel", "forward_kinematics", "heading_of", "heel_offset",
     "hull", "hull_kernel", "human", "joint_limits", "local_rotations", "log", "log_kernel", "margin", "margin_kernel",
     "mean", "mirror_index", "point_speeds", "pole_of", "product_kernel", "quaternion_kernel", "relative", "relative_kernel",
-    "rotations", "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "standing_corners", "two_bone", "two_bone_kernel",
+    "rotations", "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "stacked", "standing_corners", "two_bone", "two_bone_kernel",
     "two_bone_turns", "wrap", "yaw",
 ]

@@ -143,7 +143,7 @@ class Locomotion(Controller):
         wish = _spread(intent.velocity, (*shape, 3)).reshape(-1, 3)
         if not np.isfinite(wish).all():
             wish[~np.isfinite(wish).all(-1)] = 0.0
-        np.clip(wish, -20.0, 20.0, out=wish)
+        np.minimum(np.maximum(wish, -20.0, out=wish), 20.0, out=wish)
         memory["alert"] = intent.leap is not None or intent.aim is not None
         memory["looks"] = 0
         _towards(memory, intent.towards, shape)
@@ -180,7 +180,7 @@ class Locomotion(Controller):
 
     def _knows(self, memory) -> bool:
         return (isinstance(memory, np.ndarray) and memory.dtype == self._dtype
-                and bool((memory["library"] == self._library).all()))
+                and bool((memory["library"].reshape(-1) == self._library).all()))
 
     def _memory(self, state: CharacterState) -> np.ndarray:
         """A copy of the state's memory, its feet carried along if the state's ground was replaced."""
@@ -248,8 +248,7 @@ def _spread(value: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:
 
 def _copied(memory: np.ndarray) -> np.ndarray:
     """A copy of records (...), byte by byte: numpy's own goes from field to field, ten times as long."""
-    flat = np.ascontiguousarray(memory).reshape(-1)
-    return flat.view(np.uint8).copy().view(flat.dtype).reshape(memory.shape)
+    return np.ndarray(memory.shape, memory.dtype, bytearray(memory.tobytes()))
 
 
 def _luck(ground: np.ndarray) -> np.ndarray:

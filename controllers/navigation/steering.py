@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..body import advance, wrap
+from ..body import advance, stacked, wrap
 from ..contract import Intent
 
 
@@ -72,7 +72,7 @@ def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steer
     omega, error = turn_towards(heading, towards, turning, settings)
     free = np.stack(np.broadcast_arrays(speed * (0.5 + 0.5 * np.cos(error)), trust * omega, 0.0), -1)
     if facing is None:
-        return Intent(within(free, settings.reach), towards=np.stack([np.where(speed > settings.fade, towards, np.nan), speed], -1))
+        return Intent(within(free, settings.reach), towards=stacked(np.where(speed > settings.fade, towards, np.nan), speed))
 
     facing = np.asarray(facing, float)
     held = np.isfinite(facing)
@@ -82,7 +82,7 @@ def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steer
         velocity[..., 0] * sine + velocity[..., 1] * cosine, omega,
         velocity[..., 0] * cosine - velocity[..., 1] * sine), -1)
     ends = np.where(held, np.where(speed < settings.fade, facing, np.nan), np.where(speed > settings.fade, towards, np.nan))
-    return Intent(within(np.where(held[..., None], strafe, free), settings.reach), towards=np.stack([ends, np.where(held, 0.0, speed)], -1))
+    return Intent(within(np.where(held[..., None], strafe, free), settings.reach), towards=stacked(ends, np.where(held, 0.0, speed)))
 
 
 def within(velocity, reach: Reach) -> np.ndarray:
@@ -91,7 +91,7 @@ def within(velocity, reach: Reach) -> np.ndarray:
     v_f, v_l = velocity[..., 0], velocity[..., 2]
     along = np.where(v_f >= 0.0, reach.forward, reach.backward)
     excess = np.maximum(np.hypot(v_f / along, v_l / reach.lateral), 1.0)
-    return np.stack([v_f / excess, velocity[..., 1], v_l / excess], -1)
+    return stacked(v_f / excess, velocity[..., 1], v_l / excess)
 
 
 def in_world(ground, velocity) -> np.ndarray:
@@ -99,7 +99,7 @@ def in_world(ground, velocity) -> np.ndarray:
     heading, velocity = np.asarray(ground, float)[..., 2], np.asarray(velocity, float)
     cosine, sine = np.cos(heading), np.sin(heading)
     v_f, v_l = velocity[..., 0], velocity[..., 2]
-    return np.stack([v_f * sine + v_l * cosine, v_f * cosine - v_l * sine], -1)
+    return stacked(v_f * sine + v_l * cosine, v_f * cosine - v_l * sine)
 
 
 def in_frame(ground, velocity, turn=0.0) -> np.ndarray:

@@ -102,6 +102,8 @@ def kept_apart(characters: Sequence[Any], intents: Sequence[Intent], number: int
         far = np.linalg.norm(apart, axis=1)
         room, speed = far - places[:, 2] - TRUNK * body.size, float(np.hypot(state.velocity[0], state.velocity[2]))
         near = (room < np.where(still & (pace <= WALKS), STOPS * pace, PRESSES) + LATE * speed) & (owners != i) & (np.abs(places[:, 3] - float(state.floor)) < HIGH * body.height) & (far > 1e-9)
+        if not near.any():
+            continue
         velocity, flow, slower = in_world(state.ground, intent.velocity), in_world(state.ground, state.velocity), False
         for k in np.flatnonzero(near):
             out = apart[k] / far[k]

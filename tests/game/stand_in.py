@@ -43,3 +43,10 @@ class Glide(Controller):
         rotations = np.broadcast_to(np.eye(3), ground.shape[:-1] + (len(self.skeleton), 3, 3)).copy()
         rotations[..., 0, :, :] = yaw(ground[..., 2])
         return Pose(np.stack([ground[..., 0], height, ground[..., 1]], -1), rotations)
+
+
+def same(one, other) -> bool:
+    """Whether everybody is where he is in another world, to the bit."""
+    return all(np.array_equal(x.state.ground, y.state.ground) and np.array_equal(x.state.pose.root, y.state.pose.root)
+               and np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
+               for x, y in zip(one.characters, other.characters, strict=True))

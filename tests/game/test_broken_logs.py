@@ -123,7 +123,7 @@ fields = st.lists(values, max_size=5) | st.tuples(st.integers(-1, 700), st.integ
 heads = st.dictionaries(st.sampled_from(sorted(HEAD)), values, max_size=2).map(lambda changes: HEAD | changes) | values
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 @given(heads | st.just(HEAD), st.lists(st.tuples(fields, st.integers(0, 5000).map(bytes)), max_size=3))
 def test_whatever_a_log_claims_it_is_read_or_refused_in_one_line(head, blocks):
     with tempfile.TemporaryDirectory() as folder:
@@ -138,7 +138,7 @@ def played(tmp_path_factory):
     return path.read_bytes()
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=150, deadline=None, derandomize=True)
 @given(st.data())
 def test_whatever_happened_to_its_bytes_a_log_is_read_or_refused_in_one_line(played, data):
     with tempfile.TemporaryDirectory() as folder:
@@ -160,7 +160,7 @@ def refused_in_one_line(path, plays=True):
         assert str(error).startswith(f"{path}: ") and str(error).isprintable() and len(str(error)) < 1200
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(st.text(max_size=12) | st.tuples(st.sampled_from(["back", "pins", "pin", *(s.name for s in SETTINGS), "nobody.knows"]),
                                         st.text(max_size=12) | st.from_regex(r"[-+]?[0-9]{1,30}(e[0-9]{1,4})?", fullmatch=True)
                                         | st.sampled_from(["²", "٣", "nan", "inf", "-inf", "1" * 3000, "0/0/0", "hold", "9:1/2/3"])

@@ -87,7 +87,7 @@ def test_a_point_moved_out_is_out_and_one_that_is_out_stays(props, point):
 
 
 @given(stage, st.lists(st.tuples(wishes, pair, st.sampled_from([1 / 144, 1 / 60, 0.1, 1.0]), st.integers(0, 6)), max_size=12))
-@settings(max_examples=150)
+@settings(max_examples=80)
 def test_no_eye_is_ever_in_a_prop_or_under_the_floor(props, walk):
     """Whoever walks wherever, even through walls, and whatever the hands do."""
     ground, cameras = np.zeros(3), [Follow.behind(HERE), orbiting(), flying()]
@@ -104,6 +104,7 @@ def test_no_eye_is_ever_in_a_prop_or_under_the_floor(props, walk):
 
 @KINDS
 @given(st.lists(st.tuples(wishes, pair), max_size=20))
+@settings(max_examples=50)
 def test_no_eye_is_ever_in_the_character(start, walk):
     camera, ground = start(HERE), np.zeros(3)
     for wish, push in walk:
@@ -141,6 +142,7 @@ def test_it_looks_ahead_of_a_walker():
 
 @KINDS
 @given(st.integers(1, 4), st.lists(wishes, max_size=4), turn)
+@settings(max_examples=50)
 def test_changing_cameras_leaves_the_eye_where_it_is(start, times, hands, heading):
     ground = np.array([0.5, -1.0, heading])
     camera = start(HERE)
@@ -169,7 +171,7 @@ def test_it_comes_back_to_the_character_after_a_flight():
 
 
 @given(stage, st.lists(st.tuples(pair, unit), min_size=5, max_size=40))
-@settings(max_examples=60)
+@settings(max_examples=40)
 def test_the_eye_jumps_only_when_a_prop_comes_between(props, walk):
     """Somebody walks about outside of the props while the player turns the camera."""
     ground, camera = HERE, None
@@ -299,7 +301,7 @@ def test_rails_begin_and_end_where_they_should_and_stay_above_the_floor():
 
 
 @given(st.lists(st.tuples(*[st.floats(-9, 9)] * 3), min_size=2, max_size=6, unique=True))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_a_rail_goes_through_its_points_at_one_speed(points):
     along = np.array([on_rail(points, u) for u in np.linspace(0, 1, 2001)])
     for point in points:
@@ -315,7 +317,7 @@ def test_an_eye_that_props_push_onto_its_target_looks_along_its_arm():
 
 
 @given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-3.0, 3.0))
-@settings(max_examples=25)
+@settings(max_examples=16)
 def test_who_looks_where_to_jump_sees_it_beside_the_body_and_the_sticks_stay_as_they_are(first, then, heading):
     camera = Follow.behind(np.array([0.0, 0.0, heading]))
     for line in (first, then):

@@ -42,7 +42,7 @@ wish = st.builds(Wish, move=sticks, look=st.just((0.0, 0.0)) | sticks, turn=st.f
 stretch = st.tuples(wish, wish, st.integers(1, 12))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.lists(stretch, min_size=1, max_size=10), st.sampled_from([1, 2]))
 def test_a_log_replays_to_the_bit_whatever_the_hands_did(locomotion, stretches, players):
     """Rewinds, resets, joins, settings, slow motion and cameras among it; every number of every state."""

@@ -114,7 +114,7 @@ def test_hands_that_walk_at_a_platform_leap_onto_it_and_at_a_wall_stop(library):
 def running(who, things, floor, far, held=True):
     """All states of somebody whose hands run at something `far` away, the leap held from 3 m before it, if at all."""
     line, states = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), 1)), []
-    while len(states) < 600 and (not states or states[-1].ground[1] < far + 3.5):
+    while len(states) < 420 and (not states or states[-1].ground[1] < far + 3.5):
         states.append(line.now.after.characters[0].state)
         z = states[-1].ground[1]
         line.advance((Wish(move=(0.0, 1.0), run=0.9, jump=held and z > far - 3.0).rounded(),))
@@ -208,7 +208,7 @@ def test_a_leap_that_was_thought_of_goes_off_as_many_steps_sooner_as_he_thought(
     assert RunUp(-1, thought=Known(RunUp(number, leap=leap), due)).known(True, None).leap is leap, "who is near waits for it"
 
 
-def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=600):
+def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=420):
     """All states of somebody whose hands run straight on and press the leap's key from so near [m] before something `far` away on, if at all, and what was known of his run-up."""
     line, states, known = Timeline(begin(World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), 1)), [], []
     for _ in range(steps):
@@ -238,7 +238,7 @@ def test_the_key_pressed_late_by_who_brakes_before_a_box_takes_him_straight_up_o
     """He was led aside along it and leapt askew, and fell off its side; and who let go of braking while he thought of his leap came to stand in it."""
     who = person(library.tuned(Settings(idle=0.0)))
     for ahead in (0.75, 0.9):
-        states, known = pressed(who, (box(6.8, 0.33, 8.0),), 6.8, ahead)
+        states, known = pressed(who, (box(6.8, 0.33, 8.0),), 6.8, ahead, steps=330)
         thinks = [one for one in known if one.thought is not None]
         leapt = [s for s in states if s.active == "jump"]
         assert thinks and all(one.halt is not None for one in thinks), "he brakes on as he thinks"

@@ -12,11 +12,12 @@ from gambol.controllers.body import Clip, human
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import gap
 from gambol.game.input import Wish
+from gambol.game.session import tick
 from gambol.game.session.actions import SLOWER
 from gambol.game.session.settings import SETTINGS, SettingError
 from gambol.game.session.state import newcomer, opening
 from gambol.game.session.tick import KEPT, Timeline, advance
-from gambol.game.world import COURSE, Recorded
+from gambol.game.world import COURSE, RATE, Recorded
 from stand_in import Glide
 
 AHEAD = Wish(move=(0.0, 1.0))
@@ -107,13 +108,15 @@ def test_going_back_branches_from_there_and_forgets_the_rest():
     assert all(same(a, b) for a, b in zip(branch.past, walked.past))
 
 
-def test_no_more_than_half_a_minute_is_kept_and_pauses_take_none_of_it():
-    timeline = played(*[Wish()] * (KEPT + 100))
-    assert len(timeline.past) == KEPT
+def test_no_more_than_half_a_minute_is_kept_and_pauses_take_none_of_it(monkeypatch):
+    assert KEPT == 30 * RATE
+    monkeypatch.setattr(tick, "KEPT", few := 200)
+    timeline = played(*[Wish()] * (few + 100))
+    assert len(timeline.past) == few
     oldest = timeline.past[0]
     for wish in [pressing("pause")] + [Wish()] * 50:
         timeline.advance((wish,))
-    assert len(timeline.past) == KEPT and timeline.past[0] is oldest
+    assert len(timeline.past) == few and timeline.past[0] is oldest
     timeline.advance((pressing("back=999999"),))
     assert timeline.now.before is oldest.after
 

@@ -10,13 +10,14 @@ from gambol.controllers.jump.muscles.sampling import sample
 from gambol.controllers.jump.muscles.windup import crouch
 
 ADULT = Physique()
+COUNT = 1200
 LEAPS = ((0.0, 2.4, 0.0), (0.0, 2.2, 1.2))
 
 
 @cache
 def sampled(wish):
     """What is asked of several tests: two milliseconds a sample."""
-    return sample(ADULT, wish, 0.109, count=2000)
+    return sample(ADULT, wish, 0.109, count=COUNT)
 
 
 def misses(found, wish):
@@ -39,7 +40,7 @@ def test_the_best_sample_is_the_most_balanced_of_the_nearest_tenth(wish):
 
 def test_momenta_go_where_the_jump_goes():
     wish = np.array([0.3, 2.2, 1.2])
-    found = sample(ADULT, wish, 0.109, count=300)
+    found = sample(ADULT, wish, 0.109, count=100)
     np.testing.assert_allclose(np.cross(found.momenta[found.possible], wish), 0.0, atol=1e-9)
 
 
@@ -55,7 +56,7 @@ def test_what_the_muscles_give_is_what_control_asks_of_them():
 
 def test_seeds_vary_and_repeat():
     def of(seed):
-        return sample(ADULT, 2.4, 0.109, count=200, seed=seed).tried
+        return sample(ADULT, 2.4, 0.109, count=60, seed=seed).tried
     np.testing.assert_array_equal(of(3), of(3))
     assert np.abs(of(3) - of(4)).max() > 0.01
 

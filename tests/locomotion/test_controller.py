@@ -101,7 +101,7 @@ def test_rewinding_is_keeping_a_state(locomotion, seed):
 wild = st.one_of(st.floats(allow_nan=True, allow_infinity=True), st.floats(-5, 5), st.sampled_from((np.nan, np.inf, -np.inf, 1e30)))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=24, deadline=None)
 @given(st.lists(st.tuples(wild, wild, wild, st.integers(1, 60)), min_size=1, max_size=5), st.floats(1e-4, 0.1))
 def test_no_wish_makes_a_broken_pose(locomotion, wishes, dt):
     state = locomotion.start()

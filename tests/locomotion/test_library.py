@@ -135,7 +135,7 @@ def test_truncated_files_are_refused_by_name(sound, tmp_path, share):
     refused(sound[:int(share * len(sound))], tmp_path / "short.npz")
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(changes=st.lists(st.tuples(st.one_of(st.integers(0, 400), st.integers(-700, -1), st.integers(0, 10**6)),
                                   st.integers(0, 255)), min_size=1, max_size=4))
 def test_damaged_files_are_refused_by_name_or_hold_sound_arrays(sound, tmp_path, changes):

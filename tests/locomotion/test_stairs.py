@@ -20,7 +20,7 @@ from gambol.controllers.navigation import steer  # noqa: E402
 from stairs import flight, ran, walked  # noqa: E402
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.floats(0.12, 0.20), st.floats(0.22, 0.35), st.floats(1.2, 2.1), st.floats(0.5, 3.0))
 @example(0.17, 0.25, 1.74, 0.7)
 @example(0.17, 0.29, 1.2, 0.8)

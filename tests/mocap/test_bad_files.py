@@ -197,14 +197,14 @@ def mutated(draw, text: str) -> bytes:
     return data
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(data=mutated(BVH))
 def test_no_other_error_from_bvh(tmp_path_factory, data):
     folder = tmp_path_factory.getbasetemp()
     attempt(folder / "fuzz.bvh", data, scale=1.0)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(asf=st.one_of(st.just(ASF.encode()), mutated(ASF)), amc=st.one_of(st.just(AMC.encode()), mutated(AMC)))
 def test_no_other_error_from_acclaim(tmp_path_factory, asf, amc):
     folder = tmp_path_factory.getbasetemp()

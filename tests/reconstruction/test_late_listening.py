@@ -1,11 +1,13 @@
 """Trackers heard by a program that is kept from its work now and then: what it makes of them does not depend on when it gets to it."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from followed import DT, bodies, build, clip, follower, known, points  # noqa: F401
+from followed import DT, bodies, follower, known  # noqa: F401
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.reconstruction import Reconstruction
@@ -16,6 +18,11 @@ from gambol.controllers.supervisor import Supervisor
 from test_stream import bundle, message, tracker
 
 SECONDS = 3.0
+
+
+@pytest.fixture(scope="module")
+def points(follower, known):  # noqa: F811
+    return follower.controls.extract(known[1][0])
 
 
 def told(stalls, own_time):
@@ -32,10 +39,16 @@ def told(stalls, own_time):
     return np.array(places)
 
 
+@cache
+def told_at_once():
+    """The same to somebody who is never kept from it."""
+    return told({}, True)
+
+
 @given(st.dictionaries(st.integers(0, 150), st.floats(0.0, 2.0), max_size=5))
 @settings(max_examples=15, deadline=None)
 def test_who_asks_for_each_moment_in_the_end_is_told_the_same_however_late(stalls):
-    np.testing.assert_array_equal(told(stalls, True), told({}, True))
+    np.testing.assert_array_equal(told(stalls, True), told_at_once())
 
 
 def test_who_asks_by_another_clock_is_led_to_the_present_without_a_leap():

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trajectories import KINDS, frames as made_up, played
+from trajectories import calm_database, played
 
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.reconstruction.baselines.windows import Samples
 from gambol.controllers.reconstruction.control_points import parse
 from gambol.controllers.reconstruction.database import store
-from gambol.controllers.reconstruction.database.database import Database, DatabaseError, Writer
+from gambol.controllers.reconstruction.database.database import DatabaseError
 from gambol.controllers.reconstruction.evaluation import metrics
 from gambol.controllers.reconstruction.neighbours.cells import Cells
 from gambol.controllers.reconstruction.neighbours.segments import Segments
@@ -33,15 +33,8 @@ GROUNDS = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3)).map(np
 
 @pytest.fixture(scope="module")
 def world(tmp_path_factory):
-    """A database of made-up motion at a third of its pace, so that it accelerates like a body; a solver for four points; samples."""
-    path, rng = tmp_path_factory.mktemp("motion") / "made.gambolmotion", np.random.default_rng(0)
-    with Writer(path, mirrors=False) as writer:
-        for number in range(6):
-            quick = made_up(rng, 90, number % KINDS)
-            frames = np.stack([np.interp(np.arange(0, 89, 1 / 3), np.arange(90), column) for column in quick.T], -1)
-            frames[:, YAW_RATE:] /= 3.0
-            writer.add(f"clip{number}", "nobody", "walk", frames, np.ones(len(frames), bool))
-    database = Database.open(path)
+    """A database of calm, made-up motion; a solver for four points; samples."""
+    database = calm_database(tmp_path_factory.mktemp("motion") / "made.gambolmotion")
     solver = Solver(parse("4", SKELETON), DT)
     return database, solver, Samples.of(database, solver)
 
@@ -49,7 +42,7 @@ def world(tmp_path_factory):
 @pytest.fixture(scope="module")
 def method(world):
     """Ours with a small network that has learnt that motion."""
-    networks = learn(world[2], seeds=1, batches=2500, hidden=(128, 128))
+    networks = learn(world[2], seeds=1, batches=1500, hidden=(128, 128))
     return Ours(Method(Fused((Expectation(networks, LostPoints.of(world[2]), DT),)), world[1]))
 
 

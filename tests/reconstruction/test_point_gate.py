@@ -44,7 +44,7 @@ def test_noise_is_no_fault(deviation, seed):
 
 
 @given(st.integers(30, 100), st.integers(1, 60), st.permutations(range(3)), st.sampled_from([1, 2]))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_exchanged_points_are_told_apart(first, count, order, step):
     """Two of three that swing, half a metre or more apart, exchange their numbers for a while; at half the rate, too."""
     seen = (swinging() + 0.6 * np.arange(3)[:, None] * [0.0, 1.0, 0.0])[::step]
@@ -136,7 +136,7 @@ def test_noise_exchanges_no_points(seed):
 
 
 @given(st.integers(60, 120), st.integers(1, 30), st.floats(0.3, 1.4))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_a_point_that_comes_back_elsewhere_comes_there_without_a_pop(lost, count, away):
     """From where the body has it, at no more acceleration than a critically damped spring has from rest."""
     seen = np.zeros((300, 1, 3))

@@ -254,7 +254,7 @@ def five(tmp_path_factory) -> Database:
     path, rng = tmp_path_factory.mktemp("five") / "five.gambolmotion", np.random.default_rng(0)
     with Writer(path) as writer:
         for number in range(20):
-            action, count = ("walk", "run", "jump", "punch", "swing")[number % 5], 64 + 36 * (number % 5 == 0)
+            action, count = ("walk", "run", "jump", "punch", "swing")[number % 5], 62 + 20 * (number % 5 == 0)
             writer.add(f"take{number:02}", f"subject{number % 2}", action, made_up(rng, count, number % 4), np.ones(count, bool),
                        interpolated=number % 5 > 2)
     return Database.open(path)
@@ -277,7 +277,7 @@ def script(monkeypatch, tmp_path):
 
 
 def _run(script, monkeypatch, database, tmp_path, *more):
-    arguments = [database.path, "--takes", "3", "--cache", tmp_path / "cache", "--out", tmp_path / "out", *more]
+    arguments = [database.path, "--takes", "2", "--cache", tmp_path / "cache", "--out", tmp_path / "out", *more]
     monkeypatch.setattr(sys, "argv", ["measure/reconstruction.py", *map(str, arguments)])
     script.main()
 
@@ -302,7 +302,7 @@ def test_the_script_measures_every_section_once(script, five, monkeypatch, tmp_p
     for name in (*(f"{name}.md" for name in sections), "table1.png", "figure3_4.png", "figure3_6.png"):
         assert (tmp_path / "out" / name).stat().st_size > 20
 
-    bench, on = Bench(tmp_path / "other"), Courses(five, five, 3, 0)
+    bench, on = Bench(tmp_path / "other"), Courses(five, five, 2, 0)
     method = bench.learn("LPCR", on.seen, "4")
     error = np.mean([trials.run(method, trial).errors.mean() for trial in bench.trials(on.seen, "4")])
     row = _rows((tmp_path / "out" / "table1.md").read_text().split("### 4 points")[1].split("###")[0])["LPCR"]

@@ -50,9 +50,9 @@ def taught(moments, share=1.0, batches=BATCHES):
 
 
 def test_it_errs_less_on_what_it_learns_from(own):
-    tuner = Tuner(shipped(), own[1], 20)
-    losses = [tuner.step() for _ in range(20)]
-    assert np.mean(losses[-5:]) < 0.9 * np.mean(losses[:4])
+    tuner = Tuner(shipped(), own[1], BATCHES)
+    losses = [tuner.step() for _ in range(BATCHES)]
+    assert np.mean(losses[-4:]) < 0.9 * np.mean(losses[:3])
 
 
 def test_nothing_of_it_is_the_network_as_it_was(own):
@@ -62,16 +62,16 @@ def test_nothing_of_it_is_the_network_as_it_was(own):
 
 
 def test_half_of_it_lies_halfway(own):
-    whole, half = (taught(own[1], share, 3).used()[0] for share in (1.0, 0.5))
+    whole, half = (taught(own[1], share, 2).used()[0] for share in (1.0, 0.5))
     assert np.allclose(half - shipped().weights[0], 0.5 * (whole - shipped().weights[0]), atol=1e-6)
 
 
 def test_cut_off_it_goes_on_the_same(own, tmp_path):
-    whole, part = taught(own[1], batches=6), taught(own[1], batches=3)
+    whole, part = taught(own[1], batches=4), taught(own[1], batches=2)
     part.save(tmp_path / "own-learning.npz")
     again = Tuner(shipped(), own[1], BATCHES, share=1.0)
     again.resume(tmp_path / "own-learning.npz")
-    for _ in range(3):
+    for _ in range(2):
         again.step()
     assert all(np.array_equal(a, b) for a, b in zip(again.used(), whole.used(), strict=True))
     with pytest.raises(ArraysError, match="other motion"):

@@ -7,19 +7,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from trajectories import KINDS, frames as made_up
+from trajectories import calm_database
 
 from gambol.controllers.body import exp, forward_kinematics, yaw
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.baselines.windows import Samples
-from gambol.controllers.reconstruction.database.database import Database, Writer
 from gambol.controllers.reconstruction.following import Starts
 from gambol.controllers.reconstruction.neighbours.segments import Segments
 from gambol.controllers.reconstruction.ours.combined import Expectation, Ours
 from gambol.controllers.reconstruction.ours.lost_points import LostPoints
 from gambol.controllers.reconstruction.ours.networks import learn
 from gambol.controllers.reconstruction.ours.virtual_points import Turning, carried, virtual
-from gambol.controllers.reconstruction.pose_vector import WIDTH, YAW_RATE, advance, decode
+from gambol.controllers.reconstruction.pose_vector import WIDTH, advance, decode
 from gambol.controllers.reconstruction.regression.map_solver import Solver
 from gambol.controllers.reconstruction.regression.method import SPAN, Fused, Method
 
@@ -29,15 +28,7 @@ CONTROLS = parse("head,lwrist,rwrist", SKELETON)
 
 @pytest.fixture(scope="module")
 def database(tmp_path_factory):
-    """Made-up motion at a third of its pace."""
-    path, rng = tmp_path_factory.mktemp("motion") / "made.gambolmotion", np.random.default_rng(0)
-    with Writer(path, mirrors=False) as writer:
-        for number in range(6):
-            quick = made_up(rng, 90, number % KINDS)
-            frames = np.stack([np.interp(np.arange(0, 89, 1 / 3), np.arange(90), column) for column in quick.T], -1)
-            frames[:, YAW_RATE:] /= 3.0
-            writer.add(f"clip{number}", "nobody", "walk", frames, np.ones(len(frames), bool))
-    return Database.open(path)
+    return calm_database(tmp_path_factory.mktemp("motion") / "made.gambolmotion")
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +37,7 @@ def method(database):
     points = virtual(CONTROLS)
     solver = Solver(points, DT)
     samples = Samples.of(database, solver)
-    networks = learn(samples, seeds=1, batches=1500, hidden=(128, 128))
+    networks = learn(samples, seeds=1, batches=1000, hidden=(128, 128))
     ours = Ours(Method(Fused((Expectation(networks, LostPoints.of(samples), DT),)), solver))
     return Turning(ours, Starts.of(database, points))
 

@@ -30,6 +30,18 @@ def database(path, takes=12, count=250, seed=0, mirrors=True) -> Database:
     return Database.open(path)
 
 
+def calm_database(path) -> Database:
+    """A small database of such motion at a third of its pace, so that it accelerates like a body."""
+    rng = np.random.default_rng(0)
+    with Writer(path, mirrors=False) as writer:
+        for number in range(6):
+            quick = frames(rng, 90, number % KINDS)
+            slow = np.stack([np.interp(np.arange(0, 89, 1 / 3), np.arange(90), column) for column in quick.T], -1)
+            slow[:, chart.YAW_RATE:] /= 3.0
+            writer.add(f"clip{number}", "nobody", "walk", slow, np.ones(len(slow), bool))
+    return Database.open(path)
+
+
 def clip(seed, count=60, fps=60.0, name="made up"):
     """A clip of the standard human that moves every joint, anywhere, facing anywhere."""
     rng = np.random.default_rng(seed)
