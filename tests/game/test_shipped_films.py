@@ -21,7 +21,7 @@ from gambol.game.world.learnt_methods import methods
 from stand_in import same
 
 CROWD, BEGINNING = 20, 2.5
-"""So many people cost as much as all other films together: of them the first seconds are enough."""
+"""More people than that cost as much as all other films together: of them the first seconds are enough."""
 NOTHING = "nothing to step on"
 COMPARED = 15
 """Every so many steps two runs are held against each other."""
@@ -71,7 +71,7 @@ def made(request, walker):
     Who follows points walks after them: what makes a body of them plays no part, and costs a hundred times as much. Nor do overlays.
     """
     scenario, steps, moments = load(request.param).at_fps(4), [], []
-    long = scenario.duration if len(scenario.actors) < CROWD else BEGINNING
+    long = scenario.duration if len(scenario.actors) <= CROWD else BEGINNING
     run, few = film.acts, compared(scenario)
 
     def heard(*asked):
