@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.body import Pose, Skeleton, forward_kinematics, local_rotations
+from gambol.controllers.mocap import Moved
 
 from .. import character as glb
 from ..files import OutputError, output_file
@@ -115,17 +116,21 @@ def chosen(takes: Sequence[Take], name: str | None) -> Take:
     return found[0]
 
 
+def on_rig(onto: glb.Rigged, take: Take) -> Moved:
+    """A rig in the poses of a take: ways are as many times as long as the rig is taller, and arms keep out of its own flesh."""
+    root, at, turned = _kinematics(take)
+    turned[:, ARMS] = worn(glb.load(onto.document.path), at, turned)[1][:, ARMS]
+    return onto.rig.pose(take.skeleton, root, local_rotations(take.skeleton, turned))
+
+
 def write_onto(path: str | Path, onto: glb.Rigged, take: Take, fps: float = RATE) -> Path:
     """Write what somebody did as an animation of a rig's own file, skin, fingers, names and all, into a .glb file.
 
-    Ways are as many times as long as the rig is taller; arms keep out of its own flesh. OutputError where it can't be written, or where nothing was played.
+    OutputError where it can't be written, or where nothing was played.
     """
     if not len(take.poses):
         raise OutputError(f"{path}: nothing was played yet that could be written")
-    root, at, turned = _kinematics(take)
-    turned[:, ARMS] = worn(glb.load(onto.document.path), at, turned)[1][:, ARMS]
-    moved = onto.rig.pose(take.skeleton, root, local_rotations(take.skeleton, turned))
-    return glb.write_onto(path, onto, moved, take.contacts, fps, take.name)
+    return glb.write_onto(path, onto, on_rig(onto, take), take.contacts, fps, take.name)
 
 
 def _kinematics(take: Take) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

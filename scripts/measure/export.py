@@ -1,9 +1,10 @@
 """How far joints are off when other readers read what Gambol exports: BVH and GLB, over a scenario.
 
-    python scripts/measure/export.py [--scenario demo] [--character my.glb]
+    python scripts/measure/export.py [--scenario demo] [--character my.glb] [--onto my.glb]
 
 GLB: pygltflib reads the file, and 4 × 4 matrices down its node tree place the joints. BVH:
-upc-pymotion reads and places them. Both against Gambol's own forward kinematics.
+upc-pymotion reads and places them. Both against Gambol's own forward kinematics; --onto: all bones of
+that file, against where its rig says that they are.
 """
 
 from __future__ import annotations
@@ -42,7 +43,9 @@ def glb_joints(path: Path) -> dict[str, np.ndarray]:
         local = np.tile(np.eye(4), (frames, 1, 1))
         local[:, :3, 3] = tracks.get((number, "translation"), np.array(node.translation or [0.0, 0.0, 0.0]))
         turn = tracks.get((number, "rotation"), np.array([node.rotation or [0.0, 0.0, 0.0, 1.0]]))
-        local[:, :3, :3] = Rotation.from_quat(np.broadcast_to(turn, (frames, 4))).as_matrix()
+        local[:, :3, :3] = Rotation.from_quat(np.broadcast_to(turn, (frames, 4))).as_matrix() * (node.scale or [1.0, 1.0, 1.0])
+        if node.matrix:
+            local[:] = np.reshape(node.matrix, (4, 4)).T
         world = above @ local
         out[f"{actor}/{node.name}"] = world[:, :3, 3]
         for child in node.children or []:
@@ -77,17 +80,30 @@ def own_joints(take) -> dict[str, np.ndarray]:
     return {name: at[:, k] for k, name in enumerate(take.skeleton.names)}
 
 
+def timed(call, times: int = 100) -> float:
+    """The median time of a call [s]."""
+    from time import perf_counter
+
+    spent = []
+    for _ in range(times):
+        start = perf_counter()
+        call()
+        spent.append(perf_counter() - start)
+    return float(np.median(spent))
+
+
 def main() -> None:
     from dataclasses import replace
 
     from gambol.controllers.locomotion import Locomotion
-    from gambol.game.character import load
+    from gambol.game.character import load, rigged
     from gambol.game.output import export
     from gambol.game.scenario import film, scenario
 
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--scenario", default="demo")
     options.add_argument("--character", type=Path)
+    options.add_argument("--onto", type=Path)
     options = options.parse_args()
     played = scenario.load(options.scenario)
     takes = export.takes((f.before, f.after, f.alpha) for f in film.run(played, Locomotion.load(None)))
@@ -104,6 +120,14 @@ def main() -> None:
         off = [np.abs(read[f"{take.name}/{name}"] - at).max() for take in takes for name, at in own_joints(take).items()]
         print(f"GLB  {len(takes)} characters, {len(takes[0].poses)} frames: at most {1000 * max(off):.5f} mm off; "
               f"{file.stat().st_size / 1e6:.1f} MB")
+        if options.onto:
+            onto, take = rigged(options.onto), takes[0]
+            read = glb_joints(export.write_onto(Path(folder) / "y.glb", onto, take, played.fps))
+            places = export.on_rig(onto, take).places
+            top = next(iter(read)).partition("/")[0]
+            off = [np.abs(read[f"{top}/{name}"] - places[:, bone]).max() for bone, name in enumerate(onto.rig.skeleton.names) if bone]
+            print(f"onto {options.onto.name}: {len(off)} bones, {len(take.poses)} frames: at most {1000 * max(off):.5f} mm off; "
+                  f"{1000 * timed(lambda: onto.rig.pose(take.skeleton, take.poses[0].root, take.poses[0].rotations)):.2f} ms a pose")
 
 
 if __name__ == "__main__":
