@@ -44,7 +44,7 @@ def test_nobody_gains_more_speed_than_one_leg_adds(jump, footfalls):
     for state in footfalls:
         gains, why = leaps(jump, state)
         assert len(gains) > 3 and max(gains) < MOST
-        assert why.startswith("no leg pushes off so hard") and "the nearest that it reaches is" in why
+        assert why.startswith(("no leg pushes off so hard", "too far for this run")) and "the nearest that it reaches is" in why
 
 
 def test_a_flight_that_is_told_and_too_short_is_refused(jump, footfalls):
