@@ -32,7 +32,7 @@ TURN_SETTLES = 0.25
 KEEPS = 0.95, 1.4
 """Who runs fast enough to run on, and is in no haste, leaves with about the first of his speed: what he leaves faster or slower along the floor is so many times as
 dear as what he leaves faster upward."""
-ADDS = 0.1, 0.2, 0.29
+ADDS = 0.2, 0.29, 0.29
 """Who runs flies so long that he leaves faster along the floor than he came by no more than this [m/s], in the haste that `Start` tells, at standard height."""
 SPINS = 6.0, 8.0
 """How fast a body turns in the air at most that chooses its airtime, and that was told one [rad/s]."""

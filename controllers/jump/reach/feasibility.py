@@ -95,7 +95,7 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if way.running and way.course is not None:
         gained = float(np.linalg.norm(way.velocity * FLAT) - np.linalg.norm(way.course.velocity[0]))
         if gained > GAINS * np.sqrt(physique.size):
-            return f"too far for this run: one leg adds {GAINS * np.sqrt(physique.size):.1f} m/s at most, and it would take {gained:.1f}"
+            return f"too far for this run: one leg adds {GAINS * np.sqrt(physique.size):.2f} m/s at most, and it would take {gained:.2f}"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
     return stopped(physique, way, ROLLED if rolls(physique, way) else 1.0) or blocked(physique, way, around)
