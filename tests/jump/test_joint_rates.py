@@ -31,7 +31,7 @@ def fastest(who, made, part):
 @pytest.mark.parametrize("place, airtime", [(place, None) for place in ROUND] + [(place, 0.5) for place in HIGH])
 def test_knees_and_ankles_turn_no_faster_than_peoples(jump, standing, place, airtime):
     made = jump.plan(standing, Intent(leap=Leap(np.array(place) + np.array([standing.ground[0], standing.floor, standing.ground[1]]), airtime)))
-    assert fastest(jump, made, "Leg") < 18.0 and fastest(jump, made, "Foot") < 22.0
+    assert fastest(jump, made, "Leg") < 18.0 and fastest(jump, made, "Foot") < 20.0
 
 
 def knees_and_pitches(soft):

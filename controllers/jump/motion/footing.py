@@ -16,7 +16,7 @@ HIPS = 0.09
 """How far below the centre of mass hips are that push [m], at standard height."""
 STRAIGHT, RAISED = 0.992, 0.05
 """A heel rises where the leg is longer than this share of its length, or where the ankle would bend by so much more than it can [rad]."""
-HEELS_RISE, RISES_FOR = (0.40, 0.90), 0.13
+HEELS_RISE, RISES_FOR = (0.30, 0.90), 0.15
 """When in the push a heel starts to rise, at the earliest and at the latest, and so long [s] before take-off if there is the time: no ankle is infinitely fast."""
 SHORT_PUSH, NEARER, LEAST_UP = 0.13, 0.8, 0.2
 """It rises less in pushes that are shorter than the first [s]; and by no more than the second of what brings the ankle nearest to the hip, but by the third [rad] at
