@@ -20,7 +20,7 @@ FADES, TURNS = 0.08, 0.05
 """Half-lives with which a foot comes back to where the method has it, and to how it is turned there [s]."""
 FOLLOWS = 0.97
 """A foot that a tracker tells of keeps this of its distance from there in a sixtieth of a second: a place that was told wrong is not kept for ever."""
-FAR, SLIPPED = 0.3, 0.06
+FAR, SLIPPED = 0.35, 0.06
 """A foot whose method has it farther away [m] takes a step; the second for one that a tracker tells of."""
 HURRY = 1.6
 """A step waits for the other foot to stand, unless it is farther away by this."""

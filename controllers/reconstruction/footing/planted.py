@@ -64,6 +64,11 @@ class Footing:
                      after.speeds, after.believed, after.held, after.offsets, after.rates, after.turns, after.spins, after.steps, after.away)
         return after, Pose(pose.root, rotations)
 
+    def told(self, joints: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Which feet (2,) bool trackers on joints (n,) tell of, that are at points (n, 3), NaN where not seen."""
+        seen = joints[np.isfinite(points).all(-1)]
+        return np.array([np.isin(seen, leg[2:]).any() for leg in self._body[0]])
+
     @cached_property
     def _body(self):
         """Joints of both legs (2, 4), bones, parents, where the heel is in the foot, how high soles stand."""
