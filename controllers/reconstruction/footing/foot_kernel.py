@@ -18,8 +18,9 @@ STOPS, LANDS = 0.008, 0.03
 """Half-lives with which a point that takes hold comes to rest along the floor, and down to it [s]."""
 FADES, TURNS = 0.08, 0.05
 """Half-lives with which a foot comes back to where the method has it, and to how it is turned there [s]."""
-FOLLOWS = 0.97
-"""A foot that a tracker tells of keeps this of its distance from there in a sixtieth of a second: a place that was told wrong is not kept for ever."""
+FOLLOWS = 0.85
+"""A foot that a tracker tells of keeps this of its distance from there in a sixtieth of a second, its height above the floor too: it rests more quietly
+than told, but where it is told."""
 FAR, SLIPPED = 0.35, 0.06
 """A foot whose method has it farther away [m] takes a step; the second for one that a tracker tells of."""
 HURRY = 1.6
@@ -159,10 +160,12 @@ def _places(a, told, dt, height, there, points, speeds):
     for n in range(2):
         k = a + n
         for i in range(3):
-            places[n, i] = points[k, i] + speeds[k, i] * dt * 0.5 ** (dt / STOPS)
             if told:
-                places[n, i] += (1.0 - FOLLOWS ** (60.0 * dt)) * (there[k, i] - places[n, i])
-        places[n, 1] = height + (points[k, 1] - height) * 0.5 ** (dt / LANDS)
+                places[n, i] = there[k, i] + FOLLOWS ** (60.0 * dt) * (points[k, i] - there[k, i])
+            elif i == 1:
+                places[n, i] = height + (points[k, i] - height) * 0.5 ** (dt / LANDS)
+            else:
+                places[n, i] = points[k, i] + speeds[k, i] * dt * 0.5 ** (dt / STOPS)
     return places
 
 
