@@ -8,7 +8,7 @@ import numpy as np
 
 from ...body import exp_kernel, log_kernel, product_kernel, spring_kernel
 from ...compiled import kernel
-from .short_leg import REACH, SOFT, bend_kernel, carried_kernel, flat_kernel, long_kernel, raise_heel_kernel
+from .strained_leg import REACH, SOFT, bend_kernel, carried_kernel, flat_kernel, long_kernel, raise_heel_kernel
 
 TAKES, LEAVES = 0.6, 0.3
 """A point takes hold where it is more probable than this that it stands, and lets go where it is less probable than that."""
