@@ -54,7 +54,8 @@ def slides(points: np.ndarray, standing: np.ndarray, dt: float) -> np.ndarray:
 def flat_slides(points: np.ndarray, height: float, dt: float) -> np.ndarray:
     """How fast feet that lie flat on the floor move along it (K,) [m/s], whoever says that they stand: the slower of heel and ball, of points
     (T, 4, 3) that stand at a height [m]. What an eye takes for sliding."""
-    flat = (points[..., 1] < height + FLAT).reshape(-1, 2, 2).all(-1)
+    low = np.asarray(points[..., 1] < height + FLAT).reshape(-1, 2, 2)
+    flat = low[..., 0] & low[..., 1]
     return _along(points, dt).reshape(-1, 2, 2).min(-1)[flat[1:] & flat[:-1]]
 
 
