@@ -117,7 +117,8 @@ def _foot(f, positions, orientations, local, told, dt, legs, bones, parents, hee
         steps[f] = steps[f] and gap >= LANDED
         gone = 1.0 - gap / away[f] if away[f] > 1e-6 else 0.0
         lift = min(LIFT * away[f], HIGHEST) * (4.0 * gone * (1.0 - gone)) ** 2
-        ball[1] += max(height + lift - min(ball[1], ball[1] - sole[1]), 0.0)
+        if not told:
+            ball[1] += max(height + lift - min(ball[1], ball[1] - sole[1]), 0.0)
     ankle, arm = np.empty(3), np.empty(3)
     carried_kernel(turned, bones[toe], arm)
     ankle[:] = ball - arm

@@ -68,7 +68,8 @@ class Turning:
         after, pose = self.method.step(memory.ours, carried(points, turns))
         near: Near = after.method.hint[-1]
         told = self._footing.told(self.starts.controls.joints[::3], points)
-        feet, pose = self._footing.step(memory.feet, pose, self.contacts[near.frames].mean(0), told, self.method.method.solver.dt)
+        standing = np.where(np.repeat(told, 2), 0.0, self.contacts[near.frames].mean(0))  # places that are told are met better than held
+        feet, pose = self._footing.step(memory.feet, pose, standing, told, self.method.method.solver.dt)
         return Standing(after, feet), pose
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
