@@ -131,10 +131,11 @@ PLAN = {
         "reconstruction.regression": "compiled body reconstruction.neighbours",
         "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",
         "reconstruction.following": "contract body reconstruction.database reconstruction.regression",
+        "reconstruction.footing": "compiled body",
         "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
-                                "reconstruction.baselines reconstruction.following"),
+                                "reconstruction.baselines reconstruction.following reconstruction.footing"),
         "reconstruction.trackers": ("compiled files body reconstruction.database reconstruction.regression reconstruction.baselines "
-                                    "reconstruction.ours"),
+                                    "reconstruction.ours reconstruction.footing"),
         "reconstruction.calibration": ("compiled files body reconstruction.regression reconstruction.baselines reconstruction.trackers "
                                        "reconstruction.live"),
         "reconstruction.evaluation": ("body mocap reconstruction.database reconstruction.regression reconstruction.baselines "

@@ -9,7 +9,7 @@ from .contact import (HEIGHT_GATE, RELEASE, WALK_SPEEDS, contact_height, contact
                       foot_drift, heel_offset, point_speeds)
 from .ground_frame import advance, compose, relative, screw, stacked
 from .human import CONTACT_HEIGHT, HEEL, STATURE, human
-from .ik import distance_kernel, pole_of, two_bone, two_bone_kernel, two_bone_turns
+from .ik import distance_kernel, pole_of, two_bone, two_bone_kernel, two_bone_turns, two_bone_turns_kernel
 from .rotation_kernels import exp_kernel, log_kernel, product_kernel, quaternion_kernel, relative_kernel
 from .rotations import between, carried, exp, heading_of, log, mean, wrap, yaw
 from .skeleton import Skeleton, end_positions, forward_kinematics, local_rotations
@@ -25,5 +25,5 @@ __all__ = [
     "hull", "hull_kernel", "human", "joint_limits", "local_rotations", "log", "log_kernel", "margin", "margin_kernel",
     "mean", "mirror_index", "point_speeds", "pole_of", "product_kernel", "quaternion_kernel", "relative", "relative_kernel",
     "rotations", "screw", "segment_centres", "settle", "sole_corners", "spring_kernel", "stacked", "standing_corners", "two_bone", "two_bone_kernel",
-    "two_bone_turns", "wrap", "yaw",
+    "two_bone_turns", "two_bone_turns_kernel", "wrap", "yaw",
 ]

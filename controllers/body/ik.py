@@ -47,7 +47,7 @@ def two_bone_turns(root: np.ndarray, mid: np.ndarray, end: np.ndarray, target: n
     """
     flat, shape, dtype = _flat(root, mid, end, target, pole_of(root, mid, end) if pole is None else pole)
     upper, lower = np.empty((len(flat[0]), 3, 3), dtype), np.empty((len(flat[0]), 3, 3), dtype)
-    _turns(*flat, dtype.type(buffer), upper, lower)
+    two_bone_turns_kernel(*flat, dtype.type(buffer), upper, lower)
     return upper.reshape(*shape, 3), lower.reshape(*shape, 3)
 
 
@@ -117,7 +117,7 @@ def _two_bones(root, mid, end, target, pole, buffer, new_mid, new_end):
 
 
 @kernel
-def _turns(root, mid, end, target, pole, buffer, upper, lower):
+def two_bone_turns_kernel(root, mid, end, target, pole, buffer, upper, lower):
     """Write the rotations (N, 3, 3) of `two_bone_turns`."""
     was, now, made = np.empty_like(upper[0]), np.empty_like(upper[0]), np.empty((2, 3), root.dtype)
     for n in range(len(root)):

@@ -5,6 +5,8 @@
 LARGE, FOLDER: as for scripts/build/trackers.py, a database and the folder whose clips are measured on. Courses: the test takes of
 scripts/measure/reconstruction.py, with the half second before given, as there; the same from nothing; the performers' raw proportions,
 their own joints on skeletons of their own lengths, from nothing; subjects of CMU and other data sets of whom nothing was learnt.
+Feet slide where the performer's stand; a foot that lies flat on the floor slides by an eye's measure, whatever the performer's does. How far off feet and the height of
+soles that stand are, how their legs shake over the performer's, and how far a knee is at most from where its motion led, tell what holding feet costs.
 All distances are centimetres in the world over 19 joints. A frame's time is the process's own, which others on the machine hardly change.
 """
 
@@ -33,7 +35,7 @@ from reconstruction_figures import table
 
 WORN = {"6 points": ("6", False), "4 points": ("4", False), "6 that turn": ("6", True), "3 that turn": ("head,lwrist,rwrist", True)}
 HEAD = ("", "takes", "cm", "joint deg", "worst cm", "beyond 20 cm, %", "first frame cm (worst)", "first half second cm", "jitter",
-        "slide cm/s (theirs)", "ms")
+        "slide cm/s (theirs)", "flat feet cm/s (theirs)", "feet off cm", "soles' height off cm", "legs' jitter", "knee's leap cm (theirs)", "ms")
 TITLE = """# The network for trackers, measured
 
     python scripts/measure/reconstruction_trackers.py LARGE --small FOLDER --out docs/reconstruction/trackers.md
@@ -112,24 +114,42 @@ def followed(network: Network, on: Performance, points: str, turning: bool, give
     judged[0] = False
     errors = 100 * np.linalg.norm(found[:, judged] - truth[:, judged], axis=-1).mean(-1)
     angles = np.degrees(metrics.angle_error(rotations, on.rotations[begin:begin + len(root)]))
-    own = forward_kinematics(on.skeleton, on.root, on.rotations)
-    soles = contact_points(on.skeleton, own[0][begin:begin + len(root)], own[1][begin:begin + len(root)])
-    stands = detect_contacts(soles[..., 1], point_speeds(soles, 1 / FPS))
-    stands = stands[1:] & stands[:-1]
-    slide, theirs = (100 * FPS * np.linalg.norm(np.diff(some[..., [0, 2]], axis=0), axis=-1)[stands] for some in
-                     (contact_points(on.skeleton, found, turned), soles))
-    shake = metrics.jitter(found, 1 / FPS) / max(metrics.jitter(own[0][begin:begin + len(root)], 1 / FPS), 1e-9)
+    own = tuple(part[begin:begin + len(root)] for part in forward_kinematics(on.skeleton, on.root, on.rotations))
+    shake = metrics.jitter(found, 1 / FPS) / max(metrics.jitter(own[0], 1 / FPS), 1e-9)
     return [errors.mean(), angles.mean(), errors.max(), 100 * float((errors > FAR).mean()), errors[0], errors[:HALF].mean(), shake,
-            float(slide.sum()), float(theirs.sum()), float(stands.sum()), 1e3 * spent]
+            *on_feet(on.skeleton, (found, turned), own), 1e3 * spent]
+
+
+def on_feet(skeleton: Skeleton, found: tuple[np.ndarray, np.ndarray], own: tuple[np.ndarray, np.ndarray]) -> list[float]:
+    """How joints, positions (T, J, 3) and orientations, hold feet beside the performer's: sums and counts of the slides [cm/s] of theirs and the performer's, of flat
+    feet's likewise; how far off feet are, and soles that stand in height [cm]; the legs' jitter; both's knees' leaps [cm]."""
+    shown, soles = (contact_points(skeleton, *some) for some in (found, own))
+    height, stands = contact_height(skeleton), detect_contacts(soles[..., 1], point_speeds(soles, 1 / FPS))
+    numbers: list[float] = []
+    for some in (shown, soles):
+        slides, flat = metrics.slides(some, stands, 1 / FPS), metrics.flat_slides(some, height, 1 / FPS)
+        numbers += [100 * float(slides.sum()), float(len(slides)), 100 * float(flat.sum()), float(len(flat))]
+    knees, feet = ([skeleton.index(side + name) for side in ("Left", "Right") for name in names] for names in (("Leg",), ("Foot", "Toe")))
+    shakes = [np.linalg.norm(np.diff(joints[:, knees + feet], 3, axis=0), axis=-1).mean() for joints, _ in (found, own)]
+    return [*numbers, 100 * float(np.linalg.norm(found[0][:, feet] - own[0][:, feet], axis=-1).mean()),
+            100 * float(np.abs((shown - soles)[..., 1][stands]).mean()) if stands.any() else 0.0, float(shakes[0] / max(shakes[1], 1e-9)),
+            *(100 * metrics.knee_leap(joints[:, knees], joints[:, 0]) for joints, _ in (found, own))]
+
+
+def in_cells(feet: np.ndarray) -> list[str]:
+    """What `on_feet` told of N performances (N, 13), in the table's words."""
+    total, mean = np.maximum(feet.sum(0), 1e-9), feet.mean(0)
+    return [f"{total[0] / total[1]:.1f} ({total[4] / total[5]:.1f})", f"{total[2] / total[3]:.1f} ({total[6] / total[7]:.1f})", f"{mean[8]:.1f}", f"{mean[9]:.1f}",
+            f"{np.median(feet[:, 10]):.2f}", f"{mean[11]:.1f} ({mean[12]:.1f})"]
 
 
 def row(name: str, network: Network, those: list[Performance], points: str, turning: bool, given: bool) -> list[str]:
     """A line of the table."""
     found = np.array([followed(network, on, points, turning, given) for on in those])
-    mean, worst, stands = found.mean(0), found.max(0), max(found[:, 9].sum(), 1.0)
+    mean, worst = found.mean(0), found.max(0)
     return [name, str(len(those)), f"{mean[0]:.2f}", f"{mean[1]:.1f}", f"{worst[2]:.0f}", f"{mean[3]:.1f}",
             "" if given else f"{mean[4]:.2f} ({worst[4]:.0f})", "" if given else f"{mean[5]:.2f}", f"{np.median(found[:, 6]):.2f}",
-            f"{found[:, 7].sum() / stands:.1f} ({found[:, 8].sum() / stands:.1f})", f"{mean[10]:.2f}"]
+            *in_cells(found[:, 7:-1]), f"{mean[-1]:.2f}"]
 
 
 COURSES = ("takes of seen subjects, the half second before given", "the same from nothing",

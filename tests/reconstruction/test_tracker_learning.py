@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from gambol.controllers.reconstruction import SKELETON
-from gambol.controllers.reconstruction.database import Database
+from gambol.controllers.reconstruction.database import Database, standing
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.pose_vector import encode
-from gambol.controllers.reconstruction.trackers import INPUTS, Learner, Moments, Network, bodies, standing
+from gambol.controllers.reconstruction.trackers import INPUTS, Learner, Moments, Network, bodies
 from gambol.controllers.reconstruction.trackers.learning import MEAN, adam_kernel, loss
 from gambol.controllers.reconstruction.trackers.network import OUTPUTS
 from dolls import shipped, strides

@@ -14,10 +14,10 @@ from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
 from gambol.controllers.reconstruction.following.point_gate import ENOUGH, LISTENED
+from gambol.controllers.reconstruction.footing import Footing
 from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, WIDTH
 from gambol.controllers.reconstruction.regression import kinematics_kernel
 from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, SLOTS, Trackers, bodies
-from gambol.controllers.reconstruction.trackers.held_soles import Soles
 from gambol.controllers.reconstruction.trackers.samples import FIRST
 from gambol.controllers.reconstruction.trackers.slots import view_kernel
 from gambol.controllers.reconstruction.trackers.solver import misfit_kernel, slopes_kernel
@@ -137,7 +137,7 @@ def test_feet_that_stand_carry_nobody_along(walk, monkeypatch):
     controls = parse(HEAD_AND_HANDS, SKELETON)
     points, turns = walk[2][:240, controls.joints], walk[3][:240, controls.joints]
     held = forward_kinematics(SKELETON, *played(Trackers(shipped(), controls, DT), points, turns))
-    monkeypatch.setattr(Soles, "told", lambda soles, standing: Soles.none())
+    monkeypatch.setattr(Footing, "step", lambda footing, feet, pose, standing, told, dt: (feet, pose))
     loose = forward_kinematics(SKELETON, *played(Trackers(shipped(), controls, DT), points, turns))
     above = [j for j, name in enumerate(SKELETON.names) if not name.endswith(("Leg", "Foot", "Toe"))]
     assert np.linalg.norm(held[0] - loose[0], axis=-1)[:, above].max() < 0.03

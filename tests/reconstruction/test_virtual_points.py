@@ -12,15 +12,17 @@ from trajectories import calm_database
 from gambol.controllers.body import exp, forward_kinematics, yaw
 from gambol.controllers.reconstruction import SKELETON, parse
 from gambol.controllers.reconstruction.baselines.windows import Samples
+from gambol.controllers.reconstruction.database.contacts import contacts
 from gambol.controllers.reconstruction.following import Starts
+from gambol.controllers.reconstruction.neighbours.cells import Cells
 from gambol.controllers.reconstruction.neighbours.segments import Segments
-from gambol.controllers.reconstruction.ours.combined import Expectation, Ours
+from gambol.controllers.reconstruction.ours.combined import LISTENED, Expectation, Ours
 from gambol.controllers.reconstruction.ours.lost_points import LostPoints
 from gambol.controllers.reconstruction.ours.networks import learn
 from gambol.controllers.reconstruction.ours.virtual_points import Turning, carried, virtual
 from gambol.controllers.reconstruction.pose_vector import WIDTH, advance, decode
 from gambol.controllers.reconstruction.regression.map_solver import Solver
-from gambol.controllers.reconstruction.regression.method import SPAN, Fused, Method
+from gambol.controllers.reconstruction.regression.method import SPAN, Fused, Local, LocalRegression, Method
 
 DT = 1 / 60
 CONTROLS = parse("head,lwrist,rwrist", SKELETON)
@@ -37,9 +39,10 @@ def method(database):
     points = virtual(CONTROLS)
     solver = Solver(points, DT)
     samples = Samples.of(database, solver)
-    networks = learn(samples, seeds=1, batches=1000, hidden=(128, 128))
-    ours = Ours(Method(Fused((Expectation(networks, LostPoints.of(samples), DT),)), solver))
-    return Turning(ours, Starts.of(database, points))
+    networks = learn(samples, seeds=1, batches=1500, hidden=(128, 128))
+    near = Local(LocalRegression(LISTENED), Cells(Segments.of(database, 2, 2, points.joints, offsets=points.offsets)), 20)
+    ours = Ours(Method(Fused((Expectation(networks, LostPoints.of(samples), DT), near)), solver))
+    return Turning(ours, Starts.of(database, points), contacts(database))
 
 
 @pytest.fixture(scope="module")
@@ -137,3 +140,22 @@ def test_it_begins_from_nothing(method, performance):
     points, turns = trackers(performance)
     frames, tracks = method.find(points[50], None, turns[50])
     assert frames.shape[-1] == WIDTH and np.allclose(decode(frames[-1], tracks[-1])[0], performance[2][50, 0], atol=0.05)
+
+
+def test_soles_stand_where_those_of_most_neighbours_do(method, performance):
+    """All neighbours' soles said to stand, no held sole moves while the body goes on; none said to, nothing is held."""
+    points, turns = trackers(performance)
+    soles = []
+    for stands in (True, False):
+        told, held = replace(method, contacts=np.full_like(method.contacts, stands)), []
+        memory, shown = told.begin(performance[0][:SPAN], performance[1][:SPAN]), []
+        for now in range(SPAN, SPAN + 40):
+            memory, _ = told.step(memory, points[now], turns[now])
+            held.append(memory.feet.held)
+            shown.append(memory.feet.points)
+        moved = np.linalg.norm(np.diff(np.array(shown)[..., [0, 2]], axis=0), axis=-1)
+        soles.append((np.array(held), moved))
+    (held, moved), (free, _) = soles
+    assert held.any() and not free.any()
+    both = (held[1:] & held[:-1])[:, 1::2]
+    assert np.median(moved[:, 1::2][both]) < 0.001

@@ -1,4 +1,4 @@
-"""How good a reconstruction is: distances, angles, jitter and lag against the recorded motion.
+"""How good a reconstruction is: distances, angles, jitter, lag and feet against the recorded motion.
 
 All take whole takes, frames along the first axis, and give one number a frame or a take. World positions
 are compared as they are: whoever wanders off pays for it.
@@ -11,6 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from ...body import log
 from ..pose_vector import JOINTS, REFERENCE
+
+
+FLAT = 0.02
+"""A foot lies flat whose heel and ball are no higher than this above where they stand [m]."""
 
 
 def position_error(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
@@ -40,6 +44,28 @@ def column_error(found: np.ndarray, truth: np.ndarray) -> np.ndarray:
 def jitter(positions: np.ndarray, dt: float) -> float:
     """Mean length of the third derivative [m/s³] of the joints' positions (T, J, 3), frames dt [s] apart."""
     return float(np.linalg.norm(np.diff(positions[:, JOINTS], 3, axis=0), axis=-1).mean() / dt ** 3)
+
+
+def slides(points: np.ndarray, standing: np.ndarray, dt: float) -> np.ndarray:
+    """How fast soles' points (T, 4, 3) that stand, (T, 4) bool, move along the floor (K,) [m/s], one for each that does in a frame and the next."""
+    return _along(points, dt)[standing[1:] & standing[:-1]]
+
+
+def flat_slides(points: np.ndarray, height: float, dt: float) -> np.ndarray:
+    """How fast feet that lie flat on the floor move along it (K,) [m/s], whoever says that they stand: the slower of heel and ball, of points
+    (T, 4, 3) that stand at a height [m]. What an eye takes for sliding."""
+    low = np.asarray(points[..., 1] < height + FLAT).reshape(-1, 2, 2)
+    flat = low[..., 0] & low[..., 1]
+    return _along(points, dt).reshape(-1, 2, 2).min(-1)[flat[1:] & flat[:-1]]
+
+
+def knee_leap(knees: np.ndarray, hips: np.ndarray) -> float:
+    """How far [m] a knee (T, 2, 3) was at most from where its last two places, seen from the hips (T, 3), led."""
+    return float(np.linalg.norm(np.diff(knees - hips[:, None], 2, axis=0), axis=-1).max(initial=0.0))
+
+
+def _along(points, dt):
+    return np.linalg.norm(np.diff(points[..., [0, 2]], axis=0), axis=-1) / dt
 
 
 def lag(found: np.ndarray, truth: np.ndarray, most: int = 8) -> float:

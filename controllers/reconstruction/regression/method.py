@@ -117,8 +117,16 @@ class LocalModel(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
+class Near:
+    """What a local prior found last. hint: the search's. frames: (K,) the numbers of the recorded frames that follow the segments."""
+
+    hint: Any
+    frames: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class Local:
-    """The prior of all local methods: a model learnt, for each frame anew, from the nearest recorded segments.
+    """The prior of all local methods: a model learnt, for each frame anew, from the nearest recorded segments. Its hint is a `Near`.
 
     search: one of `neighbours`, over its segments. count: K. forbidden: a recording never to be found.
     """
@@ -133,8 +141,9 @@ class Local:
         segments: Segments = self.search.segments
         past = memory.frames[:segments.stride * segments.m:segments.stride]
         feature = segments.query(past, seen, memory.points[0], memory.track)
-        near, hint = segments.neighbourhood(self.search, feature, self.count, memory.hint, self.forbidden)
-        return self.model.believe(feature, near, memory), hint
+        last: Near | None = memory.hint
+        near, hint = segments.neighbourhood(self.search, feature, self.count, None if last is None else last.hint, self.forbidden)
+        return self.model.believe(feature, near, memory), Near(hint, segments.last[near.indices] + 1)
 
 
 @dataclass(frozen=True, eq=False)

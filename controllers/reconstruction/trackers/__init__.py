@@ -5,12 +5,12 @@ contacts, and the most probable pose on the performer's own skeleton.
 from .bodies import bodies, legs
 from .learning import HIDDEN, SIZE, Learner
 from .network import SHIPPED, Network
-from .samples import FIRST, LEGS, Moments, moments_kernel, standing, tracks_of
+from .samples import FIRST, LEGS, Moments, moments_kernel
 from .slots import INPUTS, LAGS, PLACES, SLOTS
 from .tracker_poses import Trackers
 from .tuning import BATCHES, SHARE, Tuner
 
 __all__ = [
     "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
-    "legs", "moments_kernel", "standing", "tracks_of",
+    "legs", "moments_kernel",
 ]

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...body import contact_points, detect_contacts, forward_kinematics, point_speeds
 from ...compiled import kernel
-from ..database import Database
+from ..database import Database, contacts
 from ..ours import seen_from
-from ..pose_vector import FORWARD, HEIGHT, JOINTS, LEFTWARD, REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
+from ..pose_vector import FORWARD, HEIGHT, JOINTS, LEFTWARD, REFERENCE, SKELETON, WIDTH, YAW_RATE
 from ..regression import EXACT, kinematics_kernel
 from .bodies import bodies, legs
 from .slots import INPUTS, LAGS, SLOTS, views_kernel
@@ -28,7 +27,6 @@ LEGS = np.array([SKELETON.index(side + name) for side in ("Left", "Right") for n
 _STANDARD = float(legs(SKELETON.offsets))
 EVEN = 0.6
 """A subject is drawn as often as the number of its frames to this power: one who walks for an hour does not fill the batches."""
-_CHUNK = 4096  # frames whose contacts are told at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,18 +55,17 @@ class Moments:
     def of(database: Database) -> Moments:
         """All sound moments of a database's takes. ValueError if there is none."""
         which, first, whose = [], [], []
-        contacts, subjects = np.zeros((len(database.frames), 4), bool), sorted({take.subject for take in database.takes})
+        subjects = sorted({take.subject for take in database.takes})
         for take in database.takes:
             good = take.start + np.flatnonzero(database.sound[take.start:take.stop])
             which.append(good)
             first.append(np.full(len(good), take.start))
             whose.append(np.full(len(good), subjects.index(take.subject)))
-            contacts[take.start:take.stop] = standing(database.frames[take.start:take.stop], take.action == "run", database.fps)
         if not sum(map(len, which)):
             raise ValueError(f"{database.path}: has no sound frame to learn from")
         who = np.concatenate(whose)
         upto = np.cumsum(np.bincount(who)[who] ** (EVEN - 1.0))
-        return Moments(database, np.concatenate(which).astype(np.int32), np.concatenate(first).astype(np.int32), upto / upto[-1], contacts)
+        return Moments(database, np.concatenate(which).astype(np.int32), np.concatenate(first).astype(np.int32), upto / upto[-1], contacts(database))
 
     def __len__(self) -> int:
         return len(self.which)
@@ -93,28 +90,6 @@ class Moments:
         views_kernel(places, turns, wearing.placed, wearing.turned, people, SKELETON.offsets, LAGS, 1.0 / self.database.fps,
                      given, inputs, grounds)
         return Batch(inputs, seen_from(grounds, truth, np.zeros(3)), self.contacts[at], people)
-
-
-def standing(frames: np.ndarray, running: bool, fps: float) -> np.ndarray:
-    """Which of heels and balls stand (T, 4) in frames (T, WIDTH) of a take on the standard body's floor."""
-    parts, heights, velocities = np.asarray(frames, float), [], []
-    tracks = tracks_of(parts, 1.0 / fps)
-    for begin in range(0, len(parts), _CHUNK):
-        end = min(begin + _CHUNK, len(parts))
-        low, high = max(begin - 1, 0), min(end + 1, len(parts))  # speeds look one frame either way
-        points = contact_points(SKELETON, *forward_kinematics(SKELETON, *decode(parts[low:high], tracks[low:high])))
-        heights.append(points[begin - low:end - low, :, 1])
-        velocities.append(point_speeds(points, 1.0 / fps)[begin - low:end - low])
-    return detect_contacts(np.concatenate(heights), np.concatenate(velocities), running=running)
-
-
-def tracks_of(frames: np.ndarray, dt: float) -> np.ndarray:
-    """The ground tracks (T, 3) of a take's frames (T, WIDTH), from the origin on."""
-    rates = frames[1:] * dt
-    heading = np.concatenate([[0.0], np.cumsum(rates[:, YAW_RATE])])
-    c, s = np.cos(heading[:-1]), np.sin(heading[:-1])
-    way = np.stack([s * rates[:, FORWARD] + c * rates[:, LEFTWARD], c * rates[:, FORWARD] - s * rates[:, LEFTWARD]], -1)
-    return np.concatenate([np.concatenate([np.zeros((1, 2)), np.cumsum(way, 0)]), heading[:, None]], -1)
 
 
 @kernel(fastmath=EXACT, error_model="numpy")

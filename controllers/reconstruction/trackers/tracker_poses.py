@@ -1,7 +1,7 @@
 """The network as a method: frame by frame, what trackers say becomes the most probable pose on the performer's own skeleton.
 
 The network needs no past and is told what is missing, so a beginning and lost trackers are nothing special. What it was off by in the
-last frame, as the solve found, is expected again, fading (as in `ours`). Soles that it says stand are held where they came down, by the
+last frame, as the solve found, is expected again, fading (as in `ours`). Soles that it says stand stay where they came down, by the
 legs alone and in what is shown alone: who is solved with them is carried along by feet that came down in a wrong place, more and more.
 """
 
@@ -13,8 +13,9 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ...body import Pose, Skeleton, contact_height, forward_kinematics, heel_offset
+from ...body import Pose, Skeleton, forward_kinematics
 from ..control_points import ControlPoints
+from ..footing import Feet, Footing
 from ..ours import Motion, noise, placed
 from ..pose_vector import ANGLES, REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
 from ..regression import FAR, FLOOR, SPAN, on_ground, seen_kernel
@@ -23,7 +24,6 @@ from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
 from .solver import fit_kernel
-from .held_soles import LEGS_ALONE, Soles
 
 FADING = 0.9
 """What is left of the network's error a frame later."""
@@ -48,21 +48,20 @@ SURE = np.radians(10.0)
 _LITTLE = 2.0  # frames that velocities rest on at first
 _RECENT = 15  # frames that tell the noise
 _JUMP = 1.0  # rad or m, beyond which the chart has jumped: nothing to be smoothed
-_WORLD = np.zeros(3)
+_WORLD, _NONE = np.zeros(3), np.zeros(4)
 
 
 @dataclass(frozen=True, eq=False)
 class Remembered:
-    """pose: (D,) placed in the world, as it was solved; before: (D,) the one before. stood: (D,) the same with soles held. off: (D,) what the
-    network was off by.
+    """pose: (D,) placed in the world, as it was solved; before: (D,) the one before. off: (D,) what the network was off by.
 
     places (SPAN, S, 3) [m], turns (SPAN, S, 3, 3): what slots said in the world, newest first; NaN where nothing. turning: (n,) bool,
-    which trackers have told a turn. recent: (T, n, 3) raw points. points, shown: filtered. soles: which stand, and where.
+    which trackers have told a turn. recent: (T, n, 3) raw points. points, shown: filtered. standing: (4,) how probable it is that heels and balls
+    stand. feet: where they do.
     """
 
     pose: np.ndarray
     before: np.ndarray
-    stood: np.ndarray
     off: np.ndarray
     places: np.ndarray
     turns: np.ndarray
@@ -70,7 +69,8 @@ class Remembered:
     recent: np.ndarray
     points: Motion | None
     shown: Motion
-    soles: Soles
+    standing: np.ndarray
+    feet: Feet
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +102,9 @@ class Trackers:
             for absent in np.setdiff1d(np.arange(len(SLOTS)), self._slots[self._slots >= 0]):
                 places[:, absent], turns[:, absent] = np.nan, np.nan
         pose, before = frames[0], frames[min(1, len(frames) - 1)]
-        return Remembered(pose, before, pose, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
-                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before), _LITTLE), Soles.none())
+        return Remembered(pose, before, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
+                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before), _LITTLE), _NONE,
+                          Feet.none())
 
     def step(self, memory: Remembered, points: np.ndarray, turns: np.ndarray | None = None) -> tuple[Remembered, Pose]:
         """The pose a frame later, for trackers at points (n, 3) [m] in the world with turns (n, 3, 3), NaN where not known."""
@@ -121,15 +122,15 @@ class Trackers:
             filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
             points = np.where(np.isfinite(points), filtered.place, np.nan)
         after = self._followed(memory, points, turns, BLUR * level)
-        found = after.stood
+        found = after.pose
         if not self.steady:
-            return replace(after, recent=recent), shown_as(found)
+            return self._planted(replace(after, recent=recent), found, points)
         if np.abs(less(found, memory.shown.place)).max() > _JUMP:
             shown = Motion(found, np.zeros(WIDTH), _LITTLE)
         else:
             near = memory.shown.place + less(found, memory.shown.place)
             shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
-        return replace(after, recent=recent, points=filtered, shown=shown), shown_as(shown.place)
+        return self._planted(replace(after, recent=recent, points=filtered, shown=shown), shown.place, points)
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
              ) -> tuple[np.ndarray, np.ndarray]:
@@ -165,7 +166,7 @@ class Trackers:
         points, turns = np.full((len(known), 3), np.nan), np.full((len(known), 3, 3), np.nan)
         points[known], turns[known] = memory.places[0, self._slots[known]], memory.turns[0, self._slots[known]]
         points[self.controls.offsets.any(-1)] = np.nan
-        return self._solved(replace(memory, off=np.zeros(WIDTH), soles=Soles.none()), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
+        return self._solved(replace(memory, off=np.zeros(WIDTH)), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
 
     def exchanged(self, memory: Remembered, i: int, j: int) -> Remembered:
         """The memory in which two trackers had each other's number all the time; the same one where they have no slots."""
@@ -179,12 +180,12 @@ class Trackers:
                        recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH))
 
     def _followed(self, memory, points, turns, blur):
-        """The memory a frame later."""
+        """The memory a frame later, but for what is shown."""
         if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
             told = self._told(memory, points, turns)
             pose = memory.pose + RESTING * less(memory.pose, memory.before)
             pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
-            return replace(told, pose=pose, before=memory.pose, stood=pose, soles=Soles.none())
+            return replace(told, pose=pose, before=memory.pose, standing=_NONE)
         return self._solved(self._told(memory, points, turns), points, turns, blur)[0]
 
     def _told(self, memory, points, turns):
@@ -217,31 +218,22 @@ class Trackers:
         view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
         mean = expected + FADING * memory.off
-        soles = memory.soles.told(standing)
-        goals, firm = soles.goals(ground)
-        goals, hold = np.concatenate([on_ground(points, ground), goals]), np.zeros(len(points) + len(firm))
-        hold[:len(points)][np.isfinite(points).all(-1)] = 1.0 / (EXACT_PLACE ** 2 + blur ** 2)
-        keep = np.zeros(len(hold))
-        keep[:len(points)][np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
-        wanted = np.zeros((len(hold), 3, 3))
-        wanted[:len(points)] = turned_on(turns, ground)
-        frame, joints = np.empty(WIDTH), (np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
-        parents, offsets, first, at, beside = self._body
-
-        def solve(mean, precision, out):
-            return fit_kernel(mean, precision, mean, self.network.lower, self.network.upper, parents, offsets, REFERENCE, first, at, beside,
-                              goals, hold, wanted, keep, STEPS, TOLERANCE, out, *joints)
-        energy = solve(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), frame)
-        stood = frame
-        if firm.any():
-            hold[len(points):], stood = firm, np.empty(WIDTH)
-            solve(frame, LEGS_ALONE, stood)
-        pose, shown = np.empty(WIDTH), np.empty(WIDTH)
+        goals, hold, keep = on_ground(points, ground), np.zeros(len(points)), np.zeros(len(points))
+        hold[np.isfinite(points).all(-1)] = 1.0 / (EXACT_PLACE ** 2 + blur ** 2)
+        keep[np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
+        frame, pose = np.empty(WIDTH), np.empty(WIDTH)
+        parents, offsets, joints, beside = self._body
+        energy = fit_kernel(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), mean, self.network.lower, self.network.upper, parents, offsets,
+                            REFERENCE, FIRST, joints, beside, goals, hold, turned_on(turns, ground), keep, STEPS, TOLERANCE, frame,
+                            np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         seen_kernel(frame, ground, _WORLD, pose)
-        seen_kernel(stood, ground, _WORLD, shown)
-        points_found = joints[0][at[-4:]] + np.einsum("nij,nj->ni", joints[1][at[-4:]], beside[-4:])
-        soles = soles.found(points_found, ground, contact_height(self.skeleton))
-        return replace(memory, pose=pose, before=memory.pose, stood=shown, off=less(frame, expected), soles=soles), energy
+        return replace(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing), energy
+
+    def _planted(self, memory, shown, points):
+        """The memory with feet as they stand, and the pose to show. shown: (D,) the placed pose without. points: (n, 3) of trackers, NaN where not seen."""
+        told = self._footing.told(self.controls.joints, points)
+        feet, pose = self._footing.step(memory.feet, shown_as(shown), memory.standing, told, self.dt)
+        return replace(memory, feet=feet), pose
 
     def _hearing(self, turning):
         """Which slots (S,) have a tracker that turns."""
@@ -265,11 +257,13 @@ class Trackers:
 
     @cached_property
     def _body(self):
-        """Parents, offsets, first columns; joints and offsets of trackers and of the four soles' points."""
-        feet = [self.skeleton.index(name) for name in ("LeftFoot", "LeftToe", "RightFoot", "RightToe")]
-        heel = heel_offset(self.skeleton)
-        beside = np.concatenate([self.controls.offsets, [heel, np.zeros(3), heel, np.zeros(3)]])
-        return (self.skeleton.parents, self.skeleton.offsets, FIRST, np.concatenate([self.controls.joints, feet]), beside)
+        """Parents, offsets; joints and offsets of trackers."""
+        return self.skeleton.parents, self.skeleton.offsets, self.controls.joints, self.controls.offsets
+
+    @cached_property
+    def _footing(self) -> Footing:
+        """Who plants feet."""
+        return Footing(self.skeleton)
 
     @cached_property
     def _precision(self) -> Callable[[bytes, bytes], np.ndarray]:
