@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Skeleton, brief, exp, forward_kinematics, local_rotations, log, two_bone_turns
-from ..body.human import STATURE
+from ..body import STATURE, Skeleton, brief, exp, forward_kinematics, local_rotations, log, two_bone_turns
 from .calibration import SIDES
 from .joint_names import Roles, carriers, plain, roles
 from .t_pose import HUMAN, REST, complete, to_t_pose, upright

@@ -67,7 +67,7 @@ def test_it_keeps_its_speed(played):
 def test_a_runner_leaves_hardly_faster_than_he_runs(played):
     """He flies higher instead: the least change of his velocity would be to leave with 3.8 m/s over a far ring."""
     made, _ = played
-    assert np.hypot(*made.path.velocity[[0, 2]]) < PACE + 0.3
+    assert np.hypot(*made.path.velocity[[0, 2]]) < 1.16 * PACE
 
 
 def test_who_comes_too_near_lands_beyond_the_ring(person, runner):
@@ -103,7 +103,7 @@ def test_the_foot_stays_where_it_comes_down_and_no_hip_sinks_through_the_stride(
     assert np.linalg.norm(balls[0, [0, 2]] - made.feet[side, [0, 2]]) < 0.02
     assert min(sole_corners(jump.skeleton, *one)[..., 1].min() for one in placed) > -0.015
     heights = np.array([one[0][0, 1] for one in placed])
-    assert heights.min() > 0.70 and np.abs(np.diff(heights, 2)).max() < 0.02
+    assert heights.min() > 0.72 and np.abs(np.diff(heights, 2)).max() < 0.02
 
 
 @pytest.mark.parametrize("high", [0.0, 0.34])

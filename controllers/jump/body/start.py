@@ -49,7 +49,7 @@ class Start:
     jump, and its legs give until the centre of mass is so high [m]; None where it does not. acceleration: (3,) [m/s²] of the centre then.
     turn: how far to the left it turns until it lands [rad], looking where it goes; None where nobody told. springs: the landing was made to hop on
     from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on. haste: 0 it leaves hardly
-    faster than it runs, on knees that turn no faster than people's; 1 a little faster, on legs as straight as can be; 2 as much faster as one leg can add, heels
+    faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
     and a free leg as fast as it takes, too.
     """
 

@@ -32,8 +32,6 @@ TURN_SETTLES = 0.25
 KEEPS = 0.95, 1.4
 """Who runs fast enough to run on, and is in no haste, leaves with about the first of his speed: what he leaves faster or slower along the floor is so many times as
 dear as what he leaves faster upward."""
-ADDS = 0.2, 0.29, 0.29
-"""Who runs flies so long that he leaves faster along the floor than he came by no more than this [m/s], in the haste that `Start` tells, at standard height."""
 SPINS = 6.0, 8.0
 """How fast a body turns in the air at most that chooses its airtime, and that was told one [rad/s]."""
 HIGHER = 0.14, 0.9
@@ -150,9 +148,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     across = float(np.sqrt(max(1.0 - along**2, 0.0)))
     runner = start.single if start.runs else None
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
-    came = float(np.linalg.norm(start.velocity * FLAT))
-    keeps, dear = KEEPS if start.runs and not start.haste and came > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
-    fastest = came + ADDS[start.haste] * np.sqrt(size) if start.runs else np.inf
+    keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
     stretched = np.array([dear, 1.0, dear])
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
     heights, crouch = upright, 0.0
@@ -162,8 +158,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
-            (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least,
-            float(np.linalg.norm((land - leave) * FLAT)) / fastest)
+            (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         features = [prior.features(speed, ahead, pace, size, start.runs)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]

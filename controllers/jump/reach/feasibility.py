@@ -22,8 +22,6 @@ STANDER = 3.5
 """And what both legs give that push off together: half as much again as from the deepest crouch at rest."""
 SLIP = 1.0
 """Soles slip on the floor under a force that leans farther: their friction."""
-GAINS = 0.3
-"""So much faster along the floor than he came a runner leaves at most [m/s], at standard height: of recorded ones two brake by 0.4 m/s, and two gain 0.0 and 0.2."""
 ASIDE = 0.03
 """The ground presses no farther outside the soles that stand than this [m], at standard height."""
 STOPS = 6.0, 0.5
@@ -92,10 +90,6 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if way.course is not None and (way.course.outside > ASIDE * physique.size or way.course.lean > SLIP):
         gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.course.velocity[0])
         return f"too {'far' if gains else 'near'} for this {'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"
-    if way.running and way.course is not None:
-        gained = float(np.linalg.norm(way.velocity * FLAT) - np.linalg.norm(way.course.velocity[0]))
-        if gained > GAINS * np.sqrt(physique.size):
-            return f"too far for this run: one leg adds {GAINS * np.sqrt(physique.size):.2f} m/s at most, and it would take {gained:.2f}"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
     return stopped(physique, way, ROLLED if rolls(physique, way) else 1.0) or blocked(physique, way, around)
