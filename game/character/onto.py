@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gambol.controllers.mocap import Moved, NoHuman, Rig
+from gambol.controllers.mocap import Moved, Rig
 
 from . import gltf
 from .gltf import CharacterError, Document
@@ -54,9 +54,10 @@ def rigged(path: str | Path) -> Rigged:
         nodes = [-1, *(n for n in tree.order if n in bones)]
         number = {n: k for k, n in enumerate(nodes)}
         try:
-            world = np.concatenate([np.eye(4)[None], bound_world(document, tree)[nodes[1:]]])
+            bound = bound_world(document, tree)
         except np.linalg.LinAlgError:
             raise ValueError(gltf.scaled_to_nothing(tree)) from None
+        world = np.concatenate([np.eye(4)[None], bound[nodes[1:]]])
         names, seen = ["(file)"], {"(file)"}
         for n in nodes[1:]:
             names.append(tree.names[n] if tree.names[n] not in seen else f"{tree.names[n]} #{n}")
@@ -70,10 +71,10 @@ def rigged(path: str | Path) -> Rigged:
         listed = {ours: names[number[n]] for ours, n in table(document).items() if n in number}
         try:
             rig = Rig.of(names, parents, world[:, :3, 3], world[:, :3, :3] / size[:, None, None], parts=listed or None)
-            skin = gathered(document, tree, bound_world(document, tree), bones).positions @ rig.axes.T
-            rig = rig.on_floor(float(skin[:, 1].min()))
-        except (NoHuman, ValueError) as error:
+        except ValueError as error:
             raise CharacterError(f"{document.path}: {error}") from None
+        skin = gathered(document, tree, bound, bones).positions @ rig.axes.T
+        rig = rig.on_floor(float(skin[:, 1].min()))
     return Rigged(document, rig, np.array(nodes), world)
 
 
