@@ -15,7 +15,7 @@ from .base import Library, Mistake, Wearing, app, known, learn, person_of, plain
 def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml file of one, or an input log (.gambol).")],
            out: Annotated[Path, typer.Option("-o", "--out", help="A .glb file (bodies, motion, contacts) or a .bvh file (motion).")],
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
-           onto: Annotated[Path | None, typer.Option(help="A .glb, .gltf or .vrm file with a rigged human: -o becomes a copy of it that moves, with its own bones, skin and names.")] = None,
+           onto: Annotated[Path | None, typer.Option(help="Your own rigged human: -o moves on his bones. Of a .glb, .gltf or .vrm a copy with skin and names, of a .bvh or .amc a .bvh.")] = None,
            actor: Annotated[str | None, typer.Option(help="Whose motion goes --onto a file; the first one's by default.")] = None,
            library: Library = None, character: Wearing = None) -> None:
     """Write the motion of a scenario or an input log for other programs."""
@@ -46,13 +46,13 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
 
 def _rig(onto: Path, out: Path) -> Any:
     """The rig in a file, and whether the motion on it can be written."""
-    from ..character import rigged
     from ..files import output_file
+    from ..output import rig_in, suffix_onto
 
-    output_file(out, ".glb")
+    output_file(out, suffix_onto(onto))
     if onto.exists() and out.exists() and out.samefile(onto):
         raise Mistake(f"--onto {onto}: would be overwritten; give -o another name")
-    return rigged(onto)
+    return rig_in(onto)
 
 
 def _written(out: str | Path, done: list, fps: float, rig: Any, actor: str | None) -> list[Path]:

@@ -21,6 +21,7 @@ from ..files import OutputError, output_file
 from ..render import ARMS, Body, mannequin, scale_of, skin, worn
 from ..scene import TINT
 from ..world import RATE, World, pose_between
+from .onto_bvh import READ, MovingRig, moving_rig, write_moved
 from .recorder import motion_clip, write_motion
 
 SUFFIXES = (".bvh", ".glb")
@@ -116,21 +117,37 @@ def chosen(takes: Sequence[Take], name: str | None) -> Take:
     return found[0]
 
 
-def on_rig(onto: glb.Rigged, take: Take) -> Moved:
-    """A rig in the poses of a take: ways are as many times as long as the rig is taller, and arms keep out of its own flesh."""
+def suffix_onto(path: str | Path) -> str:
+    """What a file with motion on the rig of another one ends in."""
+    return ".bvh" if Path(path).suffix.lower() in READ else ".glb"
+
+
+def rig_in(path: str | Path) -> glb.Rigged | MovingRig:
+    """The human's skeleton in somebody's own file: .glb, .gltf or .vrm with a skin, .bvh or .amc. CharacterError or MotionFileError, naming the file and what would be
+    right, where there is none."""
+    return moving_rig(path) if Path(path).suffix.lower() in READ else glb.rigged(path)
+
+
+def on_rig(onto: glb.Rigged | MovingRig, take: Take) -> Moved:
+    """A rig in the poses of a take: ways are as many times as long as the rig is taller, and arms keep out of its own flesh, if it has any."""
     root, at, turned = _kinematics(take)
-    turned[:, ARMS] = worn(glb.load(onto.document.path), at, turned)[1][:, ARMS]
+    if isinstance(onto, glb.Rigged):
+        turned[:, ARMS] = worn(glb.load(onto.document.path), at, turned)[1][:, ARMS]
     return onto.rig.pose(take.skeleton, root, local_rotations(take.skeleton, turned))
 
 
-def write_onto(path: str | Path, onto: glb.Rigged, take: Take, fps: float = RATE) -> Path:
-    """Write what somebody did as an animation of a rig's own file, skin, fingers, names and all, into a .glb file.
+def write_onto(path: str | Path, onto: glb.Rigged | MovingRig, take: Take, fps: float = RATE) -> Path:
+    """Write what somebody did on a rig's own bones: as an animation of its own file, skin, fingers, names and all, into a .glb file, or, where that is a motion file, as
+    another one, .bvh.
 
     OutputError where it can't be written, or where nothing was played.
     """
     if not len(take.poses):
         raise OutputError(f"{path}: nothing was played yet that could be written")
-    return glb.write_onto(path, onto, on_rig(onto, take), take.contacts, fps, take.name)
+    moved = on_rig(onto, take)
+    if isinstance(onto, MovingRig):
+        return write_moved(path, onto, moved, fps, take.name)
+    return glb.write_onto(path, onto, moved, take.contacts, fps, take.name)
 
 
 def _kinematics(take: Take) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
