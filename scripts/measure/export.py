@@ -1,6 +1,6 @@
 """How far joints are off when other readers read what Gambol exports: BVH and GLB, over a scenario.
 
-    python scripts/measure/export.py [--scenario demo] [--character my.glb] [--onto my.glb]
+    python scripts/measure/export.py [--scenario demo] [--character my.glb] [--onto my.glb|my.bvh]
 
 GLB: pygltflib reads the file, and 4 × 4 matrices down its node tree place the joints. BVH:
 upc-pymotion reads and places them. Both against Gambol's own forward kinematics; --onto: all bones of
@@ -96,7 +96,7 @@ def main() -> None:
     from dataclasses import replace
 
     from gambol.controllers.locomotion import Locomotion
-    from gambol.game.character import load, rigged
+    from gambol.game.character import load
     from gambol.game.output import export
     from gambol.game.scenario import film, scenario
 
@@ -121,11 +121,16 @@ def main() -> None:
         print(f"GLB  {len(takes)} characters, {len(takes[0].poses)} frames: at most {1000 * max(off):.5f} mm off; "
               f"{file.stat().st_size / 1e6:.1f} MB")
         if options.onto:
-            onto, take = rigged(options.onto), takes[0]
-            read = glb_joints(export.write_onto(Path(folder) / "y.glb", onto, take, played.fps))
-            places = export.on_rig(onto, take).places
-            top = next(iter(read)).partition("/")[0]
-            off = [np.abs(read[f"{top}/{name}"] - places[:, bone]).max() for bone, name in enumerate(onto.rig.skeleton.names) if bone]
+            onto, take, kind = export.rig_in(options.onto), takes[0], export.suffix_onto(options.onto)
+            file = export.write_onto(Path(folder) / f"y{kind}", onto, take, played.fps)
+            places, names = export.on_rig(onto, take).places, onto.rig.skeleton.names
+            if kind == ".bvh":  # pymotion takes any unit for centimetres
+                read = {name: 100.0 * onto.scale * at @ onto.axes.T for name, at in bvh_joints(file).items()}
+                off = [np.abs(read[name] - places[:, bone]).max() for bone, name in enumerate(names)]
+            else:
+                read = glb_joints(file)
+                top = next(iter(read)).partition("/")[0]
+                off = [np.abs(read[f"{top}/{name}"] - places[:, bone]).max() for bone, name in enumerate(names) if bone]
             print(f"onto {options.onto.name}: {len(off)} bones, {len(take.poses)} frames: at most {1000 * max(off):.5f} mm off; "
                   f"{1000 * timed(lambda: onto.rig.pose(take.skeleton, take.poses[0].root, take.poses[0].rotations)):.2f} ms a pose")
 
