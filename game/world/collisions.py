@@ -80,39 +80,43 @@ def kept_apart(characters: Sequence[Any], intents: Sequence[Intent], number: int
     there = [i for i, one in enumerate(characters) if one.there(number)]
     if len(there) < 2:
         return found
-    discs, owner, slow = [], [], []
-    for i in there:
-        state, body = characters[i].state, physique_of(characters[i].controller)
+    states, bodies = [characters[i].state for i in there], [physique_of(characters[i].controller) for i in there]
+    ground, floor = np.array([state.ground for state in states], float), np.array([float(state.floor) for state in states])
+    size, height = np.array([body.size for body in bodies]), np.array([body.height for body in bodies])
+    moves, asked = np.array([state.velocity for state in states], float), np.array([intents[i].velocity for i in there], float)
+    speed, pace = np.hypot(moves[:, 0], moves[:, 2]), np.hypot(asked[:, 0], asked[:, 2])
+    held = (pace >= 1e-6) & np.array([_goes_as_told(characters[i], intents[i]) for i in there])
+    discs, owner = [], []
+    for k, i in enumerate(there):
+        rows = [(*ground[k, :2], TRUNK * size[k])]
         if is_down(characters[i]):
-            joints = forward_kinematics(body.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))[0]
-            rows = [(*joints[body.skeleton.index(name), [0, 2]], THICK * body.size) for name in LIES]
-        else:
-            rows = [(*state.ground[:2], TRUNK * body.size)]
-        discs += [(*row, float(state.floor)) for row in rows]
-        owner += [i] * len(rows)
-        slow += [bool(np.hypot(state.velocity[0], state.velocity[2]) < STANDS)] * len(rows)
-    places, owners, still = np.array(discs), np.array(owner), np.array(slow)
-    for i in there:
-        one, intent = characters[i], intents[i]
-        pace = float(np.hypot(intent.velocity[0], intent.velocity[2]))
-        if pace < 1e-6 or one.follows is not None or one.watches is not None or intent.goal is not None or intent.leap is not None or intent.aim is not None or one.state.active == "jump":
-            continue
-        state, body = one.state, physique_of(one.controller)
-        apart = state.ground[:2] - places[:, :2]
-        far = np.linalg.norm(apart, axis=1)
-        room, speed = far - places[:, 2] - TRUNK * body.size, float(np.hypot(state.velocity[0], state.velocity[2]))
-        near = (room < np.where(still & (pace <= WALKS), STOPS * pace, PRESSES) + LATE * speed) & (owners != i) & (np.abs(places[:, 3] - float(state.floor)) < HIGH * body.height) & (far > 1e-9)
-        if not near.any():
-            continue
-        velocity, flow, slower = in_world(state.ground, intent.velocity), in_world(state.ground, state.velocity), False
-        for k in np.flatnonzero(near):
-            out = apart[k] / far[k]
-            into = -float(velocity @ out) - max(float(room[k]) - LATE * max(-float(flow @ out), 0.0), 0.0) / STOPS
+            skeleton, pose = bodies[k].skeleton, states[k].pose
+            joints = forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float))[0]
+            rows = [(*joints[skeleton.index(name), [0, 2]], THICK * size[k]) for name in LIES]
+        discs += rows
+        owner += [k] * len(rows)
+    places, owners = np.array(discs), np.array(owner)
+    apart = ground[:, None, :2] - places[:, :2]
+    far = np.linalg.norm(apart, axis=-1)
+    room = far - places[:, 2] - TRUNK * size[:, None]
+    stays = (speed < STANDS)[owners] & (pace <= WALKS)[:, None]
+    near = room < np.where(stays, STOPS * pace[:, None], PRESSES) + LATE * speed[:, None]
+    near &= (owners != np.arange(len(there))[:, None]) & (np.abs(floor[owners] - floor[:, None]) < HIGH * height[:, None]) & (far > 1e-9)
+    for k in np.flatnonzero(held & near.any(-1)):
+        velocity, flow, slower = in_world(ground[k], asked[k]), in_world(ground[k], moves[k]), False
+        for j in np.flatnonzero(near[k]):
+            out = apart[k, j] / far[k, j]
+            into = -float(velocity @ out) - max(float(room[k, j]) - LATE * max(-float(flow @ out), 0.0), 0.0) / STOPS
             if into > 0.0:
                 velocity, slower = velocity + into * out, True
         if slower:
-            found[i] = but(intent, velocity=in_frame(state.ground, velocity, intent.velocity[1]))
+            found[there[k]] = but(intents[there[k]], velocity=in_frame(ground[k], velocity, asked[k, 1]))
     return found
+
+
+def _goes_as_told(one: Any, intent: Intent) -> bool:
+    """Whether somebody goes by his wished velocity alone: to no goal, after nobody, into no leap."""
+    return one.follows is None and one.watches is None and intent.goal is None and intent.leap is None and intent.aim is None and one.state.active != "jump"
 
 
 def lying(characters: Sequence[Any], number: int) -> tuple[Box, ...]:
