@@ -156,8 +156,10 @@ class Jump(Reach, Controller):
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
                 return (f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
                         f"body there; the jump takes {other.made.path.airtime:.2f} s", None, here)
-        if start.single is None and not (self.path(start, place, floor, leap.airtime).strong or (usual := self.path(start, here, floor, leap.airtime)).strong):
-            return too_weak(self.physique, usual, self.longest), None, here
+        if start.single is None and not self.path(start, place, floor, leap.airtime).strong:
+            usual = self.path(start, here, floor, leap.airtime)
+            if not usual.strong and usual.airtime > self.longest:
+                return too_weak(self.physique, usual, self.longest), None, here
         ahead = (place - here) / max(float(np.linalg.norm(place - here)), 1e-9)
         if leap.slack > 0.0 and max((self.easy(start, floor) - place) @ ahead) > 0.0:  # else the nearest place is no farther on
             nearest, found = whole(self.nearby(*asked))

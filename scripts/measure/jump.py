@@ -138,7 +138,7 @@ def report_refusals(locomotion: Locomotion) -> None:
         state = supervisor.start()
         intent = Intent(np.zeros(3), Leap(np.array(place), airtime), around)
         try:
-            for _ in range(30):  # one look at a path or a plan in each
+            for _ in range(60):  # one look at a path or a plan in each
                 state, pose = supervisor.step(state, intent, 1 / FPS)
             duty = state.memory
             good = duty.active == "locomotion" and bool(duty.refused) and np.isfinite(pose.root).all()

@@ -1,5 +1,6 @@
 """A leap that can not be made is refused without seeking what can not be found."""
 
+from dataclasses import replace
 from importlib import import_module
 
 import numpy as np
@@ -40,3 +41,19 @@ def test_a_course_that_is_hopeless_is_not_sought_again(jump, running, courses):
     place = jump.middle(start, 0.0)
     grounded.grounded(jump.physique, start, jump.path(start, place, 0.0), 0.0)
     assert len(courses) == 1 and courses[0] > grounded.HOPELESS
+
+
+@pytest.mark.parametrize("speed", [1.2, 3.0])
+def test_who_walks_or_runs_is_not_told_that_he_is_weak(locomotion, jump, speed):
+    """In the midst of a stride no foot may be under him, and he is told that; his muscles are as strong as ever."""
+    state, wish, told = locomotion.start(), Intent(np.array([speed, 0.0, 0.0])), []
+    for k in range(180):
+        before = state
+        state, _ = locomotion.step(state, wish, 1 / 60)
+        if k > 130 and k % 8 == 0:
+            moving = replace(state, previous=before.pose, elapsed=1 / 60)
+            there = jump.middle(jump.start_of(moving), 0.0)
+            for airtime in (None, 0.55):
+                told.append(jump.refusal(moving, Intent(leap=Leap(there + [0.0, 0.0, 1.4], airtime))))
+    assert any("no foot is under it" in why for why in told)
+    assert not any("weak" in why for why in told), told

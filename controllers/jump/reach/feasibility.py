@@ -33,6 +33,8 @@ STEEP = "too deep for legs alone"
 """Why nobody comes down so hard who does not roll."""
 TOO_WEAK = "this body is too weak to jump here at all"
 """Why nobody leaps whose muscles don't lift him off the floor."""
+BESIDE = "no foot is under it to push off at this moment"
+"""Why nobody leaps off feet that are too far before, behind or beside him, as they are in the midst of a stride."""
 HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
 GRAZE = 0.05
@@ -115,8 +117,11 @@ def wrong(physique: Physique, made: Plan) -> str:
 
 def _weak(physique: Physique, way: Path, floor: float) -> str:
     """What is missing where the muscles are too weak."""
-    if strongest(physique, way.leave[1] - floor - measures(physique).stand, way.gravity) <= 0.0:
+    heights = measures(physique)
+    if strongest(physique, heights.leave(0.0) - heights.stand, way.gravity) <= 0.0:
         return TOO_WEAK
+    if strongest(physique, way.leave[1] - floor - heights.stand, way.gravity) <= 0.0:
+        return BESIDE
     if way.up > 0.05:
         return f"too {'high' if way.up > 0.35 * way.far else 'far'}: {way.far:.1f} m away and {way.up:.1f} m up"
     return f"too far: {way.far:.1f} m" if way.far > 0.05 else "too high"
