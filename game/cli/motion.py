@@ -49,10 +49,11 @@ def _rig(onto: Path, out: Path) -> Any:
     from ..files import output_file
     from ..output import rig_in, suffix_onto
 
+    rig = rig_in(onto)
     output_file(out, suffix_onto(onto))
-    if onto.exists() and out.exists() and out.samefile(onto):
+    if out.exists() and out.samefile(onto):
         raise Mistake(f"--onto {onto}: would be overwritten; give -o another name")
-    return rig_in(onto)
+    return rig
 
 
 def _written(out: str | Path, done: list, fps: float, rig: Any, actor: str | None) -> list[Path]:
