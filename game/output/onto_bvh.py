@@ -62,10 +62,8 @@ def write_moved(path: str | Path, onto: MovingRig, moved: Moved, fps: float = 60
 
     OutputError where it can't be written, ValueError for numbers that are not finite.
     """
-    skeleton = onto.rig.skeleton
     hips = onto.rig.roles.limbs["Hips"]
-    upright = Skeleton(skeleton.names, skeleton.parents, onto.skeleton.offsets @ onto.axes.T * onto.scale, np.zeros(0, int), np.zeros((0, 3)))
-    below, _ = forward_kinematics(upright, np.zeros(3), moved.local)
+    below, _ = forward_kinematics(onto.rig.skeleton, np.zeros(3), moved.local)
     root = (moved.places[:, hips] - below[:, hips]) @ onto.axes / onto.scale
     local = Rotation.from_matrix((onto.axes.T @ moved.local @ onto.axes).reshape(-1, 3, 3)).as_quat().reshape(*moved.local.shape[:2], 4)
     with named(path := output_file(path, ".bvh")):
