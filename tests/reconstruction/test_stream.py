@@ -252,6 +252,28 @@ def test_points_of_nobody_who_stands_are_refused(wrong):
         placed(wrong(controls.on(*stances())[0]), controls)
 
 
+WORN_ANYHOW = "head", "root", "lwrist", "rwrist", "lankle", "rankle"
+
+
+@pytest.mark.parametrize("count", [3, 6])
+def test_whoever_stands_is_taken_as_he_wears_them_and_whoever_sits_is_not(count):
+    """Head and hands, or hips and feet, too: 8 cm off either way and with bones of other lengths; who sits has his hands in his lap."""
+    controls, rng = parse(",".join(WORN_ANYHOW[:1] + WORN_ANYHOW[2:4] if count == 3 else WORN_ANYHOW), SKELETON), np.random.default_rng(count)
+    for stance in controls.on(*stances()):
+        for _ in range(20):
+            away = rng.normal(size=stance.shape)
+            worn = stance * np.exp(rng.normal(0.0, 0.04)) + 0.08 * away / np.linalg.norm(away, axis=-1, keepdims=True)
+            assert placed(worn, controls).scale == pytest.approx(1.0, abs=0.25)
+    joints = stances()[0][1].copy()
+    joints[:, 1] -= 0.45
+    for side in ("Left", "Right"):
+        hip = joints[SKELETON.index(side + "UpLeg")]
+        joints[SKELETON.index(side + "Hand")] = hip + [0.0, 0.1, 0.35]
+        joints[SKELETON.index(side + "Foot")] = [hip[0], 0.08, 0.4]
+    with pytest.raises(ValueError, match="stand upright"):
+        placed(joints[controls.joints], controls)
+
+
 def test_standing_needs_a_second_without_moving_or_losing_a_point():
     here, moved = np.zeros((2, 3)), np.full((2, 3), 0.2)
     standing = Standing()
