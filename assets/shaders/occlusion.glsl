@@ -38,7 +38,7 @@ float creased(float distance) { return 1.0 - 0.5 * (1.0 - smoothstep(0.0, CREASE
 
 float past_solids(vec3 at, vec3 n) {
     vec3 p = at + CREASE * n;
-    float sees = creased(p.y);
+    float past = 1.0;  // the nearest alone: a flight's steps lie in each other
     for (int k = 0; k < 3 * int(count.y); k += 3) {
         vec3 q = p - solid[k].xyz, half_size = solid[k + 1].xyz;
         vec3 turn = solid[k + 2].xyz;
@@ -46,9 +46,9 @@ float past_solids(vec3 at, vec3 n) {
         q.y -= turn.z * q.z;
         if (solid[k].w > 0.5) q = vec3(length(q.xz), q.y, 0.0);
         vec3 d = max(abs(q) - half_size, 0.0);
-        sees *= creased(length(d));
+        past = min(past, creased(length(d)));
     }
-    return sees;
+    return creased(p.y) * past;
 }
 
 float sky_seen(vec3 at, vec3 n) { return past_limbs(at, n) * past_solids(at, n); }

@@ -16,7 +16,7 @@ from gambol.controllers.body import damp, wrap
 
 from ..input import Wish
 from ..scene import Camera, Prop
-from .line_of_sight import FLOOR, above_floor, beside, free_way, outside
+from .line_of_sight import FLOOR, above_floor, beside, free_way, off_faces, outside
 
 NEAREST = 1.4
 """An arm that walls make shorter than this [m] lifts the eye over the character instead, so that it stays farther off than 1.2 m."""
@@ -26,6 +26,8 @@ WHISKER = 0.5
 """A prop this far beside the arm [rad] begins to shorten it, so that it is short when the prop arrives."""
 SOON, DRAWN = np.arange(1, 49) / 60, 6.0
 """What will come between at these times [s], as the character goes on, draws the arm in no faster than this [m/s]."""
+OFF = 0.4
+"""An arm begins so far [m] off what stands beside the point looked at: along its very face it would be as good as in it."""
 SPARED = 0.01
 """So far before a prop its way up is looked along [m]."""
 MET = 0.01
@@ -196,7 +198,7 @@ class Armed(Turned):
     def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool, velocity: np.ndarray = REST) -> Self:
         """The camera with its eye at the end of its arm. clear: whether the arm may meet nobody. velocity: (2,) of what it looks at [m/s]."""
         props = tuple(props)
-        root = outside(self.target, props)
+        root = off_faces(outside(self.target, props), OFF, props)
         # the eye slides along the floor instead of going under it
         longest = max(self.arm, damp(self.arm, self.distance, self.settings.arm_halflife, dt))
         yaw, pitch = self._looks()

@@ -20,7 +20,7 @@ MARGIN = 0.18
 """How far an eye stays from whatever is solid [m]; no less than the near plane's corners."""
 FLOOR = 0.15
 """An eye stays above this height [m]."""
-_HAIR = 1e-6
+_HAIR, _SKIN = 1e-6, 1e-4
 
 
 def above_floor(point: np.ndarray) -> np.ndarray:
@@ -115,6 +115,24 @@ def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) 
     while (top := _top_around(point, solids)) is not None:
         point[1] = top + _HAIR
     return point
+
+
+def off_faces(point: np.ndarray, room: float, props: tuple[Prop, ...]) -> np.ndarray:
+    """The point (3,) outside of props, led so far off those nearer than `room` [m] that it is no nearer, as far as there is room for that: smoothly as
+    it moves, on the way between two as on the way past a corner."""
+    solids = _solids(props, MARGIN)
+    if solids is None:
+        return point
+    local = np.einsum("bij,bj->bi", solids.to_local, point - solids.centre)
+    skin = solids.half - _SKIN  # on a face it is beyond it
+    beyond = local - np.clip(local, -skin, skin)
+    across = point[[0, 2]] - solids.axis
+    away = np.linalg.norm(across, axis=-1, keepdims=True)
+    aside = across * np.maximum(1.0 - solids.radius[:, None] / np.maximum(away, 1e-9), 0.0)
+    over = point[1] - np.clip(point[1], solids.low, solids.high)
+    ways = np.concatenate([np.einsum("bij,bi->bj", solids.to_local, beyond), np.stack([aside[:, 0], over, aside[:, 1]], -1)])
+    far = np.linalg.norm(ways, axis=-1, keepdims=True)
+    return point + as_far(point, (ways / np.maximum(far, 1e-12) * np.where(far > 0.0, np.maximum(room - far, 0.0), 0.0)).sum(0), props)
 
 
 def blocked(point: np.ndarray, props: tuple[Prop, ...], margin: float = 0.1) -> int | None:
