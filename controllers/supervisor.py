@@ -15,7 +15,7 @@ import numpy as np
 
 from .body import Pose, Skeleton
 from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, given, seconds
-from .navigation import checked, going
+from .navigation import changed, checked, going, matters
 from .navigation.passing import drawn_in
 
 
@@ -30,10 +30,14 @@ ALONE = "characters come singly; a crowd that only walks is stepped by the locom
 TAKEN = "its next steps take in what pushed it"
 """Why who walks or runs goes on, pushed."""
 
+STRAYS, ASIDE = 0.1, 1.5
+"""What stands about is the same as long as nothing has moved by more than the first [m] that is nearer than the second [m] to the leap. What is
+found so is planned once more, past what stands there then."""
+
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a controller refused. name: whose. intent: what was asked. state: from where. onward: with what it goes on finding out about it; None where
+    """What a controller refused. name: whose. intent: what was asked at first. state: from where. onward: with what it goes on finding out about it; None where
     all is known."""
 
     name: str
@@ -46,12 +50,19 @@ class Asked:
         was, leap, before = self.intent.leap, intent.leap, self.state
         if was is None or not was.same(leap):
             return False
-        if intent.around is not self.intent.around and list(intent.around) != list(self.intent.around):
-            return False
+        if intent.around is not self.intent.around:
+            other = changed(self.intent.around, intent.around, STRAYS)
+            if other and matters(other, state.ground[:2], state.ground[:2] if leap.place is None else leap.place[[0, 2]], 2.0 * ASIDE + _far(state, leap)):
+                return False
         far = state.ground - before.ground
         pace = float(np.hypot(before.velocity[0], before.velocity[2]))
         return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < MOVED + PASSED * pace
                     and abs(far[2]) < TURNED and state.floor == before.floor)
+
+
+def _far(state: CharacterState, leap: Leap) -> float:
+    """How far a leap leads along the floor [m]."""
+    return 0.0 if leap.place is None else float(np.hypot(*(leap.place[[0, 2]] - state.ground[:2])))
 
 
 class Supervisor(Controller):
@@ -189,7 +200,8 @@ class Supervisor(Controller):
                 entered = self.parts[name].seek(own, intent, None if before is None else before.onward)
             except Unable as reason:
                 refused = str(reason)
-                asked = None if intent.leap is None else Asked(name, intent, own if before is None else before.state, reason.onward)
+                first = (intent, own) if before is None else (before.intent, before.state)
+                asked = None if intent.leap is None else Asked(name, *first, reason.onward)
                 continue
             because = status.reason or {"done": f"{duty.active} is done"}.get(status.kind, "")
             why = because or f"it suits best: {bids[name]:.1f} over {hold:.1f}"

@@ -41,6 +41,8 @@ TAKES, TAKEN = 6, 2e-5
 """At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
 COARSE = 3
 """Until then, only every third pose is made."""
+PLACED = 0.02
+"""A foot that still comes down as its body winds up stands once it is so near to its place [m], at standard height."""
 
 
 def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Plan:
@@ -86,7 +88,8 @@ class _Draft(Airborne):
         way, mass, g = self.way, self.physique.mass, self.gravity
         contacts = np.zeros((len(self.times) + len(self.flying) - 1 + len(after), 4), bool)
         heel_up = self.feet[:, :, 4] > HEEL
-        on = self.feet[:, :, 5] >= 0.0
+        off = self.feet[:, :, :3] - self.planted[:, :3]
+        on = (self.feet[:, :, 5] >= 0.0) & (np.maximum(np.hypot(off[..., 0], off[..., 2]), off[..., 1]) < PLACED * self.physique.size)
         contacts[:len(self.times), 1::2], contacts[:len(self.times), ::2] = on, on & ~heel_up
         contacts[-len(after):, 1::2], contacts[-len(after):, ::2] = True, heels
         if way.lands is not None:

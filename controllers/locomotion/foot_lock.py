@@ -39,6 +39,8 @@ AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 STEEPLY, FREED = 1.0, 0.015
 """A point that leaves its place is lifted by this share of how far it got, up to the second [m]."""
+HELD_AGAIN = 0.4
+"""Over so much of a swing's time after it came down a point is still held, not yet about to leave."""
 LAND_HALFLIFE = 0.03
 """A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
@@ -222,7 +224,7 @@ def _off_the_floor(m, k, foot, x, z):
         return 0.0
     progress = swing_progress(m, foot)
     over = STEEPLY * min(math.hypot(x - m.stood[k, 0], z - m.stood[k, 1]), FREED)
-    return over * (min(max(2.0 - 2.0 * progress, 0.0), 1.0) if progress < 1.0 else 1.0)
+    return over * min(max(2.0 - 2.0 * progress, (progress - 1.0) / HELD_AGAIN, 0.0), 1.0)
 
 
 @kernel

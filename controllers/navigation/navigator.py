@@ -15,6 +15,7 @@ import numpy as np
 from ..contract import CharacterState, Controller, Goal, Intent, Leap, but
 from .goal import arrived, progress
 from .levels import SOON, levels_of, named, onto
+from .obstacles import changed, matters
 from .thinking import NEARER, Going, another, astray, began, landed, poised, ready, run_up, steps_of, within
 
 STILL = 0.01
@@ -29,6 +30,10 @@ KEPT = 0.9
 """Who goes on by less than this share of what he wishes for is kept from it by others."""
 REFUSED = 0.4
 """A leap that can't be made for so long [s] is given up for another way."""
+ANEW = 0.5
+"""A plan is followed for so long [s] before what moved about him is thought of: who began anew in each step would never set off."""
+ASIDE = 1.0
+"""What moved matters if the way past it could be shorter than his, or longer by no more than this [m]."""
 ONWARD = 0.3
 """Who has landed and has to go on is asked to walk at this speed [m/s], and gets up sooner."""
 
@@ -102,9 +107,10 @@ def _thinks(now: Going, state: CharacterState, intent: Intent, walker: Controlle
         carries = None if follows else np.zeros(3) if run else state.velocity  # a plan that ends in a leap leads over an edge
         fresh = now.but(barred=(), stands=(), crossings=())
         return now.but(barred=(), stands=(), thinking=began(fresh, *asked[1:], carries))
-    if now.leapt or _changed(now, intent.around):
-        now = landed(now, state) if now.leapt else now
-        return now.but(barred=now.barred, thinking=began(now, *asked[1:], state.velocity))
+    if now.leapt:
+        return landed(now, state).but(thinking=began(landed(now, state), *asked[1:], state.velocity))
+    if _changed(now, state, intent.around):
+        return now.but(thinking=began(now, *asked[1:], state.velocity if now.plan.reason or run else None))
     if now.anew:
         return now.but(thinking=began(now, *asked[1:], np.zeros(3)))
     if now.asked > REFUSED:
@@ -148,6 +154,14 @@ def _kept(now: Going, state: CharacterState, share: float, dt: float) -> Going:
     return now.but(waits=waits, plan=Plan.none(state.ground, now.plan.goal, why), thinking=None)
 
 
-def _changed(now: Going, around: Sequence[Any]) -> bool:
-    """Whether other things stand in the way than when it was planned."""
-    return around is not now.around and levels_of(around) is not levels_of(now.around)
+def _changed(now: Going, state: CharacterState, around: Sequence[Any]) -> bool:
+    """Whether other things stand in the way than when it was planned, or leave one that may be shorter."""
+    if around is now.around or levels_of(around) is levels_of(now.around):
+        return False
+    if now.plan.reason:
+        return now.time >= ANEW
+    if now.time < ANEW and now.plan.seconds > 0.0:
+        return False
+    way = now.plan.at(np.linspace(min(now.time, now.plan.seconds), now.plan.seconds, 24))[0][:, :2]
+    left = np.linalg.norm(np.diff(way, axis=0), axis=-1).sum() + np.linalg.norm(way[-1] - now.goal.floor)
+    return matters(changed(now.around, around), state.ground[:2], now.goal.floor, float(left) + ASIDE)

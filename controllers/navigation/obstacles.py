@@ -17,6 +17,8 @@ from ..compiled import kernel
 
 STEP = 0.21
 """No higher step is taken without a jump [m]."""
+STEEPEST = 0.7
+"""A ramp that rises by more metres a metre is not walked on: it is met like a block as high as it rises."""
 HEAD = 1.9
 """What hangs higher than this over the floor is walked under [m]."""
 KNEE = 0.05
@@ -71,6 +73,17 @@ def slope(box: Box) -> float:
     return getattr(box, "slope", 0.0)
 
 
+def ramp(box: Box) -> bool:
+    """Whether a box is walked on though it rises."""
+    return 0.0 < abs(slope(box)) <= STEEPEST
+
+
+def span(box: Box) -> tuple[float, float]:
+    """How low and how high [m] a box reaches that is no ramp to be walked on."""
+    tall = box.size[1] + (0.0 if ramp(box) else abs(slope(box)) * box.size[2])
+    return box.centre[1] - 0.5 * tall, box.centre[1] + 0.5 * tall
+
+
 def is_pillar(thing: Any) -> TypeGuard[Pillar]:
     """Whether a thing stands in the way as a pillar."""
     return hasattr(thing, "foot")
@@ -93,6 +106,35 @@ def checked(around: Sequence[Any]) -> None:
                 raise ValueError(f"around: the {name} of what stands about is {wanted}{least}; got {getattr(thing, name, 'none')!r} in {thing!r}")
         if is_box(thing) and not math.isfinite(slope(thing)):
             raise ValueError(f"around: the slope of a ramp is metres a metre, finite; got {slope(thing)!r} in {thing!r}")
+
+
+def changed(before: Sequence[Any], after: Sequence[Any], least: float = 0.0) -> list[Any]:
+    """What stands elsewhere than before, as it stood and as it stands, by more than `least` [m]; what came and what went."""
+    was, now = ([_numbers(thing) for thing in things] for things in (before, after))
+    found: list[Any] = []
+    for k in range(max(len(was), len(now))):
+        one, other = was[k] if k < len(was) else None, now[k] if k < len(now) else None
+        if one == other or one is not None and other is not None and len(one) == len(other) and one[3:] == other[3:] and math.dist(one[:3], other[:3]) <= least:
+            continue
+        found += [things[k] for things, there in ((before, one), (after, other)) if there]
+    return found
+
+
+def _numbers(thing: Any) -> tuple[float, ...]:
+    """What tells a thing from others, its place first, whatever its numbers are held in; empty of what stops nobody."""
+    if is_box(thing):
+        return (*map(float, thing.centre), *map(float, thing.size), float(thing.heading), float(slope(thing)))
+    return (*map(float, thing.foot), float(thing.radius), float(thing.height)) if is_pillar(thing) else ()
+
+
+def matters(things: Sequence[Any], here: ArrayLike, there: ArrayLike, way: float) -> bool:
+    """Whether any of some things is so near that a way past it from one place (2,) x, z to another could be shorter than `way` [m]."""
+    ends = np.array([[here[0], 0.0, here[1]], [there[0], 0.0, there[1]]], float)  # type: ignore[index]
+    for thing in things:
+        ends[:, 1] = thing.centre[1] if is_box(thing) else thing.foot[1] + 0.5 * thing.height
+        if float(np.maximum(gap(ends, thing), 0.0).sum()) < way:
+            return True
+    return False
 
 
 def gap(points: np.ndarray, thing: Any) -> np.ndarray:

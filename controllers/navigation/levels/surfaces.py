@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..obstacles import ASKEW, CREVICE, HEAD, STEP, is_box, is_pillar, slope
+from ..obstacles import ASKEW, CREVICE, HEAD, STEP, is_box, is_pillar, ramp, slope, span
 
 OUTLINE = 0.1
 """How far apart the places are at which a box's sides are looked at [m]."""
@@ -208,7 +208,7 @@ class Levels:
 
 def levels_of(around: Sequence[Any]) -> Levels:
     """The levels among boxes and pillars, the same for the same ones."""
-    table = [(*box.centre, *box.size, box.heading, slope(box)) for box in around if is_box(box)]
+    table = [(*box.centre, box.size[0], span(box)[1] - span(box)[0], box.size[2], box.heading, slope(box) if ramp(box) else 0.0) for box in around if is_box(box)]
     return _levels(np.array(table, float).tobytes(), np.array([(*one.foot, one.radius, one.height) for one in around if is_pillar(one)], float).tobytes())
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...body import Pose, Skeleton, relative_kernel
 from ...compiled import kernel
-from ..obstacles import is_box, is_pillar, slope
+from ..obstacles import is_box, is_pillar, ramp, span
 from ..routes import distance
 
 ARMS = ("LeftArm", "LeftForeArm", "LeftHand"), ("RightArm", "RightForeArm", "RightHand")
@@ -50,10 +50,10 @@ def _near(x: float, z: float, around: Sequence[Any]) -> list[tuple[float, ...]]:
     """What is near enough: shapes as of `shapes_of`, how low and how high they reach [m]. Ramps are walked on."""
     found = []
     for thing in around:
-        if is_box(thing) and not slope(thing):
+        if is_box(thing) and not ramp(thing):
             centre, size = thing.centre, thing.size
             if math.hypot(centre[0] - x, centre[2] - z) < FAR + 0.5 * math.hypot(size[0], size[2]):
-                found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, centre[1] - 0.5 * size[1], centre[1] + 0.5 * size[1]))
+                found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, *span(thing)))
         elif is_pillar(thing) and math.hypot(thing.foot[0] - x, thing.foot[2] - z) < FAR + thing.radius:
             found.append((thing.foot[0], thing.foot[2], 0.0, 0.0, 0.0, thing.radius, thing.foot[1], thing.foot[1] + thing.height))
     return found

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...compiled import kernel
-from ..obstacles import is_box, is_pillar, slope
+from ..obstacles import is_box, is_pillar, ramp, slope, span
 from ..routes import distance
 
 STEP, HEAD = 0.30, 1.7
@@ -34,7 +34,7 @@ def walls_of(around: Sequence[Any]) -> np.ndarray:
     for thing in around:
         if is_box(thing):
             centre, size = thing.centre, thing.size
-            found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, centre[1] - 0.5 * size[1], centre[1] + 0.5 * size[1], slope(thing)))
+            found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, *span(thing), slope(thing) if ramp(thing) else 0.0))
         elif is_pillar(thing):
             foot = thing.foot
             found.append((foot[0], foot[2], 0.0, 0.0, 0.0, thing.radius, foot[1], foot[1] + thing.height, 0.0))

@@ -13,18 +13,18 @@ from typing import Any
 import numpy as np
 
 from ...compiled import kernel
-from ..obstacles import HEAD, STEP, is_box, is_pillar, slope
+from ..obstacles import HEAD, STEP, is_box, is_pillar, ramp, span
 
 
 def shapes_of(around: Sequence[Any], floor: float = 0.0) -> np.ndarray:
     """The shapes (K, 6) of those boxes and pillars that stop somebody who stands on a floor `floor` [m] high.
 
-    What ends no higher than a step or hangs higher than a head stops nobody; nor does a ramp, which is there to be walked.
+    What ends no higher than a step or hangs higher than a head stops nobody; nor does a ramp that can be walked.
     """
     found = []
     for thing in around:
-        if is_box(thing) and not slope(thing):
-            low, high = thing.centre[1] - 0.5 * thing.size[1], thing.centre[1] + 0.5 * thing.size[1]
+        if is_box(thing) and not ramp(thing):
+            low, high = span(thing)
             shape = (thing.centre[0], thing.centre[2], 0.5 * thing.size[0], 0.5 * thing.size[2], thing.heading, 0.0)
         elif is_pillar(thing):
             low, high = thing.foot[1], thing.foot[1] + thing.height
