@@ -32,8 +32,8 @@ REFUSED = 0.4
 """A leap that can't be made for so long [s] is given up for another way."""
 ANEW = 0.5
 """A plan is followed for so long [s] before what moved about him is thought of: who began anew in each step would never set off."""
-ASIDE = 1.0
-"""What moved matters if the way past it could be shorter than his, or longer by no more than this [m]."""
+ASIDE, STRAYS = 1.0, 0.1
+"""What moved matters if the way past it could be shorter than his, or longer by no more than the first [m]; where there was no way, what moved by the second [m]."""
 ONWARD = 0.3
 """Who has landed and has to go on is asked to walk at this speed [m/s], and gets up sooner."""
 
@@ -159,7 +159,7 @@ def _changed(now: Going, state: CharacterState, around: Sequence[Any]) -> bool:
     if around is now.around or levels_of(around) is levels_of(now.around):
         return False
     if now.plan.reason:
-        return now.time >= ANEW
+        return bool(changed(now.around, around, STRAYS))
     if now.time < ANEW and now.plan.seconds > 0.0:
         return False
     way = now.plan.at(np.linspace(min(now.time, now.plan.seconds), now.plan.seconds, 24))[0][:, :2]

@@ -212,12 +212,14 @@ class Play(Game):
         self.kept.say(why)
 
     def _grounded(self, asked_for: tuple[Wish, ...]) -> tuple[Wish, ...]:
-        """The wishes without jumps, which nobody can make yet; whoever asks is told so."""
+        """The wishes without jumps and pushes, which nobody can make or answer yet; whoever asks is told so."""
         asked = any(wish.jump for wish in asked_for)
         if asked and not self.refused:
             self.kept.say("no jump yet: it is being prepared")
+        if any("push" in wish.pressed for wish in asked_for):
+            self.kept.say("no push yet: how bodies answer it is being prepared")
         self.refused = asked
-        return tuple(replace(wish, jump=False) for wish in asked_for)
+        return tuple(replace(wish, jump=False, pressed=tuple(action for action in wish.pressed if action != "push")) for wish in asked_for)
 
     def _resume(self) -> None:
         """Play on from the moment that is shown; what came after it is forgotten."""

@@ -39,6 +39,8 @@ SINKS = 0.35
 """A body goes down so long [s] behind the aim: it crouches for the jump that will be aimed at then."""
 PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
+TURNS = 0.3
+"""That passes at this pace while a standing body still turns to the ring: half a turn takes 2.2 s."""
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
 LOOKED = 0.2
@@ -73,7 +75,8 @@ class Aim:
                 x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
             given_up = self.waiting <= dt and not aloft or not self.moving and state.refused
-            return Aim() if given_up else replace(self, waiting=self.waiting - dt * (not aloft))
+            pace = 0.0 if aloft else TURNS if self._askew(state) else 1.0
+            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
         moving, heading = speed > MOVING, None

@@ -139,3 +139,12 @@ def test_a_stick_that_looks_points_the_landing_as_the_camera_sees_it_and_who_wal
     aim = aimed(Wish(jump=True, look=(0.0, 1.0)), 0.1, standing(), yaw=1.0)
     assert aim.heading == pytest.approx(1.0)
     assert aimed(Wish(jump=True, turn=1.0), 0.1, standing((1.5, 0.0, 0.0))).heading is None
+
+
+def test_a_body_that_turns_to_the_ring_behind_it_is_waited_for():
+    """Half a turn takes longer than a leap is waited for that is ready."""
+    behind = aimed(Wish(jump=True, move=(0.0, -1.0)), 0.5, standing())
+    assert aimed(FREE, 2.3, standing(), behind).waiting > 0.1
+    turned = standing(heading=math.pi)
+    assert aimed(FREE, PATIENCE - 0.1, turned, behind).asked(turned, (), 9.81) is not None
+    assert not aimed(FREE, PATIENCE + 0.1, turned, behind).wants

@@ -157,6 +157,18 @@ def test_a_jump_that_is_not_ready_is_refused_with_a_word_and_no_log_has_it(prepa
     assert not any(logged[:before]) and all(logged[before:]) and len(logged) == before + 10
 
 
+def test_a_push_before_its_answer_is_ready_is_refused_with_a_word(preparing):
+    """Its first one compiled for half a minute, in the game's own thread."""
+    class Unready(Glide):
+        def step(self, state, intent, dt):
+            assert intent.strike is None, "halts the game"
+            return super().step(state, intent, dt)
+    play = Play(Unready(), preparing=preparing)
+    press(play, "M")
+    wait(play, 10 * FRAME)
+    assert text(play).count("no push yet") == 1
+
+
 @pytest.mark.parametrize("code", (1, -9))
 def test_what_nobody_could_compile_is_left_to_the_game(preparing, code):
     opening = Opening(lambda: Play(Glide(), preparing=preparing), preparing)

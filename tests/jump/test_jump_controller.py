@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gambol.controllers.body import end_positions, forward_kinematics
+from gambol.controllers.body import contact_height, contact_points, end_positions, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.body.start import soles
@@ -16,6 +16,7 @@ from gambol.controllers.jump.reach.feasibility import Refused
 from gambol.controllers.navigation import gap
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene.scene import Box, Goal, Pillar
+from conftest import ahead
 
 FPS = 60
 WALL = Box((0.0, 1.5, 0.8), (3.0, 3.0, 0.2))
@@ -237,3 +238,23 @@ def test_nobody_lands_with_heels_over_an_edge(jump, standing, inside):
         jump.plan(standing, leap(0.5 + inside, 0.2, around=(step,)))
     made = jump.plan(standing, leap(0.5 + inside + 0.14, 0.2, around=(step,)))
     assert soles(made.feet, jump.physique.tables)[:, 2].min() > 0.5
+
+
+@pytest.mark.parametrize("turn", [-1.5, 0.0, 1.5])
+def test_feet_that_still_come_down_are_not_said_to_stand(person, turn):
+    """Who leaps out of a walk sets a foot down as he winds up: it slid 15 cm and more while it was said to be on the floor."""
+    state, jumps = person.start(), 0
+    for _ in range(90):
+        state, _ = person.step(state, Intent(np.array([1.2, turn, 0.0])), 1 / FPS)
+    wanted, before, slid, high = Leap(ahead(state, 1.0)), None, np.zeros(4), 0.0
+    for _ in range(60):
+        state, pose = person.step(state, Intent(leap=None if jumps else wanted), 1 / FPS)
+        jumps += state.active == "jump"
+        if 0 < jumps < 20:
+            points = contact_points(person.skeleton, *forward_kinematics(person.skeleton, pose.root, np.asarray(pose.rotations, float)))
+            if before is not None:
+                both = state.contacts & before[1]
+                slid += np.where(both, np.linalg.norm((points - before[0])[:, [0, 2]], axis=-1), 0.0)
+                high = max(high, float(((points[:, 1] - contact_height(person.skeleton)) * both).max()))
+            before = points, state.contacts
+    assert jumps >= 20 and slid.max() < 0.03 and high < 0.03

@@ -11,7 +11,7 @@ from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import gap, going as led
 from gambol.controllers.scaled import Scaled
 from gambol.controllers.supervisor import Supervisor
-from gambol.game.scene import Box
+from gambol.game.scene import Box, Pillar
 
 BOXES = (Box((0.6, 0.5, 1.5), (0.8, 1.0, 0.5), 0.3), Box((-1.2, 0.5, 1.0), (0.5, 1.0, 1.4), -0.4))
 
@@ -176,3 +176,23 @@ def test_what_is_no_goal_is_refused(wrong, said):
         Goal((0.0, 0.0), np.inf)
     with pytest.raises(ValueError, match="more than 0 s"):
         Goal((0.0, 0.0), None, -1.0)
+
+
+@pytest.mark.parametrize("pace", [0.001, 1.0])
+def test_what_moves_about_far_away_holds_nobody_up(walker, pace):
+    """A goal was thought of anew in each step, and never gone to."""
+    state, goal = walker.start(), Goal((0.0, 4.0))
+    for k in range(60 * 8):
+        state, _ = walker.step(state, Intent(goal=goal, around=(Pillar((30.0 + pace * k / 60, 0.0, 30.0)),)), 1 / 60)
+    assert walker.status(state).kind == "done" and off(state, goal)[0] < 0.05
+    assert state.going.plans == 1
+
+
+def test_past_what_moves_beside_his_way_he_gets_there_and_past_what_comes_into_it_he_goes_round(walker):
+    state, goal, boxes, apart = walker.start(), Goal((0.0, 5.0)), [], []
+    for k in range(60 * 15):
+        boxes = [Box((1.5, 0.5, 1.0 + 0.005 * k), (0.4, 1.0, 0.4)), Box((min(-3.0 + 0.02 * k, 0.0), 0.5, 3.5), (0.8, 1.0, 0.3))]
+        state, _ = walker.step(state, Intent(goal=goal, around=boxes), 1 / 60)
+        apart.append(nearest(boxes, [state]))
+    assert walker.status(state).kind == "done" and off(state, goal)[0] < 0.05
+    assert min(apart) > 0.15 and state.going.plans > 1

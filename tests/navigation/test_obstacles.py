@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import steer
-from gambol.controllers.navigation.obstacles import HEAD, SHOULDER, floor_at, gap, slide
-from gambol.game.scene.scene import Box
+from gambol.controllers.navigation.obstacles import HEAD, SHOULDER, changed, floor_at, gap, matters, slide
+from gambol.game.scene.scene import Box, Pillar
 
 BOX = Box((0.0, 0.3, 4.0), (1.6, 0.6, 1.0), 0.0)
 WALL = Box((0.0, 0.5, 4.0), (2.6, 1.0, 0.1), 0.4)
@@ -74,3 +75,29 @@ def test_sticks_lead_over_crevices_and_stop_at_gaps(wide, stops, askew):
         for _ in range(240):
             place = place + slide(place, wish, 0.6, things) / 60
         assert place[1] < 2.0
+
+
+def test_what_changed_is_told_whatever_its_numbers_are_held_in_and_as_it_was_and_is():
+    still, moved, gone = Box((0, 1, 2), (1, 2, 3)), Box((5, 1, 2), (1, 2, 3)), Pillar((3, 0, 3))
+    later = Box((5.2, 1, 2), (1, 2, 3))
+    as_arrays = Box(np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.0, 3.0]))
+    assert changed((still, moved, gone), (as_arrays, later)) == [moved, later, gone]
+    assert changed((still, moved), (as_arrays, later), 0.3) == []
+    assert changed((still,), (Box((0, 1, 2), (1, 2, 3), heading=0.1),), 0.3) != []
+
+
+def test_what_matters_to_a_way_is_what_a_shorter_one_could_lead_past():
+    assert matters([Box((1.0, 1, 2.0), (1, 2, 1))], (0, 0), (0, 4), 4.5)
+    assert not matters([Box((3.0, 1, 2.0), (1, 2, 1))], (0, 0), (0, 4), 4.5)
+    assert matters([Pillar((3.0, 0, 2.0))], (0, 0), (0, 4), 7.0), "round about it might be as short"
+    assert not matters([], (0, 0), (0, 4), 100.0)
+
+
+@pytest.mark.parametrize("slope", [-2.5, 1.2, 4.0])
+def test_a_ramp_too_steep_to_walk_on_holds_up(slope):
+    """He walked through the inside of it."""
+    locomotion, ramp = Locomotion.load(), Box((0.0, 3.0 * abs(slope) - 20.0, 5.0), (3.0, 40.0, 6.0), np.pi * (slope < 0.0), slope=slope)
+    state = locomotion.start()
+    for _ in range(240):
+        state, _ = locomotion.step(state, Intent(np.array([1.2, 0.0, 0.0]), around=(ramp,)), 1 / 60)
+    assert 1.5 < state.ground[1] < 2.0 - 0.15 and state.floor < 0.05
