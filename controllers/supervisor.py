@@ -6,6 +6,7 @@ over without a jump is each controller's own `enter`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
@@ -51,18 +52,14 @@ class Asked:
         if was is None or not was.same(leap):
             return False
         if intent.around is not self.intent.around:
-            other = changed(self.intent.around, intent.around, STRAYS)
-            if other and matters(other, state.ground[:2], state.ground[:2] if leap.place is None else leap.place[[0, 2]], 2.0 * ASIDE + _far(state, leap)):
+            here, place = state.ground[:2], leap.place
+            there = here if place is None or place.shape != (3,) else place[[0, 2]]  # what is no place is refused wherever things are
+            if matters(changed(self.intent.around, intent.around, STRAYS), here, there, math.dist(here, there) + 2.0 * ASIDE):
                 return False
         far = state.ground - before.ground
         pace = float(np.hypot(before.velocity[0], before.velocity[2]))
         return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < MOVED + PASSED * pace
                     and abs(far[2]) < TURNED and state.floor == before.floor)
-
-
-def _far(state: CharacterState, leap: Leap) -> float:
-    """How far a leap leads along the floor [m]."""
-    return 0.0 if leap.place is None else float(np.hypot(*(leap.place[[0, 2]] - state.ground[:2])))
 
 
 class Supervisor(Controller):

@@ -16,6 +16,7 @@ from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.locomotion.memory import Settings
 from gambol.controllers.scaled import Scaled
 from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene import Box, Pillar
 
 FPS = 60
 WANTED = Intent(leap=Leap(np.zeros(3)))
@@ -223,3 +224,36 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     state, _ = person.step(state, Intent(), 1 / 60)
     state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0]))), 1 / 60)
     assert len(calls) == 3 and state.refused, "asked anew"
+
+
+@pytest.fixture(scope="module")
+def leaper():
+    return Supervisor({"locomotion": Locomotion.load(settings=Settings(idle=0.0)), "jump": Jump()})
+
+
+def leaps_after(leaper, place, around, steps=90):
+    """After how many steps somebody who stands and asks for a leap is on it, None if not by then; around: of the number of a step. And his last state."""
+    state = leaper.start()
+    for k in range(steps):
+        state, _ = leaper.step(state, Intent(leap=Leap(np.array(place)), around=around(k)), 1 / FPS)
+        if state.active == "jump":
+            return k, state
+    return None, state
+
+
+def test_what_moves_far_away_holds_no_leap_up_whatever_its_numbers_are_held_in(leaper):
+    """It was sought anew in each step, and never found."""
+    box = Box(np.array([0.0, 0.125, 1.0]), np.array([0.8, 0.25, 0.6]))
+    still, _ = leaps_after(leaper, (0.0, 0.25, 1.0), lambda k: (box, Pillar((50.0, 0.0, 50.0))))
+    assert leaps_after(leaper, (0.0, 0.25, 1.0), lambda k: (Box(box.centre.copy(), box.size.copy()), Pillar((50.0 + k / FPS, 0.0, 50.0))))[0] == still is not None
+
+
+def test_a_leap_is_sought_anew_once_what_refused_it_has_gone_aside(leaper):
+    """However slowly that goes: less than a step's tolerance in each of them."""
+    goes, state = leaps_after(leaper, (0.0, 0.0, 1.0), lambda k: (Box((0.02 * k, 1.5, 0.8), (1.0, 3.0, 0.2)),), 180)
+    assert goes is not None and goes > 20
+
+
+def test_what_is_no_place_is_refused_in_words_though_things_move(leaper):
+    goes, state = leaps_after(leaper, (0.0, 1.0), lambda k: (Box((0.0, 0.1, 1.5), (1.0, 0.2, 1.0)), Pillar((1.0 + 0.2 * k, 0.0, 1.0))), 20)
+    assert goes is None and "three finite numbers" in state.refused

@@ -108,7 +108,8 @@ def _thinks(now: Going, state: CharacterState, intent: Intent, walker: Controlle
         fresh = now.but(barred=(), stands=(), crossings=())
         return now.but(barred=(), stands=(), thinking=began(fresh, *asked[1:], carries))
     if now.leapt:
-        return landed(now, state).but(thinking=began(landed(now, state), *asked[1:], state.velocity))
+        now = landed(now, state)
+        return now.but(thinking=began(now, *asked[1:], state.velocity))
     if _changed(now, state, intent.around):
         return now.but(thinking=began(now, *asked[1:], state.velocity if now.plan.reason or run else None))
     if now.anew:

@@ -216,6 +216,17 @@ def test_standing_in_a_corner_is_still():
     assert np.ptp(eyes, axis=0).max() < 1e-3 and np.linalg.norm(camera.eye - camera.target) > 0.5
 
 
+@pytest.mark.parametrize("high", [0.6, 1.0, 2.4])
+def test_who_walks_up_to_a_box_is_seen_from_where_he_was(high):
+    """From beside, along its face: the eye went overhead, and into his belly."""
+    box = (Box((0.0, 0.5 * high, 3.75), (3.0, high, 1.5)),)
+    camera, jumps = Follow.behind(np.zeros(3), CameraSettings(rest=np.inf), yaw=0.5 * math.pi, distance=5.0), []
+    for k in range(300):
+        old, camera = camera, camera.step(np.array([0.0, min(1.4 * k / 60, 2.8), 0.0]), np.array([0.0, 1.4 * (k < 120)]), STILL, 1 / 60, box)
+        jumps.append(np.linalg.norm(camera.eye - old.eye))
+    assert max(jumps) < 0.3 and np.linalg.norm(camera.eye - camera.target) > 3.0
+
+
 def test_it_starts_behind_and_looks_where_the_character_looks():
     view = Follow.behind(np.array([1.0, 2.0, math.pi / 2])).view()
     assert view.eye[0] < -2 and view.eye[2] == pytest.approx(2.0) and view.target == pytest.approx([1, 1, 2])
