@@ -49,7 +49,7 @@ class Asked:
     def still(self, state: CharacterState, intent: Intent) -> bool:
         """Whether the same is asked from the same place: of the same stance, where somebody moves."""
         was, leap, before = self.intent.leap, intent.leap, self.state
-        if was is None or not was.same(leap):
+        if was is None or leap is None or not was.same(leap):
             return False
         if intent.around is not self.intent.around:
             here, place = state.ground[:2], leap.place
