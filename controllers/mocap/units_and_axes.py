@@ -18,6 +18,12 @@ UNITS = (1.0, 0.1, 0.01, 0.001, 0.3048, 0.0254, 0.0254 / 0.45)
 """Metres in one unit: m, dm, cm, mm, foot, inch, and the 1/0.45 inch of CMU's recordings."""
 LEG = 0.856
 """Thigh and shin of an adult [m], `LEG_PART` of the stature: de Leva 1996."""
+METRIC = 1.0, 0.01, 0.001
+"""The likelier units: where a human is one in them, he is seldom measured in another."""
+SHORTEST, SMALL, LONGEST = 0.236, 0.41, 1.53
+"""No leg [m] is shorter, as of one 0.48 m tall, or longer, as of one of 3.1 m; and a shorter one than the second is as long as an adult's would be in inches."""
+ADULT = 0.6, 1.05
+"""An adult's leg [m]."""
 LEG_PART = 0.492
 _UP = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
 
@@ -124,8 +130,13 @@ def leg_length(skeleton: Skeleton) -> float:
 
 
 def unit_of(leg: float) -> float:
-    """Metres in the unit in which thigh and shin together are most like an adult's. MotionFileError where they are in none."""
+    """Metres in the unit in which thigh and shin together are a human's: metres, centimetres or millimetres where that is one of 0.83 to 3.1 m, else the unit in which
+    he is most like an adult, else, of 0.48 m on, again one of the three. A leg of 25 to 41 units is an adult's in inches, if nobody says that it is a small one's in
+    centimetres. MotionFileError where it is in none."""
+    metric = [unit for unit in METRIC if SHORTEST < unit * leg < LONGEST]
     best = min(UNITS, key=lambda unit: abs(np.log(unit * max(leg, 1e-12) / LEG)))
+    if metric and (metric[0] * leg > SMALL or not ADULT[0] < best * leg < ADULT[1]):
+        return metric[0]
     if not 0.4 < best * leg < 1.4:
         raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches")
     return best

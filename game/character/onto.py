@@ -70,7 +70,7 @@ def rigged(path: str | Path) -> Rigged:
         parents = np.array([-1, *(number.get(int(tree.parents[n]), 0) for n in nodes[1:])])
         listed = {ours: names[number[n]] for ours, n in table(document).items() if n in number}
         try:
-            rig = Rig.of(names, parents, world[:, :3, 3], world[:, :3, :3] / size[:, None, None], parts=listed or None)
+            rig = Rig.of(names, parents, world[:, :3, 3], world[:, :3, :3] / size[:, None, None], parts=listed or None, metres=1.0)  # as glTF always is
         except ValueError as error:
             raise CharacterError(f"{document.path}: {error}") from None
         skin = gathered(document, tree, bound, bones).positions @ rig.axes.T

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from gambol.controllers.body import forward_kinematics
 from gambol.game import cli
-from gambol.game.character import CharacterError, gltf, load, rigged
+from gambol.game.character import Actor, Build, CharacterError, gltf, joints_of, load, rigged, tailored, write
 from gambol.game.files.paths import OutputError
 from gambol.game.output import chosen, write_onto
 from gambol.game.render import skin, worn
@@ -79,6 +79,14 @@ def test_a_smaller_rig_goes_as_much_less_far(tmp_path):
     file = write_onto(tmp_path / "y.glb", onto, one)
     hips = at_frame(file, 2).world[1, :3, 3]
     assert np.abs(hips - one.poses[2].root).max() < 0.02
+
+
+@pytest.mark.parametrize("height", [0.5, 0.7, 1.0, 3.0])
+def test_our_own_bodies_of_all_sizes_are_rigs(tmp_path, height):
+    """glTF is in metres, however short a leg is."""
+    body = tailored(Build(height=height))
+    rig = rigged(write(tmp_path / "x.glb", [Actor("x", body, joints_of(body))])).rig
+    assert rig.unit == 1.0 and rig.height == pytest.approx(height, rel=0.03)
 
 
 def test_what_nothing_moves_on_is_told(tmp_path):

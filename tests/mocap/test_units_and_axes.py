@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import Skeleton
 from gambol.controllers.mocap import Detected, MotionFileError, detect, load, read, standardise, write_bvh
-from gambol.controllers.mocap.units_and_axes import UNITS
+from gambol.controllers.mocap.units_and_axes import LEG_PART, UNITS, unit_of
 
 LYING = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]])  # Y up to Z up
 
@@ -35,6 +35,23 @@ def test_units_and_up_are_found(tmp_path, unit, up):
     back = load(tmp_path / "a.bvh")
     np.testing.assert_allclose(back.kinematics()[0], clip.kinematics()[0], atol=1e-4)
     np.testing.assert_allclose(back.skeleton.offsets[1:], clip.skeleton.offsets[1:], atol=1e-6)
+
+
+METRES, INCH = (1.0, 0.01, 0.001), 0.0254
+
+
+@pytest.mark.parametrize("unit", METRES)
+@pytest.mark.parametrize("height", [0.5, 0.6, 0.7, 0.8, 0.85, 1.0, 1.1, 1.5, 2.2, 2.6, 3.0])
+def test_the_unit_of_small_and_tall_bodies_is_metric(height, unit):
+    """But for who is as tall in centimetres as an adult would be in inches."""
+    leg = LEG_PART * height / unit
+    assert unit_of(leg) == (INCH if unit == 0.01 and height < 0.83 else unit)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("height", [1.4, 1.55, 1.741, 1.9, 2.05])
+def test_an_adult_is_one_in_any_unit(height, unit):
+    assert unit_of(LEG_PART * height / unit) == unit
 
 
 def with_calibration(clip, count):
