@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gambol.controllers.contract import Goal, Intent, Leap
+from gambol.controllers.contract import Goal, Intent, Leap, Strike
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.person import person
 
@@ -23,6 +23,14 @@ def test_a_leap_names_the_field_that_is_no_number(fields):
         Leap(np.zeros(3), **fields)
     with pytest.raises(ValueError, match="a leap's place"):
         Leap("here")  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("wish, says", [
+    (lambda: Goal((0, 1), heading="x"), "a goal's heading"), (lambda: Goal((0, 1), heading=[1.0, 2.0]), "a goal's heading"), (lambda: Goal((0, 1), within="x"), "a goal's time"),
+    (lambda: Strike((1.0, 0.0), height="x"), "a strike's height"), (lambda: Strike((1.0, 0.0), height=[1.0]), "a strike's height"), (lambda: Leap(None, slack=None), "a leap's slack")])
+def test_what_is_no_number_is_named(wish, says):
+    with pytest.raises(ValueError, match=says):
+        wish()
 
 
 def test_what_a_person_is_given_is_one_persons_and_its_own():

@@ -24,6 +24,13 @@ def _numbers(name: str, value: Any) -> np.ndarray:
         raise ValueError(f"{name}: needs numbers, got {value!r}") from None
 
 
+def _number(name: str, value: Any) -> float:
+    """One number. ValueError for what is none, or several."""
+    if _numbers(name, value).shape or value is None:
+        raise ValueError(f"{name} is one number, got {value!r}")
+    return float(value)
+
+
 @dataclass(frozen=True, eq=False)
 class Leap:
     """A jump that somebody wants. place: (3,) [m] in the world where the middle of the feet should land, or
@@ -47,8 +54,8 @@ class Leap:
         if self.place is not None:
             object.__setattr__(self, "place", _numbers("a leap's place", self.place))
         for name in ("airtime", "slack", "heading"):
-            if getattr(self, name) is not None and _numbers(f"a leap's {name}", getattr(self, name)).shape:
-                raise ValueError(f"a leap's {name} is one number, got {getattr(self, name)!r}")
+            if getattr(self, name) is not None or name == "slack":
+                _number(f"a leap's {name}", getattr(self, name))
         if not 0.0 <= self.slack < math.inf:
             raise ValueError(f"a leap's slack must be 0 m or more, got {self.slack!r}")
 
@@ -75,9 +82,9 @@ class Goal:
         place = tuple(_numbers("a goal's place", self.place).ravel().tolist())
         if len(place) not in (2, 3) or not all(abs(value) <= HIGHEST for value in place):
             raise ValueError(f"a goal is x, z or x, y, z within ±{HIGHEST:g} m, got {self.place!r}")
-        if self.heading is not None and not math.isfinite(self.heading):
+        if self.heading is not None and not math.isfinite(_number("a goal's heading", self.heading)):
             raise ValueError(f"a goal's heading must be finite [rad], or None; got {self.heading!r}")
-        if self.within is not None and not self.within > 0.0:
+        if self.within is not None and not _number("a goal's time", self.within) > 0.0:
             raise ValueError(f"a goal is to be reached within more than 0 s, or None; got {self.within!r}")
         object.__setattr__(self, "place", place)  # whatever it was given as, it can be compared
 
@@ -99,7 +106,7 @@ class Strike:
         impulse = tuple(_numbers("a strike's impulse", self.impulse).ravel().tolist())
         if len(impulse) != 2 or not math.hypot(*impulse) <= HARDEST:
             raise ValueError(f"an impulse is x, z of at most {HARDEST:g} N·s together, got {self.impulse!r}")
-        if self.height is not None and not 0.0 <= self.height <= 3.0:
+        if self.height is not None and not 0.0 <= _number("a strike's height", self.height) <= 3.0:
             raise ValueError(f"a strike's height must be within 0 … 3 m, or None; got {self.height!r}")
         object.__setattr__(self, "impulse", impulse)
 
