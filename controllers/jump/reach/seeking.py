@@ -40,6 +40,13 @@ class Seeking(Generic[T]):
                 self._known.append(self._share())
             return self._known[min(steps, len(self._known)) - 1]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """To be pickled or copied it is worked out to its end: half-done work is of this process."""
+        with self._lock:
+            while not self._ended:
+                self._known.append(self._share())
+            return _sought, (tuple(self._known),)
+
     def _share(self) -> T | str:
         """What is known one share later."""
         spent = 0
@@ -56,6 +63,13 @@ class Seeking(Generic[T]):
                 self._held = piece
                 return next((known for known in reversed(self._known) if isinstance(known, str)), "")
             spent += piece
+
+
+def _sought(known: tuple[Any, ...]) -> Seeking[Any]:
+    """Seeking that has come to its end, of what was known after each step."""
+    made: Seeking[Any] = Seeking(iter(()))  # type: ignore[arg-type]
+    made._known, made._ended = list(known), True
+    return made
 
 
 class Onward(NamedTuple):

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import lru_cache
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -68,6 +70,12 @@ class Thought(Generic[T]):
                     return self._result
             self._work(False)  # nobody has begun with it, or ended it
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """To be pickled or copied it is thought to its end: threads and locks are of this process."""
+        with suppress(Exception):  # what it raised goes along
+            self.after(sys.maxsize)
+        return _thought, (self._result, self._error, self._asked, self._dt)
+
     def _due(self, hurried: bool) -> int:
         """After how many steps it is to be used if it asks no more than it has asked."""
         return 1 + min(self._asked, HURRIED) if hurried else steps_of(self._asked, self._dt)
@@ -96,6 +104,14 @@ class Thought(Generic[T]):
             self._working, self._done = False, not isinstance(error, Forgotten)
             self._result, self._error = result, error
             self._changed.notify_all()
+
+
+def _thought(result: Any, error: BaseException | None, asked: int, dt: float) -> Thought[Any]:
+    """A thought that has come to its end, as so many questions."""
+    made: Thought[Any] = object.__new__(Thought)
+    made._dt, made._asked, made._begun, made._changed = dt, asked, None, threading.Condition()
+    made._working, made._done, made._forgotten, made._result, made._error = False, True, False, result, error
+    return made
 
 
 @lru_cache
