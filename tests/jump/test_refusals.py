@@ -43,6 +43,28 @@ def test_a_course_that_is_hopeless_is_not_sought_again(jump, running, courses):
     assert len(courses) == 1 and courses[0] > grounded.HOPELESS
 
 
+@pytest.mark.parametrize("leap", [Leap((0.0, np.nan, 1.0)), Leap((0.0, 1.0)), Leap((0.0, 0.0, 1.0), on="foo"),
+                                  Leap((0.0, 0.0, 1.0), heading=np.nan), Leap((0.0, 0.0, 1.0), airtime=np.nan), Leap(None, airtime=99.0)])
+def test_what_nobody_can_leap_to_is_told_as_a_step_tells_it(jump, person, standing, leap):
+    intent = Intent(leap=leap)
+    state, _ = person.step(person.start(), intent, 1 / 60)
+    assert state.refused and state.refused == jump.refusal(standing, intent) == person.refusal(person.start(), intent)
+    assert jump.found(standing, intent) is None and person.found(person.start(), intent) is None
+
+
+@pytest.mark.parametrize("place", [(0.0, 1.0), (0.0, np.nan, 1.0), np.zeros((2, 3)), 1.0])
+def test_what_is_no_place_can_not_be_surveyed(jump, standing, place):
+    start = jump.start_of(standing)
+    for ask in (jump.survey, jump.nearest):
+        with pytest.raises(ValueError, match="the target must be three finite numbers"):
+            ask(start, place, 0.0)
+        with pytest.raises(ValueError, match="a floor must be"):
+            ask(start, (0.0, 0.0, 1.0), np.nan)
+        with pytest.raises(ValueError, match="the airtime must be"):
+            ask(start, (0.0, 0.0, 1.0), 0.0, np.nan)
+    assert jump.survey(start, [0.0, 0.0, 1.0], 0)[1] == "", "a list is a place, too"
+
+
 @pytest.mark.parametrize("speed", [1.2, 3.0])
 def test_who_walks_or_runs_is_not_told_that_he_is_weak(locomotion, jump, speed):
     """In the midst of a stride no foot may be under him, and he is told that; his muscles are as strong as ever."""

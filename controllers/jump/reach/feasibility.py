@@ -63,6 +63,16 @@ def _away(way: np.ndarray) -> str:
     return f"{np.hypot(way[0], way[2]):.1f} m away{up}"
 
 
+def meant(place: Any, airtime: float | None = None) -> np.ndarray:
+    """A place (3,) [m] to leap to, as numbers. Refused where it is none, or where nobody is in the air for so long [s]."""
+    numbers = np.asarray(place, float)
+    if numbers.shape != (3,) or not np.isfinite(numbers).all():
+        raise Refused(f"the target must be three finite numbers, got {place!r}")
+    if airtime is not None and not 0.05 <= airtime <= 10.0:
+        raise Refused(f"the airtime must be within 0.05 … 10 s, got {airtime!r}")
+    return numbers
+
+
 def too_weak(physique: Physique, usual: Path, longest: float) -> str:
     """What is told of a body whose muscles don't do the usual jump straight up. longest: [s] that it can be in the air."""
     if strongest(physique, measures(physique).leave(0.0) - measures(physique).stand, usual.gravity) <= 0.0:

@@ -9,13 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...contract import level
 from ...navigation import floor_at
 from ..body import FLAT, Physique, Start
 from ..motion import Plan, rolled, rolls, room
 from ..planner import plan
 from ..prior import Prior
 from .arcs import HEIGHTS, Arc, Arcs, How, following
-from .feasibility import STEEP, stopped, wrong
+from .feasibility import STEEP, meant, stopped, wrong
 from .seeking import PLAN, Pieces, whole
 from .sweep import Touch, touch
 
@@ -136,8 +137,9 @@ class Reach(Arcs):
                 around: Sequence[Any] = ()) -> np.ndarray | None:
         """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from right above it, where it lies lower, or from one that takes
         no effort: where it stands, or where a run would carry the body; to `GRID`, however far the refused one is. None if that can't be
-        reached either. It is looked for along arcs of the usual height alone: who would have to fly higher to get farther is offered a nearer one."""
-        return whole(self.nearby(start, place, floor, airtime, around))[0]
+        reached either. It is looked for along arcs of the usual height alone: who would have to fly higher to get farther is offered a nearer one.
+        Refused for what is no place, ValueError for what is no floor."""
+        return whole(self.nearby(start, meant(place, airtime), float(level(floor)), airtime, around))[0]
 
     def nearby(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
                around: Sequence[Any]) -> Pieces[tuple[np.ndarray | None, Found | None]]:
