@@ -14,8 +14,11 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import LONGEST, CharacterState, Controller, Intent, Leap, Status, seconds
+from .contract import LONGEST, CharacterState, Controller, Intent, Leap, OfSize, Status, seconds
 from .navigation import checked, is_box, is_pillar, slope
+
+SAME = 1e-6
+"""Sizes that differ by no more than this share are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +62,7 @@ class Scaled(Controller):
 
     def readiness(self, state: CharacterState) -> Any:
         """How fast it takes a wish up, as a share of how fast it does as it walks."""
-        return self.controller.readiness(state)
+        return self.controller.readiness(self._shrunk(state))
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """Standing at x, z [m], heading, on a floor so high [m]. ValueError for more than one."""
@@ -69,7 +72,11 @@ class Scaled(Controller):
         return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of `dt` seconds (0 < dt ≤ 0.1; ValueError otherwise)."""
+        """One step of `dt` seconds (0 < dt ≤ 0.1; ValueError otherwise, and for a state of a body of another size)."""
+        if not self._mine(state):
+            was = state.memory.factor if isinstance(state.memory, OfSize) else 1.0
+            raise ValueError(f"this state is of a body with legs {was:.3g} times as long as the standard, not {self.factor:.3g} times: "
+                             "step it with the controller that it is of")
         own, asked = seconds(dt) / self.factor**0.5, self._asked(intent)
         new, count = self._shrunk(state), ceil(own / LONGEST - 1e-6)  # a small body's own time may be too long for one
         for _ in range(count):
@@ -82,8 +89,8 @@ class Scaled(Controller):
         return self.controller.precondition(self._shrunk(state), self._asked(intent))
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
-        """The state with this controller's own memory."""
-        return self._grown(self.controller.enter(self._shrunk(state), self._asked(intent)))
+        """The state with this controller's own memory: anew from its pose, if it is of a body of another size."""
+        return self._grown(self.controller.enter(self._shrunk(state if self._mine(state) else replace(state, memory=None)), self._asked(intent)))
 
     def pushed(self, state: CharacterState, change: np.ndarray) -> CharacterState | None:
         """The state with a velocity that a push has changed by (2,) x, z [m/s]; None where its next steps don't take that in."""
@@ -97,6 +104,9 @@ class Scaled(Controller):
     def within(self, state: CharacterState, intent: Intent) -> tuple[CharacterState, Intent]:
         """State and intent as the controller within has them, in the size that it is made for."""
         return self._shrunk(state), self._asked(intent)
+
+    def _mine(self, state: CharacterState) -> bool:
+        return isinstance(state.memory, OfSize) and abs(state.memory.factor / self.factor - 1.0) <= SAME
 
     @property
     def _speeds(self) -> np.ndarray:
@@ -116,10 +126,10 @@ class Scaled(Controller):
         return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, aim=None if intent.aim is None else Leap(None), look=look, halt=halt, towards=towards)
 
     def _grown(self, state: CharacterState) -> CharacterState:
-        return _resized(state, self.factor, state.velocity * self._speeds)
+        return _resized(state, self.factor, state.velocity * self._speeds, OfSize(state.memory, self.factor))
 
     def _shrunk(self, state: CharacterState) -> CharacterState:
-        return _resized(state, 1.0 / self.factor, state.velocity / self._speeds)
+        return _resized(state, 1.0 / self.factor, state.velocity / self._speeds, state.memory.memory if isinstance(state.memory, OfSize) else state.memory)
 
 
 class _ShrunkBox:
@@ -138,8 +148,8 @@ class _ShrunkPillar:
         self.radius, self.height = pillar.radius / factor, pillar.height / factor
 
 
-def _resized(state: CharacterState, factor: float, velocity: np.ndarray) -> CharacterState:
+def _resized(state: CharacterState, factor: float, velocity: np.ndarray, memory: Any) -> CharacterState:
     def pose(one: Pose | None) -> Pose | None:
         return None if one is None else Pose(one.root * factor, one.rotations)
-    return replace(state, ground=state.ground * [factor, factor, 1.0], velocity=velocity, floor=state.floor * factor,
+    return replace(state, ground=state.ground * [factor, factor, 1.0], velocity=velocity, floor=state.floor * factor, memory=memory,
                    pose=pose(state.pose), previous=pose(state.previous), elapsed=state.elapsed * factor**0.5)

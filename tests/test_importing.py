@@ -1,15 +1,19 @@
 """Who imports the controllers gets one clear line for a mistake, reads what a value is in a line, and picks from a batch as from an array."""
 
+import pickle
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from gambol.controllers.body import Pose, hull, human
-from gambol.controllers.contract import Controller, Goal, Intent, Status, Strike
+from gambol.controllers.contract import CharacterState, Controller, Goal, Intent, Leap, Status, Strike
+from gambol.controllers.jump import Physique
 from gambol.controllers.locomotion import Blender, ControlSpace, Locomotion, fourier
 from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene import Box
 
 DT = 1 / 60
 
@@ -104,6 +108,92 @@ def test_what_is_printed_of_a_value_is_short(walker):
     state = person(walker).start()
     for value in (state, state.pose, walker.start(np.zeros((5, 3))), walker.library, walker.walk, human(), Intent()):
         assert type(value).__name__ in repr(value) and len(repr(value)) < 2500 and repr(value).count("\n") < 3, type(value)
+
+
+def led(somebody, state, intents):
+    """All states as one is asked for one thing after another."""
+    states = []
+    for intent in intents:
+        state, _ = somebody.step(state, intent, DT)
+        states.append(state)
+    return states
+
+
+LEAP, BEFORE = Leap((0.0, 0.0, 1.0)), (Box((0.0, 0.3, 0.8), (1.0, 0.6, 0.2)),)
+DOING = {"jump": [Intent(leap=LEAP)] * 30, "crouch": [Intent(aim=LEAP)] * 20, "struck": [Intent(strike=Strike((150.0, 60.0)))],
+         "goal": [Intent(goal=Goal((0.0, 3.0)), around=BEFORE)] * 20,
+         "thinking": [Intent(goal=Goal((0.0, 3.0)), around=BEFORE)] * 2,
+         "sought": [Intent(leap=Leap((0.0, 0.0, 1.4)), around=BEFORE)] * 3}
+"""What somebody is asked who stands, step by step."""
+
+
+@pytest.mark.parametrize("doing", DOING)
+def test_states_print_in_a_few_hundred_letters_and_are_pickled(walker, doing):
+    """In the midst of whatever they do, and of what is still being worked out; what comes of them is the same to the bit."""
+    somebody, intents = person(walker), DOING[doing]
+    state = led(somebody, somebody.start(), intents)[-1]
+    assert len(repr(state)) < 900 and "\n" not in repr(state)
+    there = pickle.loads(pickle.dumps(state))
+    for mine, other in zip(*(led(somebody, one, intents[-1:] * 40) for one in (state, there))):
+        assert np.array_equal(mine.pose.rotations, other.pose.rotations) and np.array_equal(mine.ground, other.ground) and mine.refused == other.refused
+
+
+def apart(mine: CharacterState, other: CharacterState):
+    """How far two bodies are apart, joint by joint in angle and at the root [m]."""
+    return np.abs(np.asarray(mine.pose.rotations, float)[1:] - other.pose.rotations[1:]).max(), np.abs(np.asarray(mine.pose.root, float) - other.pose.root).max()
+
+
+@pytest.mark.parametrize("asked", [Intent(strike=Strike((0.0, 150.0))), Intent(leap=Leap(None))])
+@pytest.mark.parametrize("waits", [0, 1])
+def test_who_is_set_elsewhere_is_struck_and_leaps_there(walker, asked, waits):
+    """Had only his ground been replaced, his pose would have come after him at 1000 m/s."""
+    somebody = person(walker)
+    state = led(somebody, somebody.start(), [Intent((1.2, 0.0, 0.0))] * 60 + [Intent()] * 60)[-1]
+    x, z, heading = state.ground
+    there = state.at((x + 10.0, z + 20.0, heading), 3.0)
+    intents = [Intent()] * waits + [asked] + [asked if asked.strike is None else Intent()] * 60
+    for mine, other in zip(led(somebody, state, intents), led(somebody, there, intents)):
+        assert mine.active == other.active
+        assert np.allclose(other.ground - mine.ground, [10.0, 20.0, 0.0], atol=0.02) and float(other.floor) == pytest.approx(3.0 + float(mine.floor), abs=1e-6)
+        turned, _ = apart(mine, other)
+        assert turned < 0.05
+        assert np.allclose(other.pose.root - mine.pose.root, [10.0, 3.0, 20.0], atol=0.02)
+    assert mine.active in ("jump", "struck")
+
+
+def test_elsewhere_one_faces_as_one_is_told_and_a_crowd_is_set_as_one_is(walker):
+    crowd = led(walker, walker.start(np.array([[0.0, 0.0, 0.3], [2.0, 1.0, -1.0]])), [Intent((1.0, 0.2, 0.0))] * 40)[-1]
+    crowd = replace(crowd, previous=crowd.pose)
+    there = crowd.at(crowd.ground + [[5.0, 0.0, 1.0], [0.0, -3.0, -0.5]], np.array([1.0, 0.0]))
+    goes, _ = walker.step(there, Intent((1.0, 0.2, 0.0)), DT)
+    assert np.abs(goes.pose.root - there.pose.root).max() < 0.05 and np.abs(goes.pose.rotations - there.pose.rotations).max() < 0.2
+    assert np.array_equal(there.previous.root, there.pose.root) and there.pose.root.dtype == crowd.pose.root.dtype
+    for ground, floor in (((0.0, 0.0, 0.0), None), (np.full((2, 3), np.nan), None), (crowd.ground, np.inf)):
+        with pytest.raises(ValueError, match="elsewhere is a finite"):
+            crowd.at(ground, floor)
+
+
+@pytest.mark.parametrize("doing", ["jump", "crouch", "struck"])
+def test_who_jumps_or_falls_is_not_set_elsewhere(walker, doing):
+    """His motion was planned where he is: what he was set to was not heard."""
+    somebody = person(walker)
+    state = led(somebody, somebody.start(), DOING[doing])[-1]
+    assert state.active == {"crouch": "jump"}.get(doing, doing)
+    for moved in (replace(state, ground=state.ground + [1.0, 0.0, 0.0]), replace(state, floor=0.5), state.at(state.ground + [0.0, 0.0, 1.0])):
+        with pytest.raises(ValueError, match="can't be set elsewhere.*start him there anew"):
+            somebody.step(moved, Intent(), DT)
+    somebody.step(state.at(state.ground), Intent(), DT)
+
+
+def test_a_state_of_a_body_of_another_size_is_refused(walker):
+    adult, child, baby = (person(walker, Physique(height=height)) for height in (1.741, 1.2, 0.7))
+    state = led(child, child.start(), [Intent((0.6, 0.0, 0.0))] * 20)[-1]
+    for other, one in ((adult, state), (baby, state), (child, adult.start())):
+        with pytest.raises(ValueError, match="this state is of a body"):
+            other.step(one, Intent(), DT)
+    taken = adult.parts["locomotion"].enter(child.active(state)[1], Intent())
+    after, _ = adult.parts["locomotion"].step(taken, Intent(), DT)
+    assert abs(after.pose.root[1] - state.pose.root[1]) < 0.05, "who takes over takes the body as it is"
 
 
 def test_some_of_a_batch_go_on_as_they_would_have(walker):

@@ -26,8 +26,10 @@ def test_a_leap_names_the_field_that_is_no_number(fields):
 
 
 @pytest.mark.parametrize("wish, says", [
-    (lambda: Goal((0, 1), heading="x"), "a goal's heading"), (lambda: Goal((0, 1), heading=[1.0, 2.0]), "a goal's heading"), (lambda: Goal((0, 1), within="x"), "a goal's time"),
-    (lambda: Strike((1.0, 0.0), height="x"), "a strike's height"), (lambda: Strike((1.0, 0.0), height=[1.0]), "a strike's height"), (lambda: Leap(None, slack=None), "a leap's slack")])
+    (lambda: Goal((0, 1), heading="x"), "a goal's heading"), (lambda: Goal((0, 1), heading=[1.0, 2.0]), "a goal's heading"),
+    (lambda: Goal((0, 1), within="x"), "a goal's time"),
+    (lambda: Strike((1.0, 0.0), height="x"), "a strike's height"), (lambda: Strike((1.0, 0.0), height=[1.0]), "a strike's height"),
+    (lambda: Leap(None, slack=None), "a leap's slack")])
 def test_what_is_no_number_is_named(wish, says):
     with pytest.raises(ValueError, match=says):
         wish()

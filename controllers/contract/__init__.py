@@ -5,10 +5,10 @@ replaying, testing and crowds need nothing more than keeping states.
 """
 
 from .protocol import LONGEST, Controller, Unable, given, level, seconds
-from .states import CharacterState, Duty, Status, but
+from .states import CharacterState, Duty, OfSize, Status, but
 from .wishes import HARDEST, HIGHEST, Goal, Intent, Leap, Sighting, Strike
 
 __all__ = [
-    "HARDEST", "HIGHEST", "LONGEST", "CharacterState", "Controller", "Duty", "Goal", "Intent", "Leap", "Sighting", "Status", "Strike", "Unable", "but",
+    "HARDEST", "HIGHEST", "LONGEST", "CharacterState", "Controller", "Duty", "Goal", "Intent", "Leap", "OfSize", "Sighting", "Status", "Strike", "Unable", "but",
     "given", "level", "seconds",
 ]

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..body import Pose, Skeleton
-from .states import CharacterState, Status
+from .states import CharacterState, OfSize, Status
 from .wishes import HIGHEST, Intent, Leap, Strike
 
 
@@ -39,9 +39,11 @@ def seconds(dt: Any) -> float:
 
 
 def given(state: Any, intent: Any) -> None:
-    """Nothing, if a step is given a state and an intent. ValueError for anything else, or the other way round."""
+    """Nothing, if a step is given a state and an intent. ValueError for anything else, or the other way round, and for a state of a body of another size."""
     if not isinstance(state, CharacterState) or not isinstance(intent, Intent):
         raise ValueError(f"a step takes a CharacterState, an Intent and seconds; got a {type(state).__name__} and a {type(intent).__name__}")
+    if isinstance(state.memory, OfSize):
+        raise ValueError("this state is of a body of another size: step it with the controller that it is of")
 
 
 def level(floor: Any) -> Any:

@@ -7,8 +7,8 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from ..body import Pose, brief
-from .wishes import Strike
+from ..body import Pose, brief, yaw
+from .wishes import HIGHEST, Strike
 
 T = TypeVar("T")
 
@@ -81,6 +81,23 @@ class CharacterState:
                    contacts=of(self.contacts, others.contacts), memory=None if self.memory is None else of(self.memory, others.memory),
                    floor=of(self.floor, others.floor), previous=None if self.previous is None else pose(self.previous, others.previous or others.pose))
 
+    def at(self, ground: Any, floor: Any = None) -> CharacterState:
+        """The same elsewhere: at ground (..., 3) x, z [m], heading [rad], on a floor (...) so high [m], by default as high as it is; with its pose and how
+        that moves. ValueError unless that is finite, as many as they are. Of who jumps, falls or stumbles the next step refuses it."""
+        here, there = np.asarray(self.ground, float), np.asarray(ground, float)
+        up = 0.0 if floor is None else np.asarray(floor, float) - self.floor
+        if there.shape != here.shape or not (np.abs(there[..., :2]) <= HIGHEST).all() or not np.isfinite(there).all() or not np.isfinite(up).all():
+            raise ValueError(f"elsewhere is a finite {here.shape} x, z, heading, and a finite floor; got {ground!r} and {floor!r}")
+        turn = yaw(there[..., 2] - here[..., 2])
+
+        def carried(one: Pose) -> Pose:
+            root, rotations = np.asarray(one.root, float) - np.stack([here[..., 0], np.zeros(here.shape[:-1]), here[..., 1]], -1), np.array(one.rotations)
+            root = np.einsum("...ij,...j->...i", turn, root) + np.stack([there[..., 0], np.broadcast_to(up, here.shape[:-1]), there[..., 1]], -1)
+            rotations[..., 0, :, :] = turn @ rotations[..., 0, :, :]
+            return Pose(root.astype(np.asarray(one.root).dtype), rotations)
+        return but(self, ground=there.copy(), pose=carried(self.pose), previous=None if self.previous is None else carried(self.previous),
+                   floor=self.floor if floor is None else floor)
+
     @property
     def active(self) -> str:
         """Which of several controllers is on duty, by name; "" where one alone moves it."""
@@ -117,6 +134,17 @@ class Duty:
     refused: str = ""
     asked: Any = None
     strike: Strike | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class OfSize:
+    """The memory of a body in another size than its controller is made for. memory: that one's. factor: the legs' length
+    over that of the skeleton it is made for."""
+
+    __repr__ = brief
+
+    memory: Any
+    factor: float
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from .body import GRAVITY, Physique
 from .controller import Jump, Jumping
 from .crouching import Crouching
 from .reach import Refused
-from .starting import FRESH, RUNNING, start_of
+from .starting import FRESH, RUNNING, start_of, stands, stayed
 from .warm_up import rehearse
 
 __all__ = [
-    "Crouching", "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "rehearse", "start_of",
+    "Crouching", "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "rehearse", "stands", "start_of", "stayed",
 ]

@@ -18,8 +18,8 @@ from .crouching import Crouching, begun, crouched
 from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import Found, Onward, Pieces, Reach, Refused, Seeking, too_weak, whole
-from .starting import FEET, Jumping, landed, ready, rebounding, start_of, turning
+from .reach import Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
+from .starting import FEET, Jumping, landed, ready, rebounding, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -133,17 +133,7 @@ class Jump(Reach, Controller):
         leap = intent.leap
         if leap is None:
             raise Refused("nobody asked for a jump")
-        if leap.heading is not None and not np.isfinite(leap.heading):
-            raise Refused(f"the heading must be a finite number of radians, or None, got {leap.heading!r}")
-        if leap.on not in (None, *FEET):
-            raise Refused(f"a leap lands on 'left', 'right' or 'both' to hop on, or None to stand, got {leap.on!r}")
-        start, floor = self.start_of(state, leap), float(level(state.floor))
-        here = self.middle(start, floor)
-        place = here if leap.place is None else np.asarray(leap.place, float)
-        if place.shape != (3,) or not np.isfinite(place).all():
-            raise Refused(f"the target must be three finite numbers, got {leap.place!r}")
-        if leap.airtime is not None and not 0.05 <= leap.airtime <= 10.0:
-            raise Refused(f"the airtime must be within 0.05 … 10 s, got {leap.airtime!r}")
+        start, place, floor, here = self._meant(state, leap)
         asked = start, place, floor, leap.airtime, intent.around
         known = None if leap.how is None else self.again(leap.how, *asked)
         if known is not None:
@@ -174,17 +164,31 @@ class Jump(Reach, Controller):
         """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""
         if intent.leap is None:
             return "nobody asked for a jump"
-        start, floor = self.start_of(state, intent.leap), float(level(state.floor))
-        place = self.middle(start, floor) if intent.leap.place is None else np.asarray(intent.leap.place, float)
+        try:
+            start, place, floor, _ = self._meant(state, intent.leap)
+        except Refused as reason:
+            return str(reason)
         return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1]
+
+    def _meant(self, state: CharacterState, leap: Leap) -> tuple[Start, np.ndarray, float, np.ndarray]:
+        """From where a leap goes off, to which place (3,), off which floor [m], and where (3,) it stands. Refused where nobody can leap so from anywhere."""
+        if leap.heading is not None and not np.isfinite(leap.heading):
+            raise Refused(f"the heading must be a finite number of radians, or None, got {leap.heading!r}")
+        if leap.on not in (None, *FEET):
+            raise Refused(f"a leap lands on 'left', 'right' or 'both' to hop on, or None to stand, got {leap.on!r}")
+        start, floor = self.start_of(state, leap), float(level(state.floor))
+        here = self.middle(start, floor)
+        return start, meant(here if leap.place is None else leap.place, leap.airtime), floor, here
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that can be made from a state, with how; None where it can't."""
         leap = intent.leap
         if leap is None:
             return None
-        start, floor = self.start_of(state, leap), float(level(state.floor))
-        place = self.middle(start, floor) if leap.place is None else np.asarray(leap.place, float)
+        try:
+            start, place, floor, _ = self._meant(state, leap)
+        except Refused:
+            return None
         found, _ = whole(self.seen(start, place, floor, leap.airtime, intent.around, False))
         return None if found is None else replace(leap, how=found.arc.how)
 
@@ -206,9 +210,10 @@ class Jump(Reach, Controller):
         return turning(rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start, leap)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1."""
+        """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""
         dt = seconds(dt)
         level(state.floor)
+        stayed(state.memory.stood, state)
         if isinstance(state.memory, Crouching):
             state = self._released(state, intent)
         elif state.memory.time > state.memory.plan.take_off:
@@ -230,7 +235,7 @@ class Jump(Reach, Controller):
         c, s = np.cos(heading), np.sin(heading)
         velocity = np.array([s * vx + c * vz, 0.0, c * vx - s * vz])
         after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n].copy(),
-                        memory=replace(jumping, time=time), floor=floor)
+                        memory=replace(jumping, time=time, stood=np.array([*ground, floor])), floor=floor)
         if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
             after = self._hit(after, intent.around, dt)
         if jumping.fault:  # a leap's sweep saw to its arms

@@ -17,7 +17,7 @@ from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, turns
 from .motion import FADE, faded, ground_kernel
 from .prior import BETWEEN, LEGS
 from .reach import Onward, Reach
-from .starting import turning
+from .starting import stands, turning
 
 RATE = 10.0
 """Rate of the springs of a standard adult on Earth [1/s]: down in half a second, and never pulled."""
@@ -33,6 +33,7 @@ class Crouching:
     the pelvis's first. planted: (2, 5) where its feet come to stand. place, rate, bend: (14,) where the centre of mass is [m] and how the body
     is carried [rad], and their first and second derivatives. goal: (14,) where they shall be. leap: for what it crouches, None as it
     stands up. refused: why the jump that was asked can't be made, asked: which one that was, onward: with what that is gone on with being found out.
+    stood: (4,) where it was left, see `starting.stands`.
     """
 
     start: Start
@@ -47,6 +48,7 @@ class Crouching:
     refused: str = ""
     asked: Leap | None = None
     onward: Onward | None = None
+    stood: np.ndarray | None = None
 
     @property
     def stands(self) -> bool:
@@ -119,7 +121,7 @@ def crouched(reach: Reach, state: CharacterState, leap: Leap | None, dt: float) 
     """The state of somebody who crouches dt seconds later, for a leap, or standing up. The ground frame stays where the feet are."""
     memory: Crouching = aimed(reach, state.memory, leap, float(state.floor))
     memory, pose, contacts = moved(reach, memory, state.pose.root, dt)
-    return replace(state, velocity=np.zeros(3), pose=pose, contacts=contacts, memory=memory)
+    return replace(state, velocity=np.zeros(3), pose=pose, contacts=contacts, memory=replace(memory, stood=stands(state)))
 
 
 def _upright(reach: Reach, planted: np.ndarray, floor: float) -> np.ndarray:

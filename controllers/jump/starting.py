@@ -23,6 +23,8 @@ FEET = "left", "right", "both"
 """On which feet one may land to hop on."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
+NEAR = 1e-6
+"""Who is no farther from where he was left than this [m, rad] is there."""
 SPRINGS = 0.05
 """So long after the lowest point of a landing [s] another leap may still go off from there."""
 
@@ -31,7 +33,8 @@ SPRINGS = 0.05
 class Jumping:
     """What a jumper remembers. time: [s] since the plan began. fault: what was struck in mid-air, from where the
     plan is a fall. hits: how often. shift: (3,) x, z [m] of the ground frame from under the centre of mass, and its heading's [rad] from the plan's, as that began. asked: what is
-    not to be asked again until it was let go; refused: why the leap that was to follow can't be made, onward: with what that is gone on with being found out."""
+    not to be asked again until it was let go; refused: why the leap that was to follow can't be made, onward: with what that is gone on with being found out.
+    stood: (4,) where it was left, see `stands`."""
 
     plan: Plan
     time: float = 0.0
@@ -41,11 +44,12 @@ class Jumping:
     asked: Leap | None = None
     refused: str = ""
     onward: Onward | None = None
+    stood: np.ndarray | None = None
 
     @staticmethod
     def begun(made: Plan, state: CharacterState, asked: Leap | None = None, fault: str = "", hits: int = 0) -> Jumping:
         """The memory of one who begins a plan in a state."""
-        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.path.heading], asked)
+        return Jumping(made, 0.0, fault, hits, np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.path.heading], asked, stood=stands(state))
 
     @property
     def rebounds(self) -> bool:
@@ -57,6 +61,17 @@ class Jumping:
     def landed(self) -> bool:
         """Whether the feet have come down."""
         return self.time >= self.plan.touch_down
+
+
+def stands(state: CharacterState) -> np.ndarray:
+    """Where (4,) somebody is: x, z [m], heading [rad], and how high his floor [m]."""
+    return np.array([*np.asarray(state.ground, float), float(state.floor)])
+
+
+def stayed(stood: np.ndarray | None, state: CharacterState) -> None:
+    """Nothing, if somebody is where (4,) a motion left him that was planned in the world. ValueError where he was set elsewhere meanwhile."""
+    if stood is not None and not (np.abs(stands(state) - stood) <= NEAR).all():
+        raise ValueError("who jumps, falls or stumbles can't be set elsewhere, as that was planned where he is: start him there anew, or wait until he walks")
 
 
 def start_of(physique: Physique, state: CharacterState, crouched: bool = False) -> Start:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
-from ..jump import GRAVITY, Physique, start_of
+from ..jump import GRAVITY, Physique, stands, start_of, stayed
 from ..jump.body import measures
 from ..navigation.passing import drawn_in
 from .capture import FALLS, Way, way
@@ -39,11 +39,12 @@ ALOFT = 0.12
 @dataclass(frozen=True, eq=False)
 class Recovering:
     """What somebody remembers who was struck. made: what he plays; time: [s] since the strike. shift: (3,) x, z [m] of the ground frame from under the centre of mass, and its
-    heading's [rad] from the plan's, as that began."""
+    heading's [rad] from the plan's, as that began. stood: (4,) where he was left, as `stands` has it."""
 
     made: Recovery
     time: float = 0.0
     shift: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    stood: np.ndarray | None = None
 
 
 class Struck(Controller):
@@ -91,7 +92,7 @@ class Struck(Controller):
             raise Unable("nothing strikes it")
         made = self._planned(state, intent, intent.strike)
         shift = np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.headings[0]]
-        return replace(state, memory=Recovering(made, 0.0, shift))
+        return replace(state, memory=Recovering(made, 0.0, shift, stands(state)))
 
     def recovery(self, state: CharacterState, intent: Intent, strike: Strike) -> Recovery:
         """What becomes of a state that is struck: its mass centre's velocity is what it was and the impulse over the mass."""
@@ -126,8 +127,9 @@ class Struck(Controller):
         return played(goes)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
-        """One step of dt seconds. ValueError unless 0 < dt ≤ 0.1."""
+        """One step of dt seconds. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""
         dt = seconds(dt)
+        stayed(state.memory.stood, state)
         if intent.strike is not None and state.memory.time > 0.0:  # struck again
             state = self.enter(state, intent)
         memory: Recovering = state.memory
@@ -140,8 +142,8 @@ class Struck(Controller):
         if made.fate < FALLS and len(intent.around):
             pose = drawn_in(self.skeleton, pose, ground, intent.around)
         n, part = made.between(time)
-        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(), memory=replace(memory, made=made, time=time),
-                        floor=float(made.floors[n]))
+        after = replace(state, ground=ground, velocity=velocity, pose=pose, contacts=made.contacts[n + round(part)].copy(),
+                        memory=replace(memory, made=made, time=time, stood=np.array([*ground, made.floors[n]])), floor=float(made.floors[n]))
         if np.abs(intent.velocity).max() > WISHES and self._walks_on(after) and not made.stands(time):
             after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
         return after, pose

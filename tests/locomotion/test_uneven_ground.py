@@ -148,8 +148,8 @@ def test_a_child_that_aims_stops_idling(locomotion):
     """What another controller is wanted for is known to a walker in another size, too."""
     child = Scaled(locomotion, 0.7)
     state, _ = child.step(child.start(), Intent(leap=Leap(np.zeros(3))), 1 / FPS)
-    assert state.memory["alert"] == 1
-    assert child.step(state, Intent(), 1 / FPS)[0].memory["alert"] == 0
+    assert state.memory.memory["alert"] == 1
+    assert child.step(state, Intent(), 1 / FPS)[0].memory.memory["alert"] == 0
 
 
 coordinate = st.floats(-3.0, 3.0, allow_subnormal=False)
