@@ -131,8 +131,8 @@ def leg_length(skeleton: Skeleton) -> float:
 
 def unit_of(leg: float) -> float:
     """Metres in the unit in which thigh and shin together are a human's: metres, centimetres or millimetres where that is one of 0.83 to 3.1 m, else the unit in
-    which he is most like an adult, else, of 0.48 m on, again one of the three. A leg of 25 to 41 units is an adult's in inches, if nobody says that it is a small one's in
-    centimetres. MotionFileError where it is in none."""
+    which he is most like an adult, else, of 0.48 m on, again one of the three. A leg of 25 to 41 units is an adult's in inches, if nobody says
+    that it is a small one's in centimetres. MotionFileError where it is in none."""
     metric = [unit for unit in METRIC if SHORTEST < unit * leg < LONGEST]
     best = min(UNITS, key=lambda unit: abs(np.log(unit * max(leg, 1e-12) / LEG)))
     if metric and (metric[0] * leg > SMALL or not ADULT[0] < best * leg < ADULT[1]):
