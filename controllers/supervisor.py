@@ -21,11 +21,15 @@ from .navigation.passing import drawn_in
 
 
 MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
-"""A leap that was refused is tried again from elsewhere: so far away [m], farther by so much for each m/s, turned by so much [rad], or
-on other feet."""
+"""A leap that was refused is tried again from elsewhere: so far away [m], farther by so much for each m/s, turned by so much [rad], on other feet, or
+once he stands who was standing up."""
 
 
 ALONE = "characters come singly; a crowd that only walks is stepped by the locomotion itself"
+
+
+RISES, RESTS = 0.2, 0.1
+"""Whose hips come up faster than the first [m/s], as he goes no faster than the second [m/s], still stands up, as from a landing."""
 
 
 TAKEN = "its next steps take in what pushed it"
@@ -59,7 +63,7 @@ class Asked:
         far = state.ground - before.ground
         pace = float(np.hypot(before.velocity[0], before.velocity[2]))
         return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < MOVED + PASSED * pace
-                    and abs(far[2]) < TURNED and state.floor == before.floor)
+                    and abs(far[2]) < TURNED and state.floor == before.floor and not (_rises(before) and not _rises(state)))
 
 
 class Supervisor(Controller):
@@ -234,6 +238,13 @@ class Supervisor(Controller):
     def status(self, state: CharacterState) -> Status:
         """It never ends by itself; a walk to a goal is done, or fails with a reason."""
         return Status("running") if state.going is None else state.going.status
+
+
+def _rises(state: CharacterState) -> bool:
+    """Whether somebody still stands up."""
+    if state.previous is None or state.elapsed <= 0.0 or float(np.hypot(state.velocity[0], state.velocity[2])) > RESTS:
+        return False
+    return float(state.pose.root[1] - state.previous.root[1]) > RISES * state.elapsed
 
 
 def both(one: Strike | None, other: Strike | None) -> Strike:

@@ -144,7 +144,7 @@ class Locomotion(Controller):
         if not np.isfinite(wish).all():
             wish[~np.isfinite(wish).all(-1)] = 0.0
         np.minimum(np.maximum(wish, -20.0, out=wish), 20.0, out=wish)
-        memory["alert"] = intent.leap is not None or intent.aim is not None
+        memory["alert"] = (intent.leap is not None or intent.aim is not None) and intent.halt is None  # who is to halt before it leaps onto nothing
         memory["looks"] = 0
         _towards(memory, intent.towards, shape)
         if intent.look is not None:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, Status, but
-from gambol.controllers.jump import Jumping
-from gambol.controllers.navigation import Path, floor_at, follow, steer
+from gambol.controllers.jump import BESIDE, Jumping
+from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
 from .moves import Jump, Move
 from .pilot import STEERING
@@ -28,6 +28,8 @@ ASKEW = 0.15
 """A standing body faces where it jumps to within this [rad]."""
 PATIENCE = 1.0
 """So long [s] a jump that can't be made from a stand is asked for."""
+PASSED = 0.12
+"""A place farther behind than this [m] a run-up has gone past."""
 HOPS_UP = 0.4
 """What is higher over the ground than this [m] is hopped against, not onto."""
 UNDER_WAY = 0.7
@@ -44,9 +46,10 @@ AHEAD = 0.85, 0.5
 class Making:
     """How far somebody is with a move.
 
-    steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for; aimed: for how many it was aimed at; jumped:
-    whether it began. hops: x, z [m] where its hop lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none.
-    run_up: what it knows of its run-up. stood: for how many steps somebody has stood on his way.
+    steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for, of one from a stand not while it still landed; aimed:
+    for how many it was aimed at; jumped: whether it began. passed: whether what its run-up leads to lies behind for good. hops: x, z [m] where its hop
+    lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none. run_up: what it knows of its run-up. stood: for how
+    many steps somebody has stood on his way. why: what last kept him from leaping off a foot that was under him.
     """
 
     steps: int = 0
@@ -55,10 +58,12 @@ class Making:
     asked: int = 0
     aimed: int = 0
     jumped: bool = False
+    passed: bool = False
     hops: tuple[float, float, float] | None = None
     hopped: tuple[float, float, float] | None = None
     run_up: RunUp = RunUp()
     stood: int = 0
+    why: str = ""
 
     def step(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
         """The same `dt` seconds later, and what is asked of a character in `state` meanwhile."""
@@ -66,6 +71,8 @@ class Making:
         now, intent = now._ask(move, state, dt)
         if move.jump is not None:
             now, intent = now._ask_jump(move, move.jump, state, intent, dt)
+            if now.asked and state.refused and state.refused != BESIDE:
+                now = replace(now, why=state.refused)
         stands = now.path is not None and not now.jumped and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
         return replace(now, steps=now.steps + 1, stood=now.stood + 1 if stands else 0), intent
 
@@ -78,7 +85,7 @@ class Making:
         now = jumping(state)
         if move.jump is not None and self.jumped:
             return now is None or now.landed
-        if self.steps * dt >= move.seconds - 0.5 * dt:
+        if self.passed or self.steps * dt >= move.seconds - 0.5 * dt:
             return True
         if move.jump is not None and not move.runs:
             return self.asked * dt > PATIENCE and (now is None or now.landed)
@@ -125,6 +132,8 @@ class Making:
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         if move.runs:
+            if (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
+                return replace(self, passed=self.asked > 0 and _straight(move)), intent
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
             ready = self.run_up.halt is not None or far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
         elif far > NEAR and jump.heading is None:
@@ -140,7 +149,17 @@ class Making:
         if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
-        return replace(self, asked=self.asked + 1, hops=hops), replace(intent, leap=leap)
+        return replace(self, asked=self.asked + (move.runs or now is None), hops=hops), replace(intent, leap=leap)
+
+
+def _pace(intent: Intent) -> float:
+    """How fast [m/s] somebody is asked to go."""
+    return math.hypot(intent.velocity[0], intent.velocity[2])
+
+
+def _straight(move: Move) -> bool:
+    """Whether a run-up leads straight on, so that it never comes to what it has passed."""
+    return len(move.points) < 2 and move.velocity[1] == 0.0 and move.until is None
 
 
 def jumping(state: CharacterState) -> Any:

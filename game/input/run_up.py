@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, but
+from gambol.controllers.jump import BESIDE
 from gambol.controllers.navigation import STEP, floor_at, in_world, room
 from gambol.controllers.navigation.thinking import Thought
 from gambol.controllers.supervisor import Asked
@@ -46,7 +47,8 @@ Asks = Callable[[CharacterState], Intent]
 @dataclass(frozen=True)
 class RunUp:
     """What somebody knows of his run-up. free: for so many steps he goes on as he does, −1 where his leap was found not to go off; halt: x, z [m] where he is to come to rest, as he can't leap.
-    leap: what goes off by itself after these steps, of a run of `velocity` [m/s] along x and z. thought: what he thinks of it, and for how many steps he has thought."""
+    leap: what goes off by itself after these steps, of a run of `velocity` [m/s] along x and z. thought: what he thinks of it, and for how many steps he has thought.
+    why: what keeps him from leaping, off the last foot that is under him."""
 
     free: int = 0
     halt: tuple[float, float] | None = None
@@ -54,6 +56,7 @@ class RunUp:
     velocity: tuple[float, float] = (0.0, 0.0)
     thought: Thought[RunUp] | None = None
     thinks: int = 0
+    why: str = ""
 
     @property
     def off(self) -> Leap | None:
@@ -80,11 +83,11 @@ class RunUp:
         free = found.free - self.thinks
         return RunUp(-1, halt, velocity=self.velocity) if free < 0 or free == 0 and found.leap is None else replace(found, free=free)
 
-    def step(self, controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float) -> RunUp:
-        """The same `dt` seconds later. asks: what is asked of him from here on."""
+    def step(self, controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float, place: Any = None) -> RunUp:
+        """The same `dt` seconds later. asks: what is asked of him from here on. place: (3,) [m] where his leap leads."""
         if self.halt is not None or self.free > 0 or not len(around):
             return replace(self, free=self.free - 1)
-        return _played(controller, state, asks, around, dt, LOOK / agility(controller))
+        return _played(controller, state, asks, around, dt, LOOK / agility(controller), place)
 
     def heeded(self, state: CharacterState, intent: Intent) -> Intent:
         """An intent of somebody who comes to rest before what he can't leap; as it is where he goes on."""
@@ -96,7 +99,7 @@ class RunUp:
         return but(intent, halt=np.array([*self.halt, np.nan]), towards=None)
 
 
-def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float, seconds: float) -> RunUp:
+def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], around: Sequence[Any], dt: float, seconds: float, place: Any) -> RunUp:
     """What comes of going on for so long: whether he leaps is asked only if he would else come to where he can't walk."""
     walks, way, blocked, now = asks(), [state.ground[:2]], None, state
     for _ in range(round(seconds / dt)):
@@ -107,9 +110,9 @@ def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], ar
         if blocked is None and room(way[-1], floor, around) <= 0.0:
             blocked = len(way) - 1, is_edge(way[-1], floor, around)
         if now.active == "jump" or touches(way[-1], floor, around):
-            number = leaps(controller, state, asks(), around, dt, len(way) - 1)
+            number, why = leaps(controller, state, asks(), around, dt, len(way) - 1, place=place)
             last, edge = blocked or (len(way) - 1, now.active == "jump")
-            return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge))
+            return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge), why=why)
     return RunUp(max(round(EVERY / dt), 1))
 
 
@@ -125,18 +128,22 @@ def _silent() -> None:
     """Nobody counts the questions."""
 
 
-def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float, most: int, ask: Callable[[], None] = _silent) -> int:
-    """After how many steps, at most so many, he can leap who goes on; 0 where he never can. Asked as often as a supervisor does. ask: is called before each question."""
-    refused = None
+def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[Any], dt: float, most: int, ask: Callable[[], None] = _silent,
+          place: Any = None) -> tuple[int, str]:
+    """After how many steps, at most so many, he can leap who goes on; 0 where he never can, and what keeps him from the leap to a place (3,) [m], None for any, off
+    the last foot that is under him. Asked as often as a supervisor does. ask: is called before each question."""
+    refused, told = None, ""
     for number in range(most):
         intent = but(asks(state), around=around)
         if intent.leap is not None and not (refused is not None and refused.still(state, intent)) and controller.precondition(state, intent) >= READY:
             ask()
-            if controller.refusal(state, intent) == "":
-                return number + 1
+            why = controller.refusal(state, intent)
+            if not why:
+                return number + 1, ""
             refused = Asked("", intent, state)
+            told = why if why != BESIDE and (place is None or np.array_equal(intent.leap.place, place)) else told
         state, _ = controller.step(state, but(intent, leap=None, aim=intent.leap or intent.aim), dt)
-    return 0
+    return 0, told
 
 
 class Footfall(NamedTuple):

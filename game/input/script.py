@@ -62,9 +62,10 @@ class Script:
 
     def held(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
         """The same script, and what it asks of a character in `state` in this step, who on a run-up comes to rest before what he can't leap."""
-        if not self.leaps or self.now.jumped or state.active == "jump" or not self.moves[self.index].runs:
+        move = None if self.done else self.moves[self.index]
+        if move is None or move.jump is None or self.now.jumped or state.active == "jump" or not move.runs:
             return self, intent
-        run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt)
+        run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt, move.jump.place)
         return replace(self, now=replace(self.now, run_up=run_up)), run_up.heeded(state, intent)
 
     def _onward(self, intent: Intent, dt: float) -> Asks:
@@ -93,8 +94,9 @@ class Script:
             kind = "hop" if move.jump.hop is not None else "jump"
             place = move.jump.place
             where = "" if kind == "hop" else " up" if place is None else " to ({:g}, {:g}, {:g})".format(*place)
-            away = "" if place is None else f", and its run-up ended {math.dist(place[::2], state.ground[:2]):.1f} m away"
-            refused = (*refused, f"no {kind}{where}: {state.refused or f'it never came to where it could jump from{away}'}")
+            why = self.now.run_up.why or self.now.why or state.refused or "it never came to where it could jump from"
+            away = f", and its run-up ended {math.dist(place[::2], state.ground[:2]):.1f} m away" if move.runs and place is not None else ""
+            refused = (*refused, f"no {kind}{where}: {why}{away}")
         way = way_of(move, state)
         if move.goal is not None and way is not None and way.reason:
             refused = (*refused, "no way to ({:g}, {:g}): {}".format(*move.goal.floor, way.reason))

@@ -35,7 +35,7 @@ CAPTION = (0.4, 4.4)
 FADE = 0.5
 """How long coming and going take [s]."""
 REFUSED = 4.0
-"""How long is said why a jump was not made [s]."""
+"""How long the overlay of jumps says why one was not made [s]."""
 PLOTTED = 10 * RATE
 """So many steps back the plots over a film show."""
 EARTH = float(GRAVITY[1])
@@ -188,7 +188,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
             names = next(o for o in (table.overlays, old.shot.overlays, scenario.overlays) if o is not None)
             corner = part[0] == 0.0 and part[1] == lowest
             title, over = getattr(table, "title", ""), overlays(names) if shown is None else shown
-            text = ((title,) if title else ()) + (why if not made else ())
+            text = ((title,) if title else ()) + (why if over.jump and not made else ())
             people = pointed(explained(drawn, before, after, alpha, over), before, after, alpha, over)
             people = stepping(led(people, after, over), after, over)
             if table.kind == "follow":

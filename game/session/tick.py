@@ -136,7 +136,7 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
 
     def think(ask: Callable[[], None]) -> RunUp:
         later, since = (state, 0) if brakes.halt is None else (braked(controller, state, brakes, asks, props, DT), BRAKES)
-        if released and (number := leaps(controller, later, asks, props, DT, most - since, ask)):
+        if released and (number := leaps(controller, later, asks, props, DT, most - since, ask)[0]):
             return RunUp(number + since)
         found = last_chance(controller, later, velocity, asks, props, DT, ask) if runs else None
         return RunUp(-1) if found is None else replace(found, free=found.free + since)

@@ -207,6 +207,13 @@ def test_moves_that_never_begin_are_told_with_the_last_frame(tmp_path):
     assert not list(film.run(load(file), Glide()))[-1].refused
 
 
+def test_what_was_refused_is_drawn_with_the_overlay_of_jumps_alone(tmp_path):
+    text = 'title = "x"\nduration = 1\nfps = 10\n[[actors]]\nname = "A"\nmoves = [{ velocity = [1, 0, 0], for = 0.2, jump_to = [0, 9] }]'
+    for shown in (None, Overlays(jump=True)):
+        _, pictures = filmed(tmp_path, text, shown=shown)
+        assert pictures[-1][0].refused and "".join(pictures[-1][1][0].text).startswith("A: no jump to (0, 0, 9)") == (shown is not None)
+
+
 def test_what_is_hardly_meant_is_told(tmp_path):
     sound = """
         title = "x"

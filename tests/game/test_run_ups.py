@@ -36,9 +36,14 @@ def box(far, high, deep=4.0):
 
 def run_up(who, things, pace, place, floor=0.0, seconds=4.0):
     """All states of somebody whose script runs up to a leap, and its script after them."""
-    script = Script((Move(seconds, (pace, 0.0, 0.0), jump=Jump(place)), Move(0.2)))
+    return led(who, things, (Move(seconds, (pace, 0.0, 0.0), jump=Jump(place)), Move(0.2)), seconds + 0.04, floor)
+
+
+def led(who, things, moves, seconds, floor=0.0):
+    """All states of somebody who makes moves for so long [s], and his script after them."""
+    script = Script(moves)
     world, states = World((Character("A", who, who.start((0.0, 0.0, 0.0), floor)),), things), []
-    for _ in range(round(seconds / DT) + 2):
+    for _ in range(round(seconds / DT)):
         states.append(world.characters[0].state)
         script, intent = script.step(states[-1], DT)
         script, intent = script.held(who, states[-1], intent, things, DT)
@@ -76,6 +81,45 @@ def test_a_leap_that_goes_off_is_not_braked_for(library):
     first = next(n for n, s in enumerate(states) if s.active == "jump")
     assert states[first - 1].velocity[0] > 1.2, "he goes as he went"
     assert isinstance(states[first].memory.memory, Jumping) and not script.refused
+
+
+def landed(states):
+    """After how many states somebody has come down from his first leap."""
+    return next(n for n, s in enumerate(states) if s.active == "locomotion" and any(now.active == "jump" for now in states[:n]))
+
+
+@pytest.mark.parametrize("far, askew", [(9.0, 0.5), (9.3, 0.0), (9.6, 0.5), (9.9, 0.0)])
+def test_who_has_just_landed_from_a_run_stops_before_what_he_can_not_leap_from_there(library, far, askew):
+    """He went on with his leap in mind, and through its edge."""
+    hurdle, high = Box((0.0, 0.14, 5.2), (4.0, 0.28, 0.12)), Box((0.0, 0.45, far + 1.5), (3.0, 0.9, 3.0), askew)
+    who = person(library.tuned(Settings(idle=0.0)))
+    states, script = led(who, (hurdle, high), (Move(4.0, (3.4, 0.0, 0.0), jump=Jump((0.0, 0.0, 6.2))), Move(4.0, (2.4, 0.0, 0.0), jump=Jump((0.0, 0.9, far + 0.6)))), 6.0)
+    assert deepest(who, states[landed(states):], (high,)) < 0.01 and np.hypot(*states[-1].velocity[[0, 2]]) < 0.1
+    assert script.now.run_up.halt is not None
+
+
+@pytest.mark.parametrize("pace", [1.2, 3.4])
+def test_nobody_leaps_back_to_what_his_run_up_has_gone_past(library, pace):
+    """Who was braked before a wall asked for his leap wherever it led."""
+    who, wall = person(library.tuned(Settings(idle=0.0))), box(1.4, 1.8)
+    states, script = run_up(who, (wall,), pace, (0.0, 0.0, -0.2), seconds=3.0)
+    assert all(s.active == "locomotion" for s in states) and script.refused[0].endswith("its run-up ended 1.2 m away")
+
+
+def test_what_kept_a_runner_from_leaping_is_told_not_what_keeps_him_where_he_stands(library):
+    """He is braked, as no footfall was one to leap from; asked at rest, he is told of a leap from there, which nobody meant."""
+    who = person(library.tuned(Settings(idle=0.0)))
+    states, script = led(who, (box(6.0, 0.6),), (Move(1.2, (3.4, 0.0, 0.0)), Move(4.0, (3.4, 0.0, 0.0), jump=Jump((0.0, 0.6, 6.6))), Move(0.2)), 5.3)
+    assert all(s.active == "locomotion" for s in states) and "from this run" in script.refused[0] and script.refused[0].endswith("m away")
+
+
+def test_leaps_one_after_another_go_off_each_once_he_stands_who_could_not_leap_from_the_landing(library):
+    """Asked as he still stood up he could not, and nobody asked again."""
+    who = person(library)
+    things = Box((0.0, 0.2, 3.0), (0.5, 0.4, 0.6)), Box((0.6, 0.3, 4.2), (0.5, 0.6, 0.6)), Box((0.0, 0.2, 5.4), (0.4, 0.4, 0.4))
+    states, script = led(who, things, (Move(4.0, (1.4, 0.0, 0.0), jump=Jump((0.0, 0.4, 3.0))), Move(np.inf, jump=Jump((0.6, 0.6, 4.2))),
+                                       Move(np.inf, jump=Jump((0.0, 0.4, 5.4), heading=np.pi / 2)), Move(np.inf, jump=Jump((0.0, 0.0, 6.4), heading=-np.pi / 2))), 14.0)
+    assert script.done and not script.refused and np.hypot(*(states[-1].ground[:2] - [0.0, 6.4])) < 0.1
 
 
 def test_straight_ahead_he_is_to_stop_before_a_wall_and_short_of_an_edge():
