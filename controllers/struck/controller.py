@@ -28,6 +28,8 @@ WISHES = 0.05
 """Wishes smaller than this are none [m/s, rad/s]."""
 LANDED = 0.06
 """One walks on as a foot has landed, in so long [s]."""
+RESTS = 0.05
+"""Who is slower than this [m/s] once he has got up does not walk on by himself."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
 SLIDES = 0.3
@@ -146,7 +148,20 @@ class Struck(Controller):
                         memory=replace(memory, made=made, time=time, stood=np.array([*ground, made.floors[n]])), floor=float(made.floors[n]))
         if np.abs(intent.velocity).max() > WISHES and self._walks_on(after) and not made.stands(time):
             after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
+        if made.fate == FALLS and time >= made.duration and np.hypot(velocity[0], velocity[2]) < RESTS:
+            home = self._home(after, intent, made.why)
+            after = after if home is None else replace(after, memory=Recovering(home, 0.0, ground - [*home.centres[0, [0, 2]], home.headings[0]], after.memory.stood))
         return after, pose
+
+    def _home(self, state: CharacterState, intent: Intent, why: str) -> Recovery | None:
+        """The step of who has got up on uneven ground, and rests, with which his feet come to stand as people's do; None where they stand so, or it would lead nowhere."""
+        start, floor = start_of(self.physique, state), float(level(state.floor))
+        free = ~np.asarray(state.contacts, bool).reshape(2, 2).any(1)
+        goes = way(start.centre[[0, 2]], np.zeros(2), start.feet[:, [0, 2, 3]], free, start.heading, self.rate, np.zeros(2), self.physique.tables, floor,
+                   about(intent.around, start.centre[[0, 2]]), False)
+        if goes.fate >= FALLS or not len(goes.steps):
+            return None
+        return replace(stumble(self.physique, start, goes, free, response(), floor, CHEST * self.physique.size), why=why)
 
     def status(self, state: CharacterState) -> Status:
         """Running until it stands, and says what it does."""

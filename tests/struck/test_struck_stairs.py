@@ -122,3 +122,22 @@ def test_the_band_is_solved_as_the_whole_matrix_would_be(seed):
     found = right.copy()
     band_kernel(band, found)
     assert np.allclose(whole @ found, right, atol=1e-9)
+
+
+@pytest.mark.parametrize("towards", [0.6, 1.6, -1.2])
+@pytest.mark.parametrize("hard", [1.7, 2.2])
+def test_who_has_got_up_on_a_platform_sets_his_feet_where_people_stand(somebody, towards, hard):
+    """Nobody walks on there by himself, as on a level floor: feet that got up wide apart stayed so for good."""
+    stage = Box((0.0, 0.2, 0.0), (2.4, 0.4, 2.4)), Box((0.0, 0.4, 2.0), (2.4, 0.8, 1.6))
+    state, states = somebody.start((0.0, 0.0, 0.2), 0.4), []
+    for n in range(round(11.0 / DT)):
+        strike = Strike((BODY.mass * hard * np.sin(towards), BODY.mass * hard * np.cos(towards))) if n == 10 else None
+        state, _ = somebody.step(state, Intent(around=stage, strike=strike), DT)
+        states.append(state)
+    roots, local = np.stack([s.pose.root for s in states]).astype(float), np.stack([s.pose.rotations for s in states]).astype(float)
+    positions, _ = forward_kinematics(BODY.skeleton, roots, local)
+    feet = positions[:, [BODY.skeleton.index(side + "Foot") for side in ("Left", "Right")]]
+    assert roots[:, 1].min() < 0.75 and state.active == "locomotion", "he fell, and stands"
+    assert np.linalg.norm((feet[-1, 0] - feet[-1, 1])[[0, 2]]) < 0.34
+    up = next(n for n in range(len(roots) - 1, 0, -1) if roots[n, 1] < 0.4 + 0.8)
+    assert np.linalg.norm(np.diff(positions[up:], axis=0), axis=-1).max() < 3.0 * DT, "nothing jumps as he sets them there"
