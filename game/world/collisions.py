@@ -40,6 +40,8 @@ TALL = 0.5
 """As high [m] others take who is down for, lest they step on him."""
 GRID = 0.1
 """Whoever plans ahead is told to this where somebody lies [m]."""
+TOUCHES, REACHED = 0.5, 3.5
+"""Who is as near as the first [m], at standard height, may have struck another; who is farther than the second no other falls on."""
 HIGH = 0.35
 """A pelvis that is lower over its floor than this share of the body's height belongs to who is down; one that is farther above another's stands over him."""
 
@@ -149,6 +151,17 @@ def in_the_way(characters: Sequence[Any], number: int, props: tuple[Prop, ...], 
             radius = THICK * physique_of(one.controller).size + 0.5 * GRID
             found += [Pillar((float(x), float(one.state.floor), float(z)), radius, TALL) for x, z in np.unique(places, axis=0)]
     return (*props, *found) if found else props
+
+
+def falls_beside(characters: Sequence[Any], number: int, props: tuple[Prop, ...], who: int) -> tuple[Prop, ...]:
+    """What stands about for one of the characters who is struck: what is in the way, and who stands, as a post as thick as his trunk, but for whom he touches, as that is who struck him."""
+    found, here = [], np.asarray(characters[who].state.ground, float)[:2]
+    for i, one in enumerate(characters):
+        if i != who and one.there(number) and one.follows is None and one.watches is None and not is_down(one):
+            body, (x, z) = physique_of(one.controller), np.asarray(one.state.ground, float)[:2]
+            if TOUCHES < np.hypot(x - here[0], z - here[1]) / body.size < REACHED:
+                found.append(Pillar((float(x), float(one.state.floor), float(z)), TRUNK * body.size, body.height))
+    return (*in_the_way(characters, number, props, who), *found)
 
 
 def is_down(one: Any) -> bool:

@@ -22,7 +22,7 @@ from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
-from .collisions import in_the_way, kept_apart, run_into
+from .collisions import falls_beside, in_the_way, kept_apart, run_into
 from .followers import KEPT, Follows, carried, errors, joint_errors
 from .watched import Watches
 
@@ -148,7 +148,8 @@ class World:
         if len(intents) != len(self.characters):
             raise ValueError(f"{len(self.characters)} characters need as many intents, got {len(intents)}")
         number = self.number + 1
-        intents = [but(intent, around=self.about(i) if intent.goal is not None or intent.leap is not None else self.props)
+        intents = [but(intent, around=falls_beside(self.characters, self.number, self.props, i) if intent.strike is not None
+                       else self.about(i) if intent.goal is not None or intent.leap is not None else self.props)
                    for i, intent in enumerate(kept_apart(self.characters, run_into(self.characters, intents, self.number), self.number))]
         made = [one if not one.there(self.number) else None if one.follows or one.watches else one.step(intent, number)
                 for one, intent in zip(self.characters, intents)]

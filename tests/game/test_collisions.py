@@ -129,3 +129,23 @@ def test_two_strikes_in_one_step_of_a_script_are_one(somebody):
     script = Script((), strikes=((0, Strike((10.0, 5.0))), (0, Strike((-4.0, 20.0))), (1, Strike((1.0, 1.0)))))
     _, intent = script.step(somebody.start(), 1 / 60)
     assert intent.strike is not None and np.allclose(intent.strike.impulse, (6.0, 25.0))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.5, 2.0])
+@pytest.mark.parametrize("far", [0.9, 1.3])
+def test_who_falls_falls_beside_who_stands_there(somebody, far, turn):
+    """With trunk, head and legs neither through him, nor knocking him over who is out of reach."""
+    world = World((Character("falls", somebody, somebody.start((0.0, 0.0, turn))), Character("stands", somebody, somebody.start((0.0, far, np.pi)))))
+    parents = np.array(somebody.skeleton.parents)
+    ends = np.array([k for k in np.flatnonzero(parents >= 0) if "Hand" not in somebody.skeleton.names[k] and "Arm" not in somebody.skeleton.names[k]])
+    share = np.linspace(0.0, 1.0, 5)[:, None]
+    nearest, lowest = np.inf, np.inf
+    for number in range(300):
+        world = world.step([Intent(strike=None if number else Strike((0.0, 150.0))), Intent()])
+        if number % 4 == 0:
+            joints = [forward_kinematics(somebody.skeleton, one.state.pose.root.astype(float), one.state.pose.rotations.astype(float))[0] for one in world.characters]
+            bones = [(j[parents[ends], None] * (1.0 - share) + j[ends, None] * share).reshape(-1, 3) for j in joints]
+            nearest = min(nearest, np.linalg.norm(bones[0][:, None] - bones[1], axis=-1).min())
+            lowest = min(lowest, joints[0][0, 1])
+    assert nearest > 0.05 and world.characters[1].state.active == "locomotion"
+    assert lowest < 0.5 or np.hypot(*world.characters[0].state.ground[:2]) < far, "he falls, or is caught before him"
