@@ -156,7 +156,7 @@ class Struck(Controller):
     def _home(self, state: CharacterState, intent: Intent, why: str) -> Recovery | None:
         """The step of who has got up on uneven ground, and rests, with which his feet come to stand as people's do; None where they stand so, or it would lead nowhere."""
         start, floor = start_of(self.physique, state), float(level(state.floor))
-        free = ~np.asarray(state.contacts, bool).reshape(2, 2).any(1)
+        free: np.ndarray = np.asarray(np.logical_not(np.asarray(state.contacts, bool).reshape(2, 2)).all(1))
         goes = way(start.centre[[0, 2]], np.zeros(2), start.feet[:, [0, 2, 3]], free, start.heading, self.rate, np.zeros(2), self.physique.tables, floor,
                    about(intent.around, start.centre[[0, 2]]), False)
         if goes.fate >= FALLS or not len(goes.steps):

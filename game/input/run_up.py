@@ -141,7 +141,8 @@ def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[A
             if not why:
                 return number + 1, ""
             refused = Asked("", intent, state)
-            told = why if why != BESIDE and (place is None or np.array_equal(intent.leap.place, place)) else told
+            if why != BESIDE and (place is None or intent.leap.place is not None and np.array_equal(intent.leap.place, place)):
+                told = why
         state, _ = controller.step(state, but(intent, leap=None, aim=intent.leap or intent.aim), dt)
     return 0, told
 
