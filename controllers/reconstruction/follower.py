@@ -13,19 +13,15 @@ import numpy as np
 
 from ..body import Pose, Skeleton, damp, settle
 from .control_points import ControlPoints
-from .following import APART, Beginning, Doubts, Gate, difference, joints_of, moved, spread, unbroken
+from .following import APART, LEAP, Beginning, Doubts, Gate, difference, joints_of, led, moved, spread, unbroken
 from .pose_vector import SKELETON, decode
 
 ALONE = 0.05
 """Points that are all missing are followed for no longer than this [s] as they went: a body goes on better by itself."""
-LEAP = 0.03
-"""A joint that is farther than this [m] from where its motion leads has leapt: the method has changed its mind, or knows more …"""
 SHAKEN = 1.0
-"""… unless points are so noisy that poses shake: by so many times as far as points lately were from where their motion led."""
+"""Points may be so noisy that poses shake: no joint leaps that goes by so many times as far as points lately were from where their motion led."""
 STEADY = 0.5
 """How a body moves is told from its last frames, with a half-life of so many seconds for each metre that it shakes by beyond `LEAP`: one frame of noise is no motion."""
-TAKEN = 0.01
-"""… and no joint takes more of it [m] at once."""
 FADE = 0.15
 """Half-life of the difference between the pose that was taken over and the reconstructed one [s]."""
 SHORTEST, LONGEST, HURRY = 0.06, 0.16, 2.4
@@ -54,8 +50,8 @@ class Following:
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
     frame, (n, 3) and turns (n, 3, 3), NaN where nothing. doubts: which points may have exchanged their numbers. pose, before: the newest
-    frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it. offset, rate: (1 + J, 3) what is added to root
-    and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
+    frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it.
+    went: (1 + J, 3) by what the newest frame truly went on. offset, rate: (1 + J, 3) what is added to root and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
     point was followed. fault: what went wrong.
     """
@@ -75,6 +71,7 @@ class Following:
     lost: float = 0.0
     fault: str = ""
     pace: np.ndarray | None = None
+    went: np.ndarray | None = None
 
     @property
     def step(self) -> np.ndarray:
@@ -151,17 +148,15 @@ class Follower:
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return replace(following, fault="the reconstruction came to no pose", before=following.pose)
         lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
+        went = difference(pose, following.pose)
         shaking = SHAKEN * float(np.median(gate.rough))
-        pace = damp(following.step, difference(pose, following.pose), STEADY * (shaking - LEAP), self.dt) if shaking > LEAP else None
-        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, lost=lost)
-        leap = float(np.linalg.norm(joints_of(pose, self.body)[0] - 2.0 * now[0] + earlier[0], axis=-1).max())
-        if leap <= max(LEAP, shaking):
+        pace = damp(following.step, went, STEADY * (shaking - LEAP), self.dt) if shaking > LEAP else None
+        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, went=went, lost=lost)
+        step, leapt, none = led(self.body, following.pose, pose, went, following.step, following.went, self.controls.joints[gate.trusted], max(LEAP, shaking), gate.swerves)
+        after = replace(after, rate=after.rate + none / self.dt)
+        if not leapt:
             return after
-        # a little of it may be how bodies change their pace, and the rest fades
-        step = following.step
-        step = step + TAKEN / leap * (difference(pose, following.pose) - step)
-        ahead = moved(following.pose, step)
-        return self.fading(replace(after, before=moved(pose, -step), pace=step), moved(ahead, following.offset))
+        return self.fading(replace(after, before=moved(pose, -step), pace=step), moved(moved(following.pose, step), following.offset))
 
     def doubted(self, following: Following) -> Following:
         """With two points under each other's number, if what the method has seen for some time is much likelier so."""

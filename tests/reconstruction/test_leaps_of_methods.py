@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from followed import DT
-from gambol.controllers.body import Pose, exp, settle
+from gambol.controllers.body import Pose, exp, log, settle
 from gambol.controllers.reconstruction.control_points import parse
 from gambol.controllers.reconstruction.controller import Reconstruction
-from gambol.controllers.reconstruction.follower import HURRY, LEAP, TAKEN, Following
+from gambol.controllers.reconstruction.follower import HURRY, Following
 from gambol.controllers.reconstruction.following.hand_over import difference, moved, unbroken
+from gambol.controllers.reconstruction.following.leaps import LEAP, TAKEN
 from gambol.controllers.reconstruction.following.point_gate import Doubts, Gate
 from gambol.controllers.reconstruction.pose_vector import SKELETON
 
@@ -54,6 +55,57 @@ def test_one_frame_of_noise_is_no_motion_that_a_body_is_thrown_on_with(noise):
     assert max(off) < 1.4 * noise and off[-1] < 0.01  # thrown on it is 1.5 to 1.6 times as far off
 
 
+def shown(controller, following, seen, made):
+    """Poses as they are shown for points seen (T, n, 3), where the method makes its body of others, made (T, n, 3)."""
+    poses = []
+    for point, other in zip(seen, made):
+        pose = controller.method.step(None, other)[1]
+        controller.method.step = lambda memory, points, pose=pose: (None, pose)
+        following = controller.follower.frame(following, point, np.full((2, 3, 3), np.nan))
+        del controller.method.step
+        offset, rate = settle(following.offset, following.rate, following.fade, DT)
+        following = replace(following, offset=offset, rate=rate)
+        poses.append(moved(following.pose, offset))
+    return poses
+
+
+def minimum_jerk(share):
+    share = np.clip(share, 0.0, 1.0)
+    return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+
+
+@pytest.mark.parametrize("far, lasts", [(0.35, 0.12), (0.8, 0.2)])
+def test_what_points_do_themselves_is_no_leap(far, lasts):
+    """A blow, up to 140 m/s²: whoever is seen to move so is shown so. Taken for leaps it was up to a metre behind."""
+    controller = Reconstruction(Leaper(), parse("root,lwrist", SKELETON))
+    frames = np.zeros((60, 2, 3))
+    frames[:, :, 2] = (far * minimum_jerk((DT * np.arange(60) - 0.3) / lasts))[:, None]
+    poses = shown(controller, going(controller, frames), frames[2:], frames[2:])
+    behind = np.abs([pose.root[2] for pose in poses] - frames[2:, 0, 2])
+    assert behind.max() < 0.08 and behind[30:].max() < 0.03
+
+
+def test_another_pace_is_taken_over_as_soon_as_it_is_one():
+    """A method's body, not its points, suddenly goes at 5 m/s: it leaps once, by what one frame is; never is its pace caught up with by a little each frame."""
+    controller = Reconstruction(Leaper(), parse("root,lwrist", SKELETON))
+    seen, made = np.zeros((2, 60, 2, 3))
+    made[:, 0, 2] = np.maximum(np.arange(60) - 20, 0) * 5.0 * DT
+    places = np.array([pose.root[2] for pose in shown(controller, going(controller, seen), seen[2:], made[2:])])
+    assert np.abs(places - made[2:, 0, 2]).max() < 0.14 and abs(places[-1] - made[-1, 0, 2]) < 0.01
+    assert np.abs(np.diff(places, 2)).max() < 0.5 * 5.0 * DT
+
+
+def test_a_limb_on_which_nothing_is_seen_leaps_alone():
+    """The knee leaps to where it is bent while hips sway: these are shown where they are, the knee fades."""
+    controller = Reconstruction(Leaper(), parse("root,lwrist", SKELETON))
+    frames = np.zeros((60, 2, 3))
+    frames[:, 0, 2], frames[30:, 1, 0] = 0.2 * np.sin(4.0 * DT * np.arange(60)), 1.0
+    poses, knee = shown(controller, going(controller, frames), frames[2:], frames[2:]), SKELETON.index("LeftLeg")
+    bent = np.array([np.linalg.norm(log(pose.rotations[knee])) for pose in poses])
+    assert np.allclose([pose.root[2] for pose in poses], frames[2:, 0, 2], atol=1e-9)
+    assert np.abs(np.diff(bent)).max() < 0.3 and bent[-1] > 0.95
+
+
 @pytest.mark.parametrize("away", [0.1, 0.5, 0.7])
 def test_what_a_method_leaps_fades_and_no_joint_is_hurried(away):
     """It goes at 1.2 m/s, leaps, and goes on: nothing pops, soon it is there, and how fast it goes is never lost."""
@@ -62,20 +114,13 @@ def test_what_a_method_leaps_fades_and_no_joint_is_hurried(away):
     frames = np.zeros((120, 2, 3))
     frames[:, 0, 2] = 0.02 * np.arange(120)
     following = going(controller, frames)
-    shown, frames[40:, 0, 0] = [], away
-    for seen in frames[2:]:
-        pose = controller.method.step(None, seen)[1]
-        controller.method.step = lambda memory, points, pose=pose: (None, pose)
-        following = controller.follower.frame(following, seen, np.full((2, 3, 3), np.nan))
-        del controller.method.step
-        offset, rate = settle(following.offset, following.rate, following.fade, DT)
-        following = replace(following, offset=offset, rate=rate)
-        shown.append(moved(following.pose, offset).root)
-    pace = np.diff(np.array(shown), axis=0) / DT
+    frames[40:, 0, 0] = away
+    places = np.array([pose.root for pose in shown(controller, following, frames[2:], frames[2:])])
+    pace = np.diff(places, axis=0) / DT
     assert np.abs(pace[:, 2] - 1.2).max() < 0.02
     assert np.abs(pace[:, 0]).max() < HURRY + TAKEN / DT
     assert np.abs(np.diff(pace, axis=0)).max() * DT < LEAP
-    assert abs(shown[-1][0] - away) < 0.01
+    assert abs(places[-1][0] - away) < 0.01
 
 
 def test_no_knee_is_shown_bent_back_where_what_fades_leads_beyond_straight():

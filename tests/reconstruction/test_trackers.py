@@ -171,6 +171,23 @@ def test_who_was_lost_altogether_comes_back_without_a_pop(walk):
     assert away[138] > 0.5 and away[175:].mean() < 0.04
 
 
+@pytest.mark.parametrize("turning", [False, True])
+def test_who_begins_in_the_middle_of_a_stride_is_there_at_once(walk, turning):
+    """A body that begins with how fast its points go needs no half second to catch up with them."""
+    controls = parse("6", SKELETON)
+    method = Trackers(shipped(), controls, DT)
+    controller = Reconstruction(method, controls, starts=method)
+    quick = 4.0 * walk[2][:, :1] * [0.0, 0.0, 1.0]  # as who runs: the walk, carried along at four more times its speed
+    positions, turns = walk[2] + quick, walk[3][:, controls.joints]
+    points = positions[:, controls.joints]
+    state, off = controller.begin(points[60], (points[61] - points[60]) / DT, turns=turns[60] if turning else None), []
+    for now in range(61, 100):
+        state, pose = controller.step(state, Intent(points=points[now], turns=turns[now] if turning else None), DT)
+        joints = forward_kinematics(SKELETON, pose.root, pose.rotations)[0]
+        off.append(np.linalg.norm(joints[controls.joints] - points[now], axis=-1).max())
+    assert max(off) < 0.12
+
+
 def test_a_larger_body_is_met_on_its_own_skeleton(walk):
     body = SKELETON.scaled(1.12)
     points = 1.12 * walk[2][:60, parse("6", SKELETON).joints]

@@ -134,7 +134,7 @@ class Trackers:
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
              ) -> tuple[np.ndarray, np.ndarray]:
-        """See `following.Starts.find`: one frame (1, D) and its ground track (1, 3) from points alone, or with turns (n, 3, 3).
+        """See `following.Beginning`: one frame and its ground track, with turns or without; two, where velocities are known.
 
         Where none turns the body may face anywhere: it is tried facing `BEGINNINGS` ways, and what agrees best is taken.
         """
@@ -156,9 +156,14 @@ class Trackers:
                 cost += (turned / SURE) ** 2
             if cost < least:
                 best, least = pose, cost
-        frame, track = best.copy(), best[GROUND]
-        frame[GROUND] = 0.0
-        return frame[None], track[None]
+        poses = best[None]
+        if velocities is not None and np.isfinite(velocities).all(-1).any():
+            earlier = points - np.where(np.isfinite(velocities), velocities, np.nan) * self.dt
+            memory = self.begin(poses, poses[:, GROUND])
+            poses = np.stack([self._solved(self._told(memory, earlier, turns), earlier, turns)[0].pose, best])
+        frames, tracks = poses.copy(), poses[:, GROUND]
+        frames[:, GROUND] = 0.0
+        return frames, tracks
 
     def energy(self, memory: Remembered) -> float:
         """How ill the last half second's places and turns and the pose they make agree with each other, whatever came before."""

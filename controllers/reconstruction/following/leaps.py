@@ -1,0 +1,51 @@
+"""Where a method's body leaps: it has changed its mind, or knows more. What leaps is not shown; it fades."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...body import Pose, Skeleton
+from ..pose_vector import SKELETON
+from .hand_over import joints_of, moved
+
+LEAP = 0.03
+"""A joint that is farther than this [m] from where its motion leads has leapt …"""
+BEYOND = 1.5
+"""… unless points swerved themselves: by so many times as far as they did. What they don't tell of swings the farther."""
+TAKEN = 0.01
+"""How bodies change their pace may be a little of a leap: so much [m] a frame."""
+LIMBS = tuple(np.array([SKELETON.index(side + name) for name in names])
+              for side in ("Left", "Right") for names in (("Shoulder", "Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "Toe")))
+"""A limb on which nothing is followed leaps by itself: a hand that is seen does not go astray because of a foot that is not."""
+
+
+def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.ndarray, went: np.ndarray | None, followed: np.ndarray, allowed: float, swerved: float
+        ) -> tuple[np.ndarray, bool, np.ndarray]:
+    """By what (1 + J, 3) a body goes on from the pose before to the next, as it is shown: as it did where it leapt, but for `TAKEN`.
+
+    goes: (1 + J, 3) by what it does, from the one to the other; step: by what it was taken to; went: by what it truly did to the pose before, None where that is not known. followed: joints whose points are followed; swerved: how far
+    one of those points got from where its motion led [m]. allowed: within so far [m] nothing leaps.
+    Also returns whether it leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
+    """
+    none, limbs = np.zeros_like(step), [limb for limb in LIMBS if not np.isin(followed, limb).any()]
+    step, trunk = step.copy(), np.ones(len(body), bool)
+    for limb in limbs:
+        trunk[limb] = False
+    rows, most = np.append(True, trunk), allowed + BEYOND * swerved
+    far = _apart(body, pose, moved(before, step))[trunk].max()
+    if far > most and went is not None and _apart(body, pose, moved(before, went))[trunk].max() <= most:
+        none[rows], far = step[rows] - goes[rows], 0.0
+    leapt = bool(far > most)
+    step[rows] += (TAKEN / far if leapt else 1.0) * (goes[rows] - step[rows])
+    for limb in limbs:
+        alone = goes.copy()
+        alone[limb + 1] = step[limb + 1]
+        far = _apart(body, pose, moved(before, alone))[limb].max()
+        leapt = leapt or bool(far > allowed)
+        step[limb + 1] += (TAKEN / far if far > allowed else 1.0) * (goes[limb + 1] - step[limb + 1])
+    return step, leapt, none
+
+
+def _apart(body: Skeleton, pose: Pose, other: Pose) -> np.ndarray:
+    """How far (J,) [m] the joints of two poses are apart."""
+    return np.linalg.norm(joints_of(pose, body)[0] - joints_of(other, body)[0], axis=-1)
