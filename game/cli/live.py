@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +69,7 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
     """
     import numpy as np
 
+    from gambol.controllers.body import Pose
     from gambol.controllers.contract import Intent
     from gambol.controllers.locomotion import Locomotion
     from gambol.controllers.reconstruction import towards
@@ -78,13 +81,15 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
     someone = Supervisor({"locomotion": walker, "reconstruction": reconstruction})
     someone.step(someone.start(), Intent(), 1 / FPS)  # whatever compiles does so before anybody stands and waits
     poses, contacts, lost, skipped, met = [], [], 0, [], np.zeros(len(source.controls.names), bool)
-    with _stoppable():
+    stood = False
+    with _stoppable() as stop:
         try:
             stand(source, height, calibration, posing, wait=None if seconds is None else max(seconds, _WAITED))
-            known, told = None, []
+            known, told, stood = None, [], True
+            stop.gently = _live(source)
             say("recording; Ctrl-C ends it" if out is not None else "sending; Ctrl-C ends it")
             state = None
-            for now in _times(source, seconds, sender is not None, skipped):
+            for now in _times(source, seconds, sender is not None, skipped, stop):
                 seen = source.at(now)
                 met |= np.isfinite(seen).all(-1)
                 if source.worn is not None and source.worn.known is not known:
@@ -103,7 +108,8 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
                 state, pose = someone.step(state, intent, 1 / FPS)
                 lost += someone.active(state)[0] != "reconstruction"
                 if sender is not None:
-                    sender.send(reconstruction.skeleton, pose, state.ground, now, sure(state))
+                    size = _size(source)
+                    sender.send(reconstruction.skeleton.scaled(size), Pose(size * pose.root, pose.rotations), state.ground * [size, size, 1.0], now, sure(state))
                 if out is not None:
                     poses.append(pose)
                     contacts.append(state.contacts)
@@ -111,7 +117,10 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
             pass
         finally:
             if poses and out is not None:
-                write_take(out, out.stem, reconstruction.skeleton, poses, contacts)
+                size = _size(source)
+                write_take(out, out.stem, reconstruction.skeleton.scaled(size), [Pose(size * pose.root, pose.rotations) for pose in poses], contacts)
+    if not stood:
+        raise Mistake("it was ended before anybody had stood still, upright, in T-pose or with the arms down: nothing was recorded")
     unmet = [] if met.all() else [f"nothing was heard of {', '.join(_missing(source, met))}"]
     for line in unmet + _amiss(source) if unmet or source.rivals else ():
         say(line)
@@ -131,16 +140,29 @@ def record(source: Any, controller: Callable[[Any], Any], out: Path | None, heig
         say(f"{sender.lost} frames could not be sent")
 
 
+def _size(source: Any) -> float:
+    """How large whoever wears the trackers is over the body that follows: what is recorded and sent on is as large as he is, and goes as far."""
+    return 1.0 / float(source.placement.scale if source.worn is None else source.worn.known.stood.scale[0])
+
+
 def _twice(source: Any) -> str:
     return f"two programs send the same trackers, from {' and '.join(source.rivals)}: close one of them, or give its trackers other names"
 
 
-def _times(source: Any, seconds: float | None, paced: bool, skipped: list[float]) -> Iterator[float]:
+@dataclass
+class Stop:
+    """gently: whether what was heard until somebody ends it is still worked through; at: when [s] that was."""
+
+    gently: bool = False
+    at: float = math.inf
+
+
+def _times(source: Any, seconds: float | None, paced: bool, skipped: list[float], stop: Stop | None = None) -> Iterator[float]:
     """Times [s] to ask a source at, FPS a second: as they come, or those of a file, where they need not be waited for. paced: whether somebody sees
-    each as it comes. skipped: where times [s] are put that were left out."""
+    each as it comes. skipped: where times [s] are put that were left out. stop: when somebody ends it."""
     length = getattr(source, "duration", None)
     if length is None:
-        yield from _ticks(seconds, _SENDING_BEHIND if paced else _BEHIND, skipped)
+        yield from _ticks(seconds, _SENDING_BEHIND if paced else _BEHIND, skipped, stop or Stop())
         return
     number, began, last = 0, time.monotonic(), length if seconds is None else min(length, source.told_until + seconds)
     while (now := source.told_until + 1 / FPS) <= last:
@@ -275,29 +297,38 @@ def another(source: Any) -> list[str]:
             "upright: to name another file by --calibration, and stand anew, tells how they are worn"]
 
 
-def _ticks(seconds: float | None, behind: float, skipped: list[float]) -> Iterator[float]:
-    """Times [s] of a steady clock, FPS a second, each when it has come; where they come later than by `behind` [s], the next one is now."""
-    began, number = time.monotonic(), 0
+def _ticks(seconds: float | None, behind: float, skipped: list[float], stop: Stop) -> Iterator[float]:
+    """Times [s] of a steady clock, FPS a second, each when it has come; where they come later than by `behind` [s], the next one is now. They go on to when somebody stops it."""
+    began, number, told = time.monotonic(), 0, False
     while seconds is None or number < round(seconds * FPS):
         due = began + number / FPS
         late = time.monotonic() - due
-        if late > behind:
+        if late > behind and stop.at == math.inf:
             skipped.append(late)
             began, due = began + late, due + late
+        if due > stop.at:
+            return
+        if stop.at < math.inf and not told and late > 1.0:
+            say(f"{late:.0f} s of what was heard are still to come; Ctrl-C again leaves them out")
+            told = True
         time.sleep(max(0.0, -late))
         yield due
         number += 1
 
 
 @contextmanager
-def _stoppable() -> Iterator[None]:
-    """Whoever ends the program from outside ends it like Ctrl-C does."""
+def _stoppable() -> Iterator[Stop]:
+    """Whoever ends the program from outside ends it like Ctrl-C does: gently, where that is wished, unless it is the second time."""
+    asked = Stop()
+
     def stop(*_: Any) -> None:
-        raise KeyboardInterrupt
-    kinds = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+        if not asked.gently or asked.at < math.inf:
+            raise KeyboardInterrupt
+        asked.at = time.monotonic()
+    kinds = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     before = [signal.signal(kind, stop) for kind in kinds]
     try:
-        yield
+        yield asked
     finally:
         for kind, handler in zip(kinds, before):
             signal.signal(kind, handler)

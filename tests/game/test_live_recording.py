@@ -1,5 +1,7 @@
 """What `gambol reconstruct --stream` does with time: on a clock that the test turns."""
 
+import math
+import signal
 from types import SimpleNamespace
 
 import numpy as np
@@ -38,7 +40,7 @@ def test_frames_of_a_take_are_evenly_apart_however_slow_the_machine_is(works):
     """Each as long as none is ten seconds late."""
     clock, skipped = live.time, []
     sum_, times = 0.0, []
-    for now, work in zip(live._ticks(1.0, live._BEHIND, skipped), works):
+    for now, work in zip(live._ticks(1.0, live._BEHIND, skipped, live.Stop()), works):
         times.append(now)
         sum_ += work
         clock.now += work if sum_ < live._BEHIND else 0.0
@@ -48,11 +50,36 @@ def test_frames_of_a_take_are_evenly_apart_however_slow_the_machine_is(works):
 
 def test_frames_that_are_sent_on_are_left_out_where_they_would_come_too_late_and_that_is_counted(clock):
     skipped, late = [], []
-    for now in live._ticks(5.0, live._SENDING_BEHIND, skipped):
+    for now in live._ticks(5.0, live._SENDING_BEHIND, skipped, live.Stop()):
         late.append(clock.now - now)
         clock.now += 0.03
     assert max(late) <= live._SENDING_BEHIND and len(late) == 300
     assert sum(skipped) + max(late) + 0.03 >= 300 * (0.03 - 1 / 60)
+
+
+def test_what_was_heard_until_a_take_is_ended_is_still_worked_through(clock, monkeypatch):
+    """A machine three times too slow is 6.7 s behind after ten: it goes on for these, says so, and for no more."""
+    said, stop, times = [], live.Stop(), []
+    monkeypatch.setattr(live, "say", said.append)
+    for now in live._ticks(None, live._BEHIND, skipped := [], stop):
+        times.append(now)
+        clock.now += 0.05
+        if clock.now >= 110.0 and stop.at == math.inf:
+            stop.at = clock.now
+    assert not skipped and stop.at - 1 / live.FPS < times[-1] <= stop.at
+    np.testing.assert_allclose(np.diff(times), 1 / live.FPS)
+    assert said == ["7 s of what was heard are still to come; Ctrl-C again leaves them out"]
+
+
+def test_who_ends_it_twice_ends_it_at_once(clock):
+    with live._stoppable() as stop:
+        with pytest.raises(KeyboardInterrupt):  # nobody stands yet: there is nothing to keep
+            signal.raise_signal(signal.SIGTERM)
+        stop.gently = True
+        signal.raise_signal(signal.SIGTERM)
+        assert stop.at == clock.now
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
 
 
 class Restless:
@@ -96,6 +123,18 @@ def test_a_recording_of_some_seconds_of_nobody_ends(clock, seconds, monkeypatch)
     with pytest.raises(Mistake, match="nobody has stood still"):
         live.record(Restless(False), lambda skeleton: follower, None, None, seconds)
     assert clock.now - 100.0 == pytest.approx(max(seconds, 30.0), abs=0.05)
+
+
+def test_a_take_that_is_ended_before_anybody_stood_still_says_so(clock, monkeypatch):
+    """All of its trackers were heard: it is not said that nothing was."""
+    def heard(self, time):
+        if time > 105.0:
+            raise KeyboardInterrupt
+        return np.full((2, 3), time)
+    monkeypatch.setattr(Restless, "at", heard)
+    follower = Idler()
+    with pytest.raises(Mistake, match="ended before anybody had stood still"):
+        live.record(Restless(), lambda skeleton: follower, None, None, None)
 
 
 class Late(Restless):

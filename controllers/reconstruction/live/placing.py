@@ -110,7 +110,8 @@ def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = Non
     away, placement = found[nearest]
     size = STATURE / placement.scale
     if not SIZES[0] <= size / STATURE <= SIZES[1] or away > LIKE:
-        raise ValueError(f"these points are no standing body's: at best of one {size:.2f} m tall, {100 * away:.0f} cm away; "
+        tall = f" of one {size:.2f} m tall," if away < 2.0 * LIKE and size < 10.0 else ""  # what is like no body at all is not so tall
+        raise ValueError(f"these points are no standing body's: at best{tall} {100 * away:.0f} cm away; "
                          "stand upright, in T-pose or with the arms down; is each tracker on the point that it is said to be?")
     if turns is None:
         return placement
