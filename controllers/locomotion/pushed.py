@@ -12,9 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..contract import CharacterState
+from .first_stride import END
 from .memory import RUN
 
-WALKING, RUNNING = (0.5, 0.3, 0.3), (1.6, 1.4, 0.8)
+WALKING, RUNNING = (0.8, 0.8, 0.7), (1.6, 1.4, 0.8)
 """So much faster ahead, back and aside [m/s] a push may make a walker and a runner, in the size that the library is of. Chosen: a walker's from a quarter of a step; a runner's ahead
 and back, that soles slide by less than 0.3 m/s and joints turn by less than 36 rad/s (unpushed 23), aside from what people catch who stand; no pushed runner was recorded."""
 SLOWEST, LEAST = 0.5, 0.25
@@ -25,7 +26,7 @@ def pushed(state: CharacterState, change: np.ndarray) -> CharacterState | None:
     """The state of one character, which this room's controller moves, with a velocity that a push has changed by (2,) x, z [m/s] in the world; None where that is more than the
     next steps take in, or he sets off, stops, turns on the spot or stands."""
     memory = state.memory
-    if memory.ndim or memory["settled"] or memory["waits"] or memory["stop"] > 0.0 or memory["onset"] > 0.0 or memory["turn"] != 0.0:
+    if memory.ndim or memory["settled"] or memory["waits"] or memory["stop"] > 0.0 or memory["onset"] > END or memory["turn"] != 0.0:
         return None
     c, s = math.cos(float(memory["ground"][2])), math.sin(float(memory["ground"][2]))
     x, z = (float(part) for part in change)

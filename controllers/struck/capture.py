@@ -35,6 +35,8 @@ STANDS_BOTH = 0.05
 """Both feet stand so long between two steps [s]."""
 LOST = 0.34
 """A capture point so far off the soles as a foot lands [m], at standard height, was not caught: the body falls."""
+STRIDES = 0.65
+"""A foot that the mass centre will soon have left farther behind than this [m], at standard height, leaves at once: no leg is so long, and hips would go down."""
 MOST = 5
 """Who has not caught himself with so many steps falls."""
 HOME, SLOW, NEAR = 0.12, 0.30, 0.015
@@ -127,11 +129,14 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
             taken += 1
             fate = STEPS
             count = support_kernel(body, feet, free, points, corners)
-        if swing < 0 and not (free[0] or free[1]) and ends == math.inf:
+        drags = swing < 0 and taken > 0 and not free[1 - last] and math.hypot(x[0] + GOES_ON * v[0] - feet[1 - last, 0], x[1] + GOES_ON * v[1] - feet[1 - last, 1]) > STRIDES * body.size
+        if swing < 0 and not (free[0] or free[1]) and (drags or ends == math.inf):
             inside = margin_kernel(corners, count, point[0], point[1])
             moves = math.hypot(v[0], v[1])
-            if inside < 0.0:  # it has to step
-                if lifts < 0.0:
+            if drags or inside < 0.0:  # it has to step
+                if drags:
+                    lifts = now
+                elif lifts < 0.0:
                     lifts = haste * REACTS if first and taken == 0 else now + STANDS_BOTH
                 if now >= lifts - 0.5 * dt:
                     swing = which_kernel(feet, point, heading) if taken == 0 else 1 - last

@@ -34,6 +34,8 @@ SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
 SLIDES = 0.3
 """Whose feet would slide faster than this [m/s] were they to catch him falls."""
+KNEELS, UPRIGHT = 0.5, 0.85
+"""Whose hips would come lower than the first, as a share of where they are as he stands, falls; who has fallen is down until they are at the second."""
 ALOFT = 0.12
 """Who is higher over the floor with both feet [m], at standard height, is in the air and no runner: there nobody can be struck."""
 
@@ -121,7 +123,7 @@ class Struck(Controller):
         goes = going(False)
         if goes.fate != FALLS:
             made = played(goes)
-            if _slides(self.skeleton, made) < SLIDES:
+            if _slides(self.skeleton, made) < SLIDES and self._raised(made).min() > KNEELS:
                 return made
         made = topple(self.physique, start, floor, self.rate, things)
         if made.supported or (goes := going(True)).fate == FALLS:
@@ -132,7 +134,7 @@ class Struck(Controller):
         """One step of dt seconds. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""
         dt = seconds(dt)
         stayed(state.memory.stood, state)
-        if intent.strike is not None and state.memory.time > 0.0:  # struck again
+        if intent.strike is not None and state.memory.time > 0.0 and not self._down(state.memory):  # struck again
             state = self.enter(state, intent)
         memory: Recovering = state.memory
         made = settles(memory.made, memory.time + dt - min(dt, LATE))
@@ -169,6 +171,15 @@ class Struck(Controller):
         if memory.time < memory.made.duration:
             return Status("running", memory.made.why)
         return Status("done", memory.made.why)
+
+    def _raised(self, made: Recovery) -> np.ndarray:
+        """How high (N,) the hips are over where it stands, as a share of how high they are in the T-pose."""
+        return (made.roots[:, 1] - made.floors) / self.skeleton.offsets[0, 1]
+
+    def _down(self, memory: Recovering) -> bool:
+        """Whether he falls, lies or gets up: nothing that strikes him then changes that."""
+        made = memory.made
+        return made.fate == FALLS and memory.time > 0.0 and bool(self._raised(made)[made.between(memory.time)[0]] < UPRIGHT)
 
     def _walks_on(self, state: CharacterState) -> bool:
         """Whether one could walk on now: a foot has just landed, or one stands."""

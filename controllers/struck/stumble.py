@@ -95,8 +95,8 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
     standing = np.tile(~np.asarray(free, bool), (len(times), 1))
     for step in way.steps:
         side, lift, land = int(step[0]), step[1], step[2]
-        first, last = int(round(lift * RATE)), min(int(round(land * RATE)), len(times) - 1)
-        flight = np.arange(first, last + 1)
+        first, last = int(round(lift * RATE)), int(round(land * RATE))  # who walks on may be gone before it lands
+        flight = np.arange(first, min(last + 1, len(times)))
         share = (times[flight] - lift) / (land - lift)
         begin, rate = feet[first, side, :5].copy(), np.zeros(5)
         if lift == 0.0:
