@@ -31,6 +31,8 @@ SLIDES = 0.3
 """A heel or ball that is faster along the floor [m/s] does not stand on it."""
 UP = 0.93
 """Hips this high, as a share of where they are at the end, have got up."""
+STOOD = 1.0
+"""He is on the floor on which he gets up in the last so many seconds; until then on what is beneath him."""
 HALTS = 18
 """Who gets up on stairs comes to rest over the last so many moments, lest he walk on where he stands on two treads."""
 WHY = "struck too hard to be caught by a step: it falls, and gets up"
@@ -92,10 +94,12 @@ def _recovery(physique: Physique, times: np.ndarray, roots: np.ndarray, local: n
     supported = True
     if ground is not None:
         thick = flesh_of(physique).thick[-FEET:]
-        level_kernel(ground.corner, ground.levels, np.where((times > toppled)[:, None], centres, centres[0]), floors)
-        supported = not np.isnan(floors).any()
+        beneath = np.empty(len(times))
+        level_kernel(ground.corner, ground.levels, centres, beneath)
+        supported = not np.isnan(beneath[times > toppled]).any()
         high, carried = stands(soles[-1], thick, ground) if rests else (floor, None)
-        floors = np.where(times > toppled, high, floor)
+        floors = np.fmin(np.where(times > toppled, high, floor), beneath)  # who goes down stairs has not lost the floor
+        floors[times > times[-1] - STOOD] = high
         rest_kernel(ground.things, ground.corner, ground.caps, soles, thick, False, lies, np.empty((len(times), FEET, 2)))
     feet, over = (rows.reshape(-1, 2, 3, *rows.shape[2:])[:, :, :2].reshape(-1, 4, *rows.shape[2:]) for rows in (soles, soles[..., 1] - lies))
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))

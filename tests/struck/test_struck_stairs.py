@@ -55,6 +55,20 @@ def test_who_is_pushed_aside_steps_as_far_as_legs_reach(somebody, side, hard):
         assert pace.max() < hard + 1.1
 
 
+@pytest.mark.parametrize("gained", [(2.05, -2.16), (-2.05, -2.16), (1.7, -2.4)])
+def test_who_falls_down_stairs_has_not_lost_the_floor(somebody, gained):
+    """Treads that go down beneath him are no abyss: nothing takes him out of his fall, and he gets up on them. He was taken out and fell on into the stairs."""
+    rise, going = 0.1668, 0.3258
+    stairs = (*(Box((0.0, 0.5 * rise * (n + 1), going * n), (2.4, rise * (n + 1), going)) for n in range(8)), Box((0.0, 4.0 * rise, 8.0 * going + 1.0), (2.4, 8.0 * rise, 2.0 + going)))
+    state, states = somebody.start((0.0, 6.0 * going - 0.02, 0.0), 7.0 * rise), []
+    for n in range(30 + round(8.0 / DT)):
+        state, _ = somebody.step(state, Intent(around=stairs, strike=Strike(tuple(BODY.mass * np.array(gained))) if n == 30 else None), DT)
+        states.append(state)
+    assert states[30].memory.memory.made.fate == FALLS and not any(s.active == "jump" for s in states) and states[-1].active == "locomotion"
+    x, z, _ = states[-1].ground
+    assert abs(float(states[-1].floor) - floor_at(x, z, stairs, float(states[-1].floor) + 0.24)) < 0.2
+
+
 def test_who_goes_over_the_edge_of_stairs_falls_as_gravity_has_it(somebody):
     made, states = struck(somebody, (1.1, 0.0), 0.5, seconds=4.0)
     assert made.fate == DROPS
