@@ -12,8 +12,10 @@ from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
 from ..jump import GRAVITY, Physique, stands, start_of, stayed
 from ..jump.body import measures
+from ..navigation import gap
 from ..navigation.passing import drawn_in
 from .capture import FALLS, Way, way
+from .flesh import flesh
 from .recorded_pushes import response
 from .recovery import Recovery
 from .settled import LATE
@@ -34,6 +36,8 @@ SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
 SLIDES = 0.3
 """Whose feet would slide faster than this [m/s] were they to catch him falls."""
+GRAZES = 0.03
+"""Nobody sets his feet home who would get deeper into anything for that [m], as into the edges of treads."""
 KNEELS, UPRIGHT = 0.5, 0.85
 """Whose hips would come lower than the first, as a share of where they are as he stands, falls; who has fallen is down until they are at the second."""
 ALOFT = 0.12
@@ -163,7 +167,8 @@ class Struck(Controller):
                    about(intent.around, start.centre[[0, 2]]), False)
         if goes.fate >= FALLS or not len(goes.steps):
             return None
-        return replace(stumble(self.physique, start, goes, free, response(), floor, CHEST * self.physique.size), why=why)
+        made = stumble(self.physique, start, goes, free, response(), floor, CHEST * self.physique.size)
+        return replace(made, why=why) if _deeper(self.physique, made, intent.around) < GRAZES else None
 
     def status(self, state: CharacterState) -> Status:
         """Running until it stands, and says what it does."""
@@ -189,6 +194,13 @@ class Struck(Controller):
         if memory.made.landing(memory.time, LANDED) < 0:
             return False
         return bool(walks_kernel(np.asarray(state.velocity, float)[[2, 0]], 0.0, self.physique.size))
+
+
+def _deeper(physique: Physique, made: Recovery, things) -> float:
+    """How much deeper [m] flesh gets into anything than it was at first."""
+    points, thick = flesh(physique, *forward_kinematics(physique.skeleton, made.roots, made.local))
+    deep = np.array([(thick - gap(points.reshape(-1, 3), thing).reshape(points.shape[:2])).max(1) for thing in things]).reshape(-1, len(points))
+    return float((deep - np.maximum(deep[:, :1], 0.0)).max(initial=0.0))
 
 
 def _slides(skeleton: Skeleton, made: Recovery) -> float:

@@ -69,6 +69,14 @@ def test_who_falls_down_stairs_has_not_lost_the_floor(somebody, gained):
     assert abs(float(states[-1].floor) - floor_at(x, z, stairs, float(states[-1].floor) + 0.24)) < 0.2
 
 
+@pytest.mark.parametrize("gained", [(2.05, -2.16), (2.27, -0.35)])
+def test_nobody_sets_his_feet_home_through_treads(somebody, gained):
+    """Who has got up with his feet apart on two treads leaves them there: a foot went 20 cm through the edge between."""
+    _, states = struck(somebody, gained, on=6, seconds=7.0)
+    _, deep = over(*(np.stack([np.asarray(getattr(s.pose, part), float) for s in states[::2]]) for part in ("root", "rotations")))
+    assert states[-1].active == "locomotion" and deep.max() < 0.12
+
+
 def test_who_goes_over_the_edge_of_stairs_falls_as_gravity_has_it(somebody):
     made, states = struck(somebody, (1.1, 0.0), 0.5, seconds=4.0)
     assert made.fate == DROPS
