@@ -80,7 +80,7 @@ def detect(clip: Clip, *, up: str | None = None, scale: float | None = None, tpo
     """Judge a raw clip; what is given is taken for granted.
 
     The scale is the unit that brings thigh and shin nearest to an adult's. Up is Z if the body,
-    from feet to head, stands along +Z more than along any other axis, and Y otherwise. Calibration
+    from feet to head, stands along +Z more than along any other axis; any other axis if it stands along that, in its zero pose, too; and Y otherwise. Calibration
     frames are cut off from the motion by a jump within the first two steps. The root's OFFSET is
     added only where that brings a body from far off the floor onto it.
     MotionFileError if no scale is given and none fits; ValueError for an unknown `up`.
@@ -169,7 +169,18 @@ def _up(skeleton: Skeleton, positions: np.ndarray) -> str:
     if not heads or not feet:
         return "y"
     stand = np.median(positions[:, heads].mean(1) - positions[:, feet].mean(1), axis=0)
-    return "z" if stand[2] > max(abs(stand[0]), abs(stand[1])) else "y"
+    if stand[2] > max(abs(stand[0]), abs(stand[1])):
+        return "z"
+    rest = np.zeros((len(skeleton), 3))
+    for joint in range(1, len(skeleton)):
+        rest[joint] = rest[skeleton.parents[joint]] + skeleton.offsets[joint]
+    way = _along(stand)  # who lies, or stands on his hands, in a file of Y up does not do so in its zero pose
+    return way if way == _along(rest[heads].mean(0) - rest[feet].mean(0)) else "y"
+
+
+def _along(vector: np.ndarray) -> str:
+    """The axis that a vector (3,) is most nearly along."""
+    return max(_UP, key=lambda name: float(vector @ _UP[name]))
 
 
 def _calibration_frames(clip: Clip) -> int:

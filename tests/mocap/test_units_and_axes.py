@@ -37,6 +37,27 @@ def test_units_and_up_are_found(tmp_path, unit, up):
     np.testing.assert_allclose(back.skeleton.offsets[1:], clip.skeleton.offsets[1:], atol=1e-6)
 
 
+@pytest.mark.parametrize("up, turn", [("-y", [180, 0, 0]), ("x", [0, 0, -90]), ("-x", [0, 0, 90]), ("-z", [-90, 0, 0])])
+def test_any_axis_may_point_up(tmp_path, up, turn):
+    """Read as if Y did he stood on his head, or lay."""
+    clip, turned = standing(), Rotation.from_euler("xyz", turn, degrees=True).as_matrix()
+    skeleton = clip.skeleton
+    told = replace(clip, root=clip.root @ turned.T, quaternions=np.concatenate([clip.quaternions[..., :3] @ turned.T, clip.quaternions[..., 3:]], -1),
+                   skeleton=Skeleton(skeleton.names, skeleton.parents, skeleton.offsets @ turned.T, skeleton.end_parents, skeleton.end_offsets @ turned.T))
+    write_bvh(told, tmp_path / "a.bvh")
+    assert detect(read(tmp_path / "a.bvh")).up == up
+    np.testing.assert_allclose(load(tmp_path / "a.bvh").kinematics()[0][..., 1], clip.kinematics()[0][..., 1], atol=1e-4)
+
+
+@pytest.mark.parametrize("turn", [[180, 0, 0], [90, 0, 0], [0, 0, 90], [0, 0, -90]])
+def test_who_lies_or_stands_on_his_hands_does_so(turn):
+    """The zero pose says which way is up."""
+    clip = standing()
+    quaternions = clip.quaternions.copy()
+    quaternions[:, 0] = (Rotation.from_euler("xyz", turn, degrees=True) * Rotation.from_quat(quaternions[:, 0])).as_quat()
+    assert detect(replace(clip, quaternions=quaternions)).up == ("z" if turn == [90, 0, 0] else "y")
+
+
 METRES, INCH = (1.0, 0.01, 0.001), 0.0254
 
 
