@@ -185,7 +185,7 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
             poses.append(pose)
             contacts.append(state.contacts)
     write_take(out, path.stem, controller.skeleton, poses, contacts)
-    for line in _figures(clip, poses):
+    for line in _figures(clip, poses, controller.controls):
         typer.echo(line)
     typer.echo(f"{'a frame':24} {1000 * spent / (len(clip) - 1):7.2f} ms")
 
@@ -203,18 +203,20 @@ def _performance(path: Path) -> Any:
         raise MotionFileError(f"{path}: {error}") from None
 
 
-def _figures(clip: Any, poses: list) -> list[str]:
-    """How far the poses are from a clip's, in some lines."""
+def _figures(clip: Any, poses: list, controls: Any) -> list[str]:
+    """How far the poses are from a clip's, and its points on them from those that they were told, in some lines."""
     import numpy as np
 
     from gambol.controllers.body import forward_kinematics
     from gambol.controllers.reconstruction.evaluation import angle_error, jitter, position_error
 
     rotations = np.stack([pose.rotations for pose in poses])
-    found = forward_kinematics(clip.skeleton, np.stack([pose.root for pose in poses]), rotations)[0]
+    found, turns = forward_kinematics(clip.skeleton, np.stack([pose.root for pose in poses]), rotations)
+    apart = 100 * np.linalg.norm(controls.on(found, turns) - controls.extract(clip), axis=-1)
     truth = clip.kinematics()[0]
     away, turned = 100 * position_error(found, truth), np.degrees(angle_error(rotations, clip.rotations))
     restless = jitter(truth, clip.frame_time)
-    lines = [f"{'joints in the world':24} {away.mean():7.2f} cm, {away.max():.1f} at most",
+    lines = [f"{'its points in the world':24} {apart.mean():7.2f} cm, {apart.max():.1f} at most",
+             f"{'joints in the world':24} {away.mean():7.2f} cm, {away.max():.1f} at most",
              f"{'joint angles':24} {turned.mean():7.2f}°, {turned.max():.1f} at most"]
     return lines + ([f"{'jitter over the clip’s':24} {jitter(found, clip.frame_time) / restless:7.2f}"] if restless > 0.0 else [])

@@ -27,7 +27,8 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     one of those points got from where its motion led [m]. allowed: within so far [m] nothing leaps.
     Also returns whether it leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
     """
-    none, limbs = np.zeros_like(step), [limb for limb in LIMBS if not np.isin(followed, limb).any()]
+    none, told = np.zeros_like(step), set(followed.tolist())
+    limbs = [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
     step, trunk = step.copy(), np.ones(len(body), bool)
     for limb in limbs:
         trunk[limb] = False
