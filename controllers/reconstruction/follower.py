@@ -154,9 +154,10 @@ class Follower:
         after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, went=went, lost=lost)
         step, leapt, none = led(self.body, following.pose, pose, went, following.step, following.went, self.controls.joints[gate.trusted], max(LEAP, shaking), gate.swerves)
         after = replace(after, rate=after.rate + none / self.dt)
-        if not leapt:
+        if not leapt.any():
             return after
-        return self.fading(replace(after, before=moved(pose, -step), pace=step), moved(moved(following.pose, step), following.offset))
+        pace = np.where(leapt[:, None], step, went if pace is None else pace)
+        return self.fading(replace(after, before=moved(pose, -step), pace=pace), moved(moved(following.pose, step), following.offset))
 
     def doubted(self, following: Following) -> Following:
         """With two points under each other's number, if what the method has seen for some time is much likelier so."""

@@ -17,7 +17,7 @@ from gambol.controllers.mocap import hinged, load, retarget
 from gambol.controllers.reconstruction import SKELETON, Reconstruction, parse
 from gambol.controllers.reconstruction.evaluation import jitter, position_error
 from gambol.controllers.reconstruction.live import Recorded
-from gambol.game.world.learnt_methods import shipped
+from gambol.controllers.reconstruction.trackers import Network, Trackers
 
 FPS, MOST = 60.0, 1500
 """Frames a second, and how many of a clip are looked at, at most."""
@@ -30,7 +30,7 @@ def made(path: str, points: str, turning: bool, noise: float) -> tuple[float, ..
     clip = hinged(retarget(load(path))).resample(FPS)
     clip = replace(clip, root=clip.root[:MOST], quaternions=clip.quaternions[:MOST])
     controls = parse(points, SKELETON)
-    method = shipped(controls)
+    method = Trackers(Network.load(), controls, clip.frame_time)
     follower = Reconstruction(method, controls, dt=clip.frame_time, starts=method, far=math.inf)
     source = Recorded.of(clip, controls, turning)
     source = source.noisy(noise, np.random.default_rng(0)) if noise else source

@@ -36,15 +36,16 @@ def going(controller, frames):
                      (np.full((2, 3), np.nan), np.full((2, 3, 3), np.nan)), Doubts.of(2))
 
 
+@pytest.mark.parametrize("bent", [0.0, 1.0])
 @pytest.mark.parametrize("noise", [0.05, 0.1])
-def test_one_frame_of_noise_is_no_motion_that_a_body_is_thrown_on_with(noise):
-    """Poses shake by `noise`, one is off by nearly as much; the next one, back where it belongs, is a leap, but from no such pace."""
+def test_one_frame_of_noise_is_no_motion_that_a_body_is_thrown_on_with(noise, bent):
+    """Poses shake by `noise`, one is off by nearly as much; the next one, back where it belongs, is a leap, but from no such pace, a knee that nobody sees leaping or not."""
     controls = parse("root,lwrist", SKELETON)
     controller = Reconstruction(Leaper(), controls)
     frames = np.zeros((90, 2, 3))
     following, off = going(controller, frames), []
     for k in range(2, len(frames)):
-        pose = controller.method.step(None, frames[k] + (k == 40) * np.array([[0.9 * noise, 0.0, 0.0], [0.0, 0.0, 0.0]]))[1]
+        pose = controller.method.step(None, frames[k] + (k == 40) * np.array([[0.9 * noise, 0.0, 0.0], [bent, 0.0, 0.0]]))[1]
         controller.method.step = lambda memory, points, pose=pose: (None, pose)
         following = replace(following, gate=replace(following.gate, rough=np.full(2, noise), heard=np.ones(2)))
         following = controller.follower.frame(following, frames[k], np.full((2, 3, 3), np.nan))

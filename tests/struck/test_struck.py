@@ -187,7 +187,7 @@ def test_nobody_is_pushed_onto_his_knees(somebody, way, wish):
     """Pushed by what does not make him fall, in any moment of a stride, he stays up: no leg is left so far behind that hips go down to the knees, and no gentle push makes a walker fall."""
     state = after(somebody, wish, 1.5)
     tall = float(BODY.skeleton.offsets[0, 1])
-    for moment in range(1 if wish == (0.0, 0.0, 0.0) else 6):
+    for _ in range(1 if wish == (0.0, 0.0, 0.0) else 6):
         for hard in (0.5, 0.7, 0.9, 1.3):
             states = played(somebody, state, tuple(BODY.mass * hard * np.array(way)), wish, 1.5)
             falls = any(s.active == "struck" and s.memory.memory.made.fate == FALLS for s in states)

@@ -20,12 +20,12 @@ LIMBS = tuple(np.array([SKELETON.index(side + name) for name in names])
 
 
 def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.ndarray, went: np.ndarray | None, followed: np.ndarray, allowed: float, swerved: float
-        ) -> tuple[np.ndarray, bool, np.ndarray]:
+        ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """By what (1 + J, 3) a body goes on from the pose before to the next, as it is shown: as it did where it leapt, but for `TAKEN`.
 
     goes: (1 + J, 3) by what it does, from the one to the other; step: by what it was taken to; went: by what it truly did to the pose before, None where that is not known. followed: joints whose points are followed; swerved: how far
     one of those points got from where its motion led [m]. allowed: within so far [m] nothing leaps.
-    Also returns whether it leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
+    Also returns which rows (1 + J,) bool leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
     """
     none, told = np.zeros_like(step), set(followed.tolist())
     limbs = [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
@@ -36,13 +36,13 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     far = _apart(body, pose, moved(before, step))[trunk].max()
     if far > most and went is not None and _apart(body, pose, moved(before, went))[trunk].max() <= most:
         none[rows], far = step[rows] - goes[rows], 0.0
-    leapt = bool(far > most)
-    step[rows] += (TAKEN / far if leapt else 1.0) * (goes[rows] - step[rows])
+    leapt = rows & (far > most)
+    step[rows] += (TAKEN / far if far > most else 1.0) * (goes[rows] - step[rows])
     for limb in limbs:
         alone = goes.copy()
         alone[limb + 1] = step[limb + 1]
         far = _apart(body, pose, moved(before, alone))[limb].max()
-        leapt = leapt or bool(far > allowed)
+        leapt[limb + 1] = far > allowed
         step[limb + 1] += (TAKEN / far if far > allowed else 1.0) * (goes[limb + 1] - step[limb + 1])
     return step, leapt, none
 
