@@ -1,6 +1,6 @@
 """Who is pushed while he walks or runs, no harder than his own next steps take in: he goes on from the velocity that the push gives him.
 
-Walkers and runners set each foot down anew anyway. The push moves the capture point x + v/ω by Δv/ω, 0.3 of Δv in metres: up to a quarter of a step or so the coming
+Walkers and runners set each foot down anew anyway. The push moves the capture point x + v/ω by Δv/ω, 0.3 of Δv in metres: up to a third of a step or so the coming
 footholds, planned with the body's way, are where they need to be. From there on the command goes back to the wish as fast as legs push.
 """
 
@@ -16,7 +16,7 @@ from .first_stride import END
 from .memory import RUN
 
 WALKING, RUNNING = (0.8, 0.8, 0.7), (1.6, 1.4, 0.8)
-"""So much faster ahead, back and aside [m/s] a push may make a walker and a runner, in the size that the library is of. Chosen: a walker's from a quarter of a step; a runner's ahead
+"""So much faster ahead, back and aside [m/s] a push may make a walker and a runner, in the size that the library is of. Chosen: a walker's from less than a third of a step; a runner's ahead
 and back, that soles slide by less than 0.3 m/s and joints turn by less than 36 rad/s (unpushed 23), aside from what people catch who stand; no pushed runner was recorded."""
 SLOWEST, LEAST = 0.5, 0.25
 """Slower than the first [m/s] nobody walks on through a push, nor who would go slower ahead than the second after it."""
@@ -24,7 +24,7 @@ SLOWEST, LEAST = 0.5, 0.25
 
 def pushed(state: CharacterState, change: np.ndarray) -> CharacterState | None:
     """The state of one character, which this room's controller moves, with a velocity that a push has changed by (2,) x, z [m/s] in the world; None where that is more than the
-    next steps take in, or he sets off, stops, turns on the spot or stands."""
+    next steps take in, or he shifts his weight to set off, stops, turns on the spot or stands."""
     memory = state.memory
     if memory.ndim or memory["settled"] or memory["waits"] or memory["stop"] > 0.0 or memory["onset"] > END or memory["turn"] != 0.0:
         return None

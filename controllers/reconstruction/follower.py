@@ -185,7 +185,7 @@ class Follower:
         begun = self.frame(self.begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, following.step), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
-        after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, lost=0.0)
+        after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, went=begun.went, lost=0.0)
         zero = np.zeros_like(following.offset)
         return replace(after, offset=zero, rate=zero) if far else self.fading(after, ahead)
 

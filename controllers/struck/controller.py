@@ -154,7 +154,7 @@ class Struck(Controller):
                         memory=replace(memory, made=made, time=time, stood=np.array([*ground, made.floors[n]])), floor=float(made.floors[n]))
         if np.abs(intent.velocity).max() > WISHES and self._walks_on(after) and not made.stands(time):
             after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
-        if made.fate == FALLS and time >= made.duration and np.hypot(velocity[0], velocity[2]) < RESTS:
+        if made.fate == FALLS and memory.time < made.duration <= time and np.hypot(velocity[0], velocity[2]) < RESTS:
             home = self._home(after, intent, made.why)
             after = after if home is None else replace(after, memory=Recovering(home, 0.0, ground - [*home.centres[0, [0, 2]], home.headings[0]], after.memory.stood))
         return after, pose
@@ -184,7 +184,7 @@ class Struck(Controller):
     def _down(self, memory: Recovering) -> bool:
         """Whether he falls, lies or gets up: nothing that strikes him then changes that."""
         made = memory.made
-        return made.fate == FALLS and memory.time > 0.0 and bool(self._raised(made)[made.between(memory.time)[0]] < UPRIGHT)
+        return made.fate == FALLS and bool(self._raised(made)[made.between(memory.time)[0]] < UPRIGHT)
 
     def _walks_on(self, state: CharacterState) -> bool:
         """Whether one could walk on now: a foot has just landed, or one stands."""

@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from gambol.controllers.body import damp, wrap
+from gambol.controllers.body import damp, settle, wrap
 
 from ..input import Wish
 from ..scene import Prop
@@ -21,8 +21,8 @@ BESIDE, OVER = 0.62, 0.16
 hides where it jumps to."""
 CHANGES = 0.3
 """A jump aimed at by so much to the camera's side [rad] makes it swing to the other one."""
-COMES, GOES = 0.16, 0.6
-"""Half-lives [s] of swinging there and back."""
+COMES, GOES = 0.2, 0.7
+"""Half-lives [s] of swinging there and back, neither of which begins with a jerk."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -32,7 +32,7 @@ class Follow(Armed):
     focus: (3,) [m] where the character is, ahead: (3,) how far before it the camera looks, slack:
     (3,) what is left of the change from another camera; target is their sum. still: seconds
     since the player turned it. aside: how far it has swung out of the line of a jump [rad], which leaves its yaw, and so
-    the sticks' directions, as they are.
+    the sticks' directions, as they are; swings: how fast it does [rad/s].
     """
 
     kind: ClassVar[str] = "follow"
@@ -41,6 +41,7 @@ class Follow(Armed):
     slack: np.ndarray = field(default_factory=lambda: np.zeros(3))
     still: float = 10.0
     aside: float = 0.0
+    swings: float = 0.0
 
     @staticmethod
     def behind(ground, settings: CameraSettings = CameraSettings(), yaw: float | None = None,
@@ -66,13 +67,18 @@ class Follow(Armed):
     def aimed(self, heading: float | None, dt: float) -> Self:
         """The camera a little out of the line of a jump along `heading` [rad]; back behind where nobody aims at one."""
         if heading is None:
-            return self if self.aside == 0.0 else replace(self, aside=float(damp(self.aside, 0.0, GOES, dt)))
+            return self if self.aside == 0.0 == self.swings else self._swung(0.0, GOES, dt)
         line = float(wrap(heading - self.yaw))
         side = 1.0 if self.aside >= 0.0 else -1.0
         if side * line > CHANGES:
             side = -side
         wanted = side * max(BESIDE + side * line, 0.0) if abs(line) < 0.5 * math.pi else 0.0
-        return replace(self, aside=float(damp(self.aside, wanted, COMES, dt)))
+        return self._swung(wanted, COMES, dt)
+
+    def _swung(self, wanted: float, halflife: float, dt: float) -> Self:
+        """The camera as it swings to `wanted` [rad] beside a jump."""
+        left, swings = settle(np.array(self.aside - wanted), np.array(self.swings), halflife, dt)
+        return replace(self, aside=wanted + float(left), swings=float(swings))
 
     def _looks(self) -> tuple[float, float]:
         return self.yaw + self.aside, min(self.pitch + OVER * min(abs(self.aside) / BESIDE, 1.0), self.settings.highest)

@@ -65,8 +65,8 @@ class Gate:
     """What is remembered of n points.
 
     raw: (n, 3) [m] where they were last seen, or have gone since then, NaN where lost. rate, smooth: (n, 3) [m/s] how they
-    move, and how they did in the last frames, which noise blurs less. swerve: (2, n, 3) [m] how they got from where their motion
-    led, in the last frame and the one before. gone: (n,) [s] for how long they have not been seen.
+    move, and how they did in the last frames, which noise blurs less. swerve, swerved: (n, 3) [m] how they got from where their
+    motion led, in the last frame and the one before. gone: (n,) [s] for how long they have not been seen.
     steady: (n,) [s] for how long they have moved like a body. rough: (n,) [m] how far they lately were from where their
     motion led, of what was heard of them (n,), 0 … 1: in the first moments there is little. trusted: (n,) bool, which are followed. offset, slip: (n, 3) [m, m/s] what is added to those until it has
     settled. order: (n,) under which number each one comes now. turned, spin, untold: (n, 3, 3), (n, 3) [rad/s], (n,) [s] how
@@ -78,6 +78,7 @@ class Gate:
     rate: np.ndarray
     smooth: np.ndarray
     swerve: np.ndarray
+    swerved: np.ndarray
     gone: np.ndarray
     steady: np.ndarray
     rough: np.ndarray
@@ -95,7 +96,7 @@ class Gate:
         """When points were seen for the first time, at (n, 3) [m], NaN where not; taken to move as the body does
         [m/s]. None is followed yet."""
         zero, none = np.zeros_like(motion), np.zeros(len(seen))
-        return Gate(seen, motion, motion, np.zeros((2, *motion.shape)), none, none, none, none, np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)),
+        return Gate(seen, motion, motion, zero, zero, none, none, none, none, np.zeros(len(seen), bool), zero, zero, np.arange(len(seen)),
                     np.full((len(seen), 3, 3), np.nan), zero, none)
 
     def named(self, seen: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
@@ -126,7 +127,7 @@ class Gate:
         """The gate for which two points have had each other's number for some time."""
         order = np.arange(len(self.raw))
         order[[i, j]] = j, i
-        return Gate(**{field.name: getattr(self, field.name)[..., order, :] if field.name == "swerve" else getattr(self, field.name)[order] for field in fields(self)})
+        return Gate(**{field.name: getattr(self, field.name)[order] for field in fields(self)})
 
     def admit(self, seen: np.ndarray, body: np.ndarray, motion: np.ndarray, dt: float, lost: float = 0.0
               ) -> tuple[Gate, np.ndarray]:
@@ -161,16 +162,15 @@ class Gate:
         offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
         slip = np.where(believed[:, None], np.where(back, _at_most(motion - smooth, SLIP), slip), 0.0)
         swerve = np.where((goes_on & (self.gone == 0.0))[:, None], moved - self.rate * dt, 0.0)
-        after = replace(self, raw=place, rate=rate, smooth=smooth, swerve=np.stack([swerve, self.swerve[0]]), gone=np.where(there, 0.0, since), steady=steady, rough=rough, heard=heard,
-                        trusted=believed, offset=offset, slip=slip)
+        after = replace(self, raw=place, rate=rate, smooth=smooth, swerve=swerve, swerved=self.swerve, gone=np.where(there, 0.0, since), steady=steady, rough=rough,
+                        heard=heard, trusted=believed, offset=offset, slip=slip)
         return after, np.where(believed[:, None], place + offset, np.nan)
 
     @property
     def swerves(self) -> float:
         """How far [m] a point that is followed got from where its motion led, in both of the last frames and the same way, as none does that only jumped, and farther than noise takes it. Those that
         still come to where they are seen tell nothing."""
-        now, before = self.swerve
-        once = np.minimum(_length(now), _length(before)) * (np.sum(now * before, -1) > 0.0)
+        once = np.minimum(_length(self.swerve), _length(self.swerved)) * (np.sum(self.swerve * self.swerved, -1) > 0.0)
         return float((once - NOISY * self.rough)[self.trusted & self.seen & (_length(self.offset) <= THERE)].max(initial=0.0))
 
     def told(self, turns: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
