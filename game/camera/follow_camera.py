@@ -67,15 +67,15 @@ class Follow(Armed):
     def aimed(self, heading: float | None, dt: float) -> Self:
         """The camera a little out of the line of a jump along `heading` [rad]; back behind where nobody aims at one."""
         if heading is None:
-            return self if self.aside == 0.0 == self.swings else self._swung(0.0, GOES, dt)
+            return self if self.aside == 0.0 == self.swings else self._beside(0.0, GOES, dt)
         line = float(wrap(heading - self.yaw))
         side = 1.0 if self.aside >= 0.0 else -1.0
         if side * line > CHANGES:
             side = -side
         wanted = side * max(BESIDE + side * line, 0.0) if abs(line) < 0.5 * math.pi else 0.0
-        return self._swung(wanted, COMES, dt)
+        return self._beside(wanted, COMES, dt)
 
-    def _swung(self, wanted: float, halflife: float, dt: float) -> Self:
+    def _beside(self, wanted: float, halflife: float, dt: float) -> Self:
         """The camera as it swings to `wanted` [rad] beside a jump."""
         left, swings = settle(np.array(self.aside - wanted), np.array(self.swings), halflife, dt)
         return replace(self, aside=wanted + float(left), swings=float(swings))
