@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..body import Clip, Skeleton, between
+from ..body import Clip, Skeleton, between, forward_kinematics
 from .acclaim_motion import read_amc
 from .bvh import read_bvh
 from .parsing import MotionFileError, fail
@@ -171,9 +171,7 @@ def _up(skeleton: Skeleton, positions: np.ndarray) -> str:
     stand = np.median(positions[:, heads].mean(1) - positions[:, feet].mean(1), axis=0)
     if stand[2] > max(abs(stand[0]), abs(stand[1])):
         return "z"
-    rest = np.zeros((len(skeleton), 3))
-    for joint in range(1, len(skeleton)):
-        rest[joint] = rest[skeleton.parents[joint]] + skeleton.offsets[joint]
+    rest, _ = forward_kinematics(skeleton, np.zeros(3), np.tile(np.eye(3), (len(skeleton), 1, 1)))
     way = _along(stand)  # who lies, or stands on his hands, in a file of Y up does not do so in its zero pose
     return way if way == _along(rest[heads].mean(0) - rest[feet].mean(0)) else "y"
 

@@ -27,26 +27,26 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     one of those points got from where its motion led [m]. allowed: within so far [m] nothing leaps.
     Also returns which rows (1 + J,) bool leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
     """
-    none, told = np.zeros_like(step), set(followed.tolist())
+    none, told, there = np.zeros_like(step), set(followed.tolist()), joints_of(pose, body)[0]
     limbs = [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
     step, trunk = step.copy(), np.ones(len(body), bool)
     for limb in limbs:
         trunk[limb] = False
     rows, most = np.append(True, trunk), allowed + BEYOND * swerved
-    far = _apart(body, pose, moved(before, step))[trunk].max()
-    if far > most and went is not None and _apart(body, pose, moved(before, went))[trunk].max() <= most:
+    far = _apart(body, there, moved(before, step))[trunk].max()
+    if far > most and went is not None and _apart(body, there, moved(before, went))[trunk].max() <= most:
         none[rows], far = step[rows] - goes[rows], 0.0
     leapt = rows & (far > most)
     step[rows] += (TAKEN / far if far > most else 1.0) * (goes[rows] - step[rows])
     for limb in limbs:
         alone = goes.copy()
         alone[limb + 1] = step[limb + 1]
-        far = _apart(body, pose, moved(before, alone))[limb].max()
+        far = _apart(body, there, moved(before, alone))[limb].max()
         leapt[limb + 1] = far > allowed
         step[limb + 1] += (TAKEN / far if far > allowed else 1.0) * (goes[limb + 1] - step[limb + 1])
     return step, leapt, none
 
 
-def _apart(body: Skeleton, pose: Pose, other: Pose) -> np.ndarray:
-    """How far (J,) [m] the joints of two poses are apart."""
-    return np.linalg.norm(joints_of(pose, body)[0] - joints_of(other, body)[0], axis=-1)
+def _apart(body: Skeleton, there: np.ndarray, other: Pose) -> np.ndarray:
+    """How far (J,) [m] the joints of a pose are from where they are, (J, 3) [m]."""
+    return np.linalg.norm(there - joints_of(other, body)[0], axis=-1)
