@@ -6,7 +6,8 @@ import numpy as np
 
 from ...body import Pose, Skeleton
 from ..pose_vector import SKELETON
-from .hand_over import joints_of, moved
+from .hand_over import joints_of
+from .pose_kernels import apart_kernel
 
 LEAP = 0.03
 """A joint that is farther than this [m] from where its motion leads has leapt …"""
@@ -33,20 +34,24 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     for limb in limbs:
         trunk[limb] = False
     rows, most = np.append(True, trunk), allowed + BEYOND * swerved
-    far = _apart(body, there, moved(before, step))[trunk].max()
-    if far > most and went is not None and _apart(body, there, moved(before, went))[trunk].max() <= most:
+    far = _apart(body, there, before, step)[trunk].max()
+    if far <= most and not limbs:
+        return goes, np.zeros(len(goes), bool), none
+    if far > most and went is not None and _apart(body, there, before, went)[trunk].max() <= most:
         none[rows], far = step[rows] - goes[rows], 0.0
     leapt = rows & (far > most)
     step[rows] += (TAKEN / far if far > most else 1.0) * (goes[rows] - step[rows])
     for limb in limbs:
         alone = goes.copy()
         alone[limb + 1] = step[limb + 1]
-        far = _apart(body, there, moved(before, alone))[limb].max()
+        far = _apart(body, there, before, alone)[limb].max()
         leapt[limb + 1] = far > allowed
         step[limb + 1] += (TAKEN / far if far > allowed else 1.0) * (goes[limb + 1] - step[limb + 1])
     return step, leapt, none
 
 
-def _apart(body: Skeleton, there: np.ndarray, other: Pose) -> np.ndarray:
-    """How far (J,) [m] the joints of a pose are from where they are, (J, 3) [m]."""
-    return np.linalg.norm(there - joints_of(other, body)[0], axis=-1)
+def _apart(body: Skeleton, there: np.ndarray, pose: Pose, by: np.ndarray) -> np.ndarray:
+    """How far (J,) [m] the joints of a pose that is moved by (1 + J, 3) are from where they are, (J, 3) [m]."""
+    out = np.empty(len(body))
+    apart_kernel(body.parents, body.offsets, pose.root, pose.rotations, by, there, out)
+    return out

@@ -66,8 +66,13 @@ class Footing:
 
     def told(self, joints: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Which feet (2,) bool trackers on joints (n,) tell of, that are at points (n, 3), NaN where not seen."""
-        seen = joints[np.isfinite(points).all(-1)]
-        return np.array([np.isin(seen, leg[2:]).any() for leg in self._body[0]])
+        seen = set(joints[np.isfinite(points).all(-1)].tolist())
+        return np.array([not seen.isdisjoint(leg) for leg in self._feet])
+
+    @cached_property
+    def _feet(self):
+        """Foot and toe joint of both feet."""
+        return self._body[0][:, 2:].tolist()
 
     @cached_property
     def _body(self):
