@@ -130,7 +130,7 @@ PLAN = {
         "reconstruction.neighbours": "compiled reconstruction.database",
         "reconstruction.regression": "compiled body reconstruction.neighbours",
         "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",
-        "reconstruction.following": "compiled contract body reconstruction.database reconstruction.regression",
+        "reconstruction.following": "compiled contract body reconstruction.database reconstruction.regression reconstruction.footing",
         "reconstruction.footing": "compiled body",
         "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
                                 "reconstruction.baselines reconstruction.following reconstruction.footing"),

@@ -33,10 +33,11 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     step, trunk = step.copy(), np.ones(len(body), bool)
     for limb in limbs:
         trunk[limb] = False
-    rows, most = np.append(True, trunk), allowed + BEYOND * swerved
+    most = allowed + BEYOND * swerved
     far = _apart(body, there, before, step)[trunk].max()
     if far <= most and not limbs:
         return goes, np.zeros(len(goes), bool), none
+    rows = np.append(True, trunk)
     if far > most and went is not None and _apart(body, there, before, went)[trunk].max() <= most:
         none[rows], far = step[rows] - goes[rows], 0.0
     leapt = rows & (far > most)

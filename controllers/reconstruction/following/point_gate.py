@@ -139,8 +139,10 @@ class Gate:
     def at_odds(self, dt: float) -> bool:
         """Whether all that is seen, two points or more, has moved like a body for two frames of dt [s], but not like this one:
         then the body is wrong, and not the points."""
+        if self.trusted.any():
+            return False
         there = self.seen
-        return int(there.sum()) >= 2 and not self.trusted.any() and bool((self.steady[there] > 1.5 * dt).all())
+        return int(there.sum()) >= 2 and bool((self.steady[there] > 1.5 * dt).all())
 
     @property
     def doubtful(self) -> bool:
@@ -167,6 +169,8 @@ class Doubts:
 
     def heard(self, confusable: np.ndarray, dt: float) -> Doubts:
         """The doubts dt [s] later. confusable: (P,) bool, which pairs could have been exchanged meanwhile."""
+        if not (confusable.any() or self.left.any()):
+            return self  # nothing is asked about, and nothing speaks for anything
         left = np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0))
         return but(self, left=left, evidence=np.where(left > 0.0, self.evidence, 0.0))
 
