@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,8 @@ def driven(state: CharacterState, skeleton: Skeleton, pose: Pose, memory: Any, d
     middle = 0.5 * (positions[1, skeleton.index("LeftArm")] + positions[1, skeleton.index("RightArm")])
     heading = float(state.ground[2])
     heading += float(damp(0.0, wrap(heading_of(orientations[1, 0, :, 2]) - heading), SMOOTH, dt))
-    c, s = np.cos(heading), np.sin(heading)
-    x, _, z = (pose.root - state.pose.root) / dt
+    c, s = math.cos(heading), math.sin(heading)
+    x, _, z = ((pose.root - state.pose.root) / dt).tolist()
     now = np.array([s * x + c * z, (heading - float(state.ground[2])) / dt, c * x - s * z])
     slack = np.where(state.contacts, RELEASE, 1.0)
     stands = (points[:, 1] - state.floor - contact_height(skeleton) < HEIGHT_GATE * slack) & (
