@@ -142,19 +142,23 @@ class Follower:
         if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
             turns = turns[gate.order]
             return self.anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
+        there = gate.seen
         if not getattr(self.method, "hears_turns", False):
             memory, pose = self.method.step(following.memory, goals)
         else:  # of points that are refused nothing is believed; inertial trackers know turns alone
-            believed = gate.trusted | ~gate.seen
+            believed = gate.trusted | ~there
             memory, pose = self.method.step(following.memory, goals, np.where(believed[:, None, None], turned, np.nan))  # type: ignore[call-arg]
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
             return but(following, fault="the reconstruction came to no pose", before=following.pose, pace=np.zeros_like(following.step))
-        lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
+        lost = 0.0 if (gate.trusted & there).any() else following.lost + self.dt
         went = difference(pose, following.pose)
         shaking = SHAKEN * median(gate.rough.tolist())
         pace = damp(following.step, went, STEADY * (shaking - LEAP), self.dt) if shaking > LEAP else None
         after = but(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, went=went, lost=lost)
-        step, leapt, none = led(self.body, following.pose, pose, went, following.step, following.went, self.controls.joints[gate.trusted], max(LEAP, shaking), gate.swerves)
+        leaps = led(self.body, following.pose, pose, went, following.step, following.went, self.controls.joints[gate.trusted], max(LEAP, shaking), gate.swerves)
+        if leaps is None:
+            return after
+        step, leapt, none = leaps
         after = but(after, rate=after.rate + none / self.dt)
         if not leapt.any():
             return after

@@ -21,23 +21,23 @@ LIMBS = tuple(np.array([SKELETON.index(side + name) for name in names])
 
 
 def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.ndarray, went: np.ndarray | None, followed: np.ndarray, allowed: float, swerved: float
-        ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """By what (1 + J, 3) a body goes on from the pose before to the next, as it is shown: as it did where it leapt, but for `TAKEN`.
 
     goes: (1 + J, 3) by what it does, from the one to the other; step: by what it was taken to; went: by what it truly did to the pose before, None where that is not known. followed: joints whose points are followed; swerved: how far
     one of those points got from where its motion led [m]. allowed: within so far [m] nothing leaps.
     Also returns which rows (1 + J,) bool leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
+    None where all limbs are followed and nothing leapt.
     """
-    none, told, there = np.zeros_like(step), set(followed.tolist()), joints_of(pose, body)[0]
+    told, there, most = set(followed.tolist()), joints_of(pose, body)[0], allowed + BEYOND * swerved
     limbs = [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
-    step, trunk = step.copy(), np.ones(len(body), bool)
+    apart = _apart(body, there, before, step)
+    if not limbs and apart.max() <= most:
+        return None
+    none, step, trunk = np.zeros_like(step), step.copy(), np.ones(len(body), bool)
     for limb in limbs:
         trunk[limb] = False
-    most = allowed + BEYOND * swerved
-    far = _apart(body, there, before, step)[trunk].max()
-    if far <= most and not limbs:
-        return goes, np.zeros(len(goes), bool), none
-    rows = np.append(True, trunk)
+    rows, far = np.append(True, trunk), apart[trunk].max()
     if far > most and went is not None and _apart(body, there, before, went)[trunk].max() <= most:
         none[rows], far = step[rows] - goes[rows], 0.0
     leapt = rows & (far > most)

@@ -106,11 +106,12 @@ class Gate:
         seen: (n, 3) [m] as they come, NaN where lost. body: (n, 3) [m] where the body would have them now.
         motion: (n, 3) [m/s] how it moves them.
         """
-        after = but(self, raw=self.raw.copy(), rate=self.rate.copy(), smooth=self.smooth.copy(), swerve=np.empty_like(self.swerve), swerved=self.swerve, gone=self.gone.copy(),
-                    steady=self.steady.copy(), rough=self.rough.copy(), heard=self.heard.copy(), trusted=self.trusted.copy(), offset=self.offset.copy(), slip=self.slip.copy())
+        after = but(self, raw=self.raw.copy(), rate=self.rate.copy(), smooth=self.smooth.copy(), swerve=np.empty_like(self.swerve), swerved=self.swerve,
+                    gone=self.gone.copy(), steady=self.steady.copy(), rough=self.rough.copy(), heard=self.heard.copy(), trusted=self.trusted.copy(),
+                    offset=self.offset.copy(), slip=self.slip.copy())
         goals = np.empty_like(after.raw)
-        admit_kernel(seen, body, motion, dt, lost, after.raw, after.rate, after.smooth, after.swerve, after.gone, after.steady, after.rough, after.heard, after.trusted,
-                     after.offset, after.slip, goals)
+        admit_kernel(seen, body, motion, dt, lost, after.raw, after.rate, after.smooth, after.swerve, after.gone, after.steady, after.rough, after.heard,
+                     after.trusted, after.offset, after.slip, goals)
         return after, goals
 
     @property

@@ -93,7 +93,7 @@ def bent_kernel(turn, bone, axis):
 
 @kernel
 def back_kernel(rotations, others, joints, bones, axes, out):
-    """Fills out (H,) [rad]: by how much joints (H,) with bones and axes (H, 3) bend farther back than straight, or than those of the other pose. Whether any does."""
+    """Fills out (H,) [rad]: by how much joints (H,) with bones and axes (H, 3) bend farther back than straight, or than the other pose's. Whether any does."""
     broken = False
     for n in range(len(joints)):
         j = joints[n]
