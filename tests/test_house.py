@@ -130,11 +130,11 @@ PLAN = {
         "reconstruction.neighbours": "compiled reconstruction.database",
         "reconstruction.regression": "compiled body reconstruction.neighbours",
         "reconstruction.baselines": "body reconstruction.database reconstruction.neighbours reconstruction.regression",
-        "reconstruction.following": "contract body reconstruction.database reconstruction.regression",
+        "reconstruction.following": "compiled contract body reconstruction.database reconstruction.regression reconstruction.footing",
         "reconstruction.footing": "compiled body",
         "reconstruction.ours": ("compiled body reconstruction.database reconstruction.neighbours reconstruction.regression "
                                 "reconstruction.baselines reconstruction.following reconstruction.footing"),
-        "reconstruction.trackers": ("compiled files body reconstruction.database reconstruction.regression reconstruction.baselines "
+        "reconstruction.trackers": ("compiled files body contract reconstruction.database reconstruction.regression reconstruction.baselines "
                                     "reconstruction.ours reconstruction.footing"),
         "reconstruction.calibration": ("compiled files body reconstruction.regression reconstruction.baselines reconstruction.trackers "
                                        "reconstruction.live"),

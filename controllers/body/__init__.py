@@ -13,14 +13,14 @@ from .ik import distance_kernel, pole_of, two_bone, two_bone_kernel, two_bone_tu
 from .rotation_kernels import exp_kernel, log_kernel, product_kernel, quaternion_kernel, relative_kernel
 from .rotations import between, carried, exp, heading_of, log, mean, wrap, yaw
 from .skeleton import Skeleton, end_positions, forward_kinematics, local_rotations
-from .springs import damp, settle, spring_kernel
+from .springs import damp, damp_kernel, settle, spring_kernel
 from .support_polygon import (HALF_SOLE, centroid_kernel, hull, hull_kernel, margin, margin_kernel, sole_corners,
                               standing_corners)
 
 __all__ = [
     "CONTACT_HEIGHT", "HALF_SOLE", "HEEL", "HEIGHT_GATE", "RELEASE", "STATURE", "WALK_SPEEDS", "Anatomy", "Clip", "Pose",
     "Skeleton", "advance", "anatomy", "between", "brief", "carried", "ccd_kernel", "centre_in_pose", "centre_of_mass", "centroid_kernel", "compose",
-    "contact_height", "contact_points", "damp", "detect_contacts", "distance_kernel", "end_positions", "exp",
+    "contact_height", "contact_points", "damp", "damp_kernel", "detect_contacts", "distance_kernel", "end_positions", "exp",
     "exp_kernel", "feet_apart", "foot_drift", "foot_turn_kernel", "forward_kinematics", "heading_of", "heel_offset",
     "hull", "hull_kernel", "human", "joint_limits", "local_rotations", "log", "log_kernel", "margin", "margin_kernel",
     "mean", "mirror_index", "point_speeds", "pole_of", "product_kernel", "quaternion_kernel", "relative", "relative_kernel",

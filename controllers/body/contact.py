@@ -7,6 +7,7 @@ points are, in this order, left heel, left ball, right heel, right ball.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -56,13 +57,12 @@ def heel_offset(skeleton: Skeleton) -> np.ndarray:
 
 def contact_points(skeleton: Skeleton, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
     """Heels and balls (..., 4, 3) [m], from what forward kinematics returned."""
-    heel = heel_offset(skeleton).astype(positions.dtype)
-    points = []
-    for side in ("Left", "Right"):
+    heel, points = heel_offset(skeleton).astype(positions.dtype), np.empty((*positions.shape[:-2], 4, 3), positions.dtype)
+    for k, side in enumerate(("Left", "Right")):
         foot = skeleton.index(side + "Foot")
-        points += [positions[..., foot, :] + orientations[..., foot, :, :] @ heel,
-                   positions[..., skeleton.index(side + "Toe"), :]]
-    return np.stack(points, -2)
+        points[..., 2 * k, :] = positions[..., foot, :] + orientations[..., foot, :, :] @ heel
+        points[..., 2 * k + 1, :] = positions[..., skeleton.index(side + "Toe"), :]
+    return points
 
 
 def point_speeds(points: np.ndarray, frame_time: float) -> np.ndarray:
@@ -129,6 +129,7 @@ def _side(start, stop, point):
     return along[..., 0] * off[..., 1] - along[..., 1] * off[..., 0]
 
 
+@lru_cache
 def _foot_size(skeleton):
     """This skeleton's foot over the standard human's, told by the ankle's height above the ball."""
     toe = skeleton.index("LeftToe")

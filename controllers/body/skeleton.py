@@ -60,6 +60,16 @@ class Skeleton:
         return Skeleton(self.names, self.parents, self.offsets * factor,
                         self.end_parents, self.end_offsets * factor)
 
+    def offsets_as(self, dtype: np.dtype) -> np.ndarray:
+        """The offsets (J, 3) [m] in a float type."""
+        if dtype not in self._offsets:
+            self._offsets[dtype] = self.offsets.astype(dtype)
+        return self._offsets[dtype]
+
+    @cached_property
+    def _offsets(self) -> dict[np.dtype, np.ndarray]:
+        return {}
+
     @cached_property
     def end_index(self) -> dict[str, int]:
         """End site by its parent joint's name (the last where a joint has several)."""
@@ -80,10 +90,10 @@ def forward_kinematics(skeleton: Skeleton, root: np.ndarray, rotations: np.ndarr
         raise ValueError(f"rotations of shape {rotations.shape} do not fit {count} joints: "
                          f"expected (..., {count}, 3, 3)")
     local = np.ascontiguousarray(rotations.reshape(-1, count, 3, 3))
-    start = np.array(np.broadcast_to(root, batch + (3,)).reshape(-1, 3), local.dtype, order="C")  # a view would compile anew
+    start = np.empty(batch + (3,), local.dtype)
+    start[...] = root
     positions, orientations = np.empty((len(local), count, 3), local.dtype), np.empty_like(local)
-    _kinematics(skeleton.parents, skeleton.offsets.astype(local.dtype), start, local,
-                positions, orientations)
+    _kinematics(skeleton.parents, skeleton.offsets_as(local.dtype), start.reshape(-1, 3), local, positions, orientations)
     return positions.reshape(batch + (count, 3)), orientations.reshape(rotations.shape)
 
 

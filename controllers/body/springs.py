@@ -45,6 +45,12 @@ def settle(x: np.ndarray, v: np.ndarray, halflife: float | np.ndarray, dt: float
 
 
 @kernel
+def damp_kernel(x, goal, halflife, dt):
+    """`damp` of one number."""
+    return goal + (x - goal) * math.exp(-_LN2 * dt / (halflife + _EPSILON))
+
+
+@kernel
 def spring_kernel(x, v, goal, halflife, dt):
     """Position and velocity of one number after dt [s] of a critically damped spring towards `goal`.
 

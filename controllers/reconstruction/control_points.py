@@ -7,6 +7,7 @@ six points the paper also compares with, has the middle of the torso in its plac
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -50,8 +51,13 @@ class ControlPoints:
 
     def on(self, positions: np.ndarray, orientations: np.ndarray) -> np.ndarray:
         """Where the points are, (..., n, 3) [m], from what forward kinematics returned."""
-        return positions[..., self.joints, :] + np.einsum("...nij,nj->...ni", orientations[..., self.joints, :, :],
-                                                          self.offsets.astype(positions.dtype))
+        points = positions[..., self.joints, :]
+        return points if not self._beside else points + np.einsum("...nij,nj->...ni", orientations[..., self.joints, :, :], self.offsets.astype(positions.dtype))
+
+    @cached_property
+    def _beside(self) -> bool:
+        """Whether any point stands beside its joint."""
+        return bool(self.offsets.any())
 
     def extract(self, clip: Clip) -> np.ndarray:
         """Where a recorded body has the points, (T, n, 3) [m]; it must have the skeleton that they were parsed for."""

@@ -8,12 +8,10 @@ whoever moved the body before and given back.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-
 import numpy as np
 
 from ..body import STATURE, Pose, Skeleton, human
-from ..contract import CharacterState, Controller, Intent, Status, Unable, given, level as sound_level, seconds
+from ..contract import CharacterState, Controller, Intent, Status, Unable, but, given, level as sound_level, seconds
 from ..driven import driven
 from .control_points import ControlPoints
 from .follower import FADE, GLIDE, SWIFTEST, Follower, Following, Reconstructor
@@ -89,7 +87,7 @@ class Reconstruction(Controller):
         begun = self.follower.frame(self.follower.begun(frames, tracks, seen, self.follower.dt), seen, self._turns(intent))
         # what the body would do next by itself is where the fading begins
         offset = difference(moved(pose, rate * self.follower.dt), begun.pose)
-        return replace(state, memory=replace(begun, ahead=self.follower.dt, offset=offset, level=level, fade=max(FADE, SWIFTEST * away / GLIDE)))
+        return but(state, memory=but(begun, ahead=self.follower.dt, offset=offset, level=level, fade=max(FADE, SWIFTEST * away / GLIDE)))
 
     def begin(self, points: np.ndarray, velocities: np.ndarray | None = None, floor: float = 0.0,
               turns: np.ndarray | None = None) -> CharacterState:
@@ -109,8 +107,8 @@ class Reconstruction(Controller):
         following = self.follower.begun(frames, tracks, seen)
         pose = self._grown(following.pose, floor)
         ground = np.array([pose.root[0], pose.root[2], tracks[-1, 2]])
-        following = replace(following, ahead=self.follower.dt, level=float(floor))
-        state, _ = self.step(replace(nobody, ground=ground, pose=pose, memory=following), wanted, self.follower.dt)
+        following = but(following, ahead=self.follower.dt, level=float(floor))
+        state, _ = self.step(but(nobody, ground=ground, pose=pose, memory=following), wanted, self.follower.dt)
         return state
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
@@ -130,7 +128,7 @@ class Reconstruction(Controller):
             seen, turns = self._seen(intent, following.level), self._turns(intent)
         except Unable as reason:  # the body coasts, and the next step is somebody else's
             seen, turns = self._seen(Intent(), 0.0), self._turns(Intent())
-            following = replace(following, fault=str(reason))
+            following = but(following, fault=str(reason))
         following = self.follower.step(following, seen, turns, dt)
         shown, body = self.follower.shown(following), self.follower.body
         floor = (float(state.floor) - following.level) / self.factor
@@ -157,18 +155,20 @@ class Reconstruction(Controller):
         points = np.asarray(intent.points, float)
         if points.shape != (count, 3):
             raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
-        return (points - [0.0, level, 0.0]) / self.factor
+        return (points - np.array([0.0, level, 0.0])) / self.factor
 
     def _turns(self, intent: Intent) -> np.ndarray:
         """How the points are turned (n, 3, 3), NaN where not known or no rotation. Unable for another number of turns."""
         count = len(self.controls)
-        turns = np.full((count, 3, 3), np.nan) if intent.turns is None else np.asarray(intent.turns, float)
+        if intent.turns is None:
+            return np.full((count, 3, 3), np.nan)
+        turns = np.asarray(intent.turns, float)
         if turns.shape != (count, 3, 3):
             raise Unable(f"turns of shape {turns.shape}: {count} are followed, {', '.join(self.controls.names)}")
         return rotations(turns)
 
     def _shrunk(self, pose: Pose, level: float) -> Pose:
-        return Pose((np.asarray(pose.root, float) - [0.0, level, 0.0]) / self.factor, np.asarray(pose.rotations, float))
+        return Pose((np.asarray(pose.root, float) - np.array([0.0, level, 0.0])) / self.factor, np.ascontiguousarray(pose.rotations, float))
 
     def _grown(self, pose: Pose, level: float) -> Pose:
-        return Pose(pose.root * self.factor + [0.0, level, 0.0], pose.rotations)
+        return Pose(pose.root * self.factor + np.array([0.0, level, 0.0]), pose.rotations)

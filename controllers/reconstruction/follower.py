@@ -6,12 +6,14 @@ All of it is of a standard body on a floor at height 0; worlds, sizes and who mo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from statistics import median
 from typing import Any, Protocol
 
 import numpy as np
 
 from ..body import Pose, Skeleton, damp, settle
+from ..contract import but
 from .control_points import ControlPoints
 from .following import APART, LEAP, Beginning, Doubts, Gate, difference, joints_of, led, moved, spread, unbroken
 from .pose_vector import SKELETON, decode
@@ -49,7 +51,7 @@ class Following:
     """What is remembered while points are followed; lengths as of a standard body on a floor at height 0.
 
     memory: the method's. gate: what is known of the points, which were last at seen (n, 3). late: what was seen since the newest
-    frame, (n, 3) and turns (n, 3, 3), NaN where nothing. doubts: which points may have exchanged their numbers. pose, before: the newest
+    frame, (n, 3) and turns (n, 3, 3), NaN where nothing; None right after a frame. doubts: which points may have exchanged their numbers. pose, before: the newest
     frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it.
     went: (1 + J, 3) by what the newest frame truly went on. offset, rate: (1 + J, 3) what is added to root and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
@@ -64,7 +66,7 @@ class Following:
     ahead: float
     offset: np.ndarray
     rate: np.ndarray
-    late: tuple[np.ndarray, np.ndarray]
+    late: tuple[np.ndarray, np.ndarray] | None
     doubts: Doubts
     level: float = 0.0
     fade: float = FADE
@@ -76,7 +78,7 @@ class Following:
     @property
     def step(self) -> np.ndarray:
         """By what (1 + J, 3) a frame goes on."""
-        return difference(self.pose, self.before) if self.pace is None else self.pace
+        return self.pace if self.pace is not None else self.went if self.went is not None else difference(self.pose, self.before)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,27 +99,27 @@ class Follower:
         before, pose = (Pose(*decode(frames[k], tracks[k])) for k in (max(-2, -len(frames)), -1))
         motion, zero = (self.points(pose) - self.points(before)) / self.dt, np.zeros((1 + len(SKELETON), 3))
         return Following(self.method.begin(frames, tracks), Gate.before(seen - motion * late, motion), seen, pose, before,
-                         0.0, zero, zero, (np.full_like(seen, np.nan), np.full((len(seen), 3, 3), np.nan)), Doubts.of(len(seen)))
+                         0.0, zero, zero, None, Doubts.of(len(seen)))
 
     def step(self, following: Following, seen: np.ndarray, turns: np.ndarray, dt: float) -> Following:
         """dt [s] on, with points (n, 3) and turns (n, 3, 3) as they are seen at its end: as many frames of the method as are due."""
         due = max(0, math.ceil((dt - following.ahead) / self.dt - 1e-6))
         ahead = following.ahead - dt + due * self.dt
-        start, (late, turned) = following.seen, following.late
-        seen = np.where(np.asarray(np.isfinite(seen).all(-1))[:, None], seen, late)
-        turns = np.where(np.asarray(np.isfinite(turns).all((-1, -2)))[:, None, None], turns, turned)
-        late = (seen, turns) if not due else (np.full_like(seen, np.nan), np.full_like(turns, np.nan))
-        following = replace(following, late=late)
+        start = following.seen
+        if following.late is not None:
+            seen = np.where(np.asarray(np.isfinite(seen).all(-1))[:, None], seen, following.late[0])
+            turns = np.where(np.asarray(np.isfinite(turns).all((-1, -2)))[:, None, None], turns, following.late[1])
+        following = but(following, late=None if due else (seen, turns))
         if due:
             gate, seen = following.gate.named(seen, due * self.dt)
-            following = replace(following, gate=gate, doubts=following.doubts.heard(gate.confusable(following.doubts.pairs, seen, due * self.dt), due * self.dt))
+            following = but(following, gate=gate, doubts=following.doubts.heard(gate.confusable(following.doubts.pairs, seen, due * self.dt), due * self.dt))
         for k in range(1, due + 1):
             points = seen if k == due else start + (seen - start) * (k / due)
             following = self.frame(following, points, turns)
         if due:
-            following = self.doubted(replace(following, seen=seen))
+            following = self.doubted(but(following, seen=seen))
         offset, rate = settle(following.offset, following.rate, following.fade, dt)
-        return replace(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
+        return but(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
 
     def shown(self, following: Following) -> Pose:
         """The pose of the present: between the last frames, with what fades."""
@@ -140,24 +142,28 @@ class Follower:
         if self.starts is not None and (gate.at_odds(self.dt) or back and gate.doubtful) and spread(points) <= APART:
             turns = turns[gate.order]
             return self.anew(following, points, self.starts.find(points, gate.smooth, turns), turns)
+        there = gate.seen
         if not getattr(self.method, "hears_turns", False):
             memory, pose = self.method.step(following.memory, goals)
         else:  # of points that are refused nothing is believed; inertial trackers know turns alone
-            believed = gate.trusted | ~gate.seen
+            believed = gate.trusted | ~there
             memory, pose = self.method.step(following.memory, goals, np.where(believed[:, None, None], turned, np.nan))  # type: ignore[call-arg]
         if not (np.isfinite(pose.root).all() and np.isfinite(pose.rotations).all()):
-            return replace(following, fault="the reconstruction came to no pose", before=following.pose)
-        lost = 0.0 if (gate.trusted & gate.seen).any() else following.lost + self.dt
+            return but(following, fault="the reconstruction came to no pose", before=following.pose, pace=np.zeros_like(following.step))
+        lost = 0.0 if (gate.trusted & there).any() else following.lost + self.dt
         went = difference(pose, following.pose)
-        shaking = SHAKEN * float(np.median(gate.rough))
+        shaking = SHAKEN * median(gate.rough.tolist())
         pace = damp(following.step, went, STEADY * (shaking - LEAP), self.dt) if shaking > LEAP else None
-        after = replace(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, went=went, lost=lost)
-        step, leapt, none = led(self.body, following.pose, pose, went, following.step, following.went, self.controls.joints[gate.trusted], max(LEAP, shaking), gate.swerves)
-        after = replace(after, rate=after.rate + none / self.dt)
+        after = but(following, memory=memory, gate=gate, pose=pose, before=following.pose, pace=pace, went=went, lost=lost)
+        leaps = led(self.body, following.pose, pose, went, following.step, following.went, self.controls.joints[gate.trusted], max(LEAP, shaking), gate.swerves)
+        if leaps is None:
+            return after
+        step, leapt, none = leaps
+        after = but(after, rate=after.rate + none / self.dt)
         if not leapt.any():
             return after
         pace = np.where(leapt[:, None], step, went if pace is None else pace)
-        return self.fading(replace(after, before=moved(pose, -step), pace=pace), moved(moved(following.pose, step), following.offset))
+        return self.fading(but(after, before=moved(pose, -step), pace=pace), moved(moved(following.pose, step), following.offset))
 
     def doubted(self, following: Following) -> Following:
         """With two points under each other's number, if what the method has seen for some time is much likelier so."""
@@ -166,34 +172,34 @@ class Follower:
             return following
         doubts, asked = following.doubts.asked()
         if asked is None:
-            return replace(following, doubts=doubts)
+            return but(following, doubts=doubts)
         i, j = doubts.pairs[asked]
         other = method.exchanged(following.memory, i, j)
         doubts, taken = doubts.told(asked, method.energy(following.memory), method.energy(other))
         if not taken:
-            return replace(following, doubts=doubts)
+            return but(following, doubts=doubts)
         best = min(doubts.open, key=lambda pair: method.energy(method.exchanged(following.memory, *doubts.pairs[pair])))
         if best != asked:
-            return replace(following, doubts=doubts.rather(asked, int(best)))
-        doubts = replace(doubts, evidence=np.zeros_like(doubts.evidence))
+            return but(following, doubts=doubts.rather(asked, int(best)))
+        doubts = but(doubts, evidence=np.zeros_like(doubts.evidence))
         order = np.arange(len(self.controls))
         order[[i, j]] = j, i
-        return replace(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order])
+        return but(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order])
 
     def anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self.frame(self.begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, following.step), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
-        after = replace(following, memory=begun.memory, gate=replace(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, went=begun.went, lost=0.0)
+        after = but(following, memory=begun.memory, gate=but(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, went=begun.went, lost=0.0)
         zero = np.zeros_like(following.offset)
-        return replace(after, offset=zero, rate=zero) if far else self.fading(after, ahead)
+        return but(after, offset=zero, rate=zero) if far else self.fading(after, ahead)
 
     def fading(self, following: Following, shown: Pose) -> Following:
         """With an offset by which a pose is shown for now."""
         away = float(np.linalg.norm(joints_of(shown, self.body)[0] - joints_of(following.pose, self.body)[0], axis=-1).max())
         fade = max(min(max(SHORTEST, SWIFTEST * away / HURRY), LONGEST), SWIFTEST * away / GLIDE)
-        return replace(following, offset=difference(shown, following.pose), fade=fade)
+        return but(following, offset=difference(shown, following.pose), fade=fade)
 
     def points(self, pose: Pose) -> np.ndarray:
         """Where (n, 3) [m] a standard body has the points."""

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gambol.controllers.body import exp
-from gambol.controllers.reconstruction.following.point_gate import BLINK, CALM, ENOUGH, EVERY, LISTENED, MARGIN, MOST, NEAR, PATIENCE, REACH, SELDOM, Doubts, Gate, rotations
+from gambol.controllers.reconstruction.following.gate_kernels import BLINK, NEAR, PATIENCE, REACH
+from gambol.controllers.reconstruction.following.point_gate import CALM, ENOUGH, EVERY, LISTENED, MARGIN, MOST, SELDOM, Doubts, Gate, rotations
 
 DT = 1 / 60
 

@@ -8,6 +8,7 @@ from ...body import Pose, Skeleton, exp, forward_kinematics, log
 from ..pose_vector import REFERENCE, SKELETON, YAW_RATE, encode
 from ..regression import SPAN
 from .initial_pose import backed
+from .pose_kernels import back_kernel, difference_kernel, moved_kernel
 
 _HINGES = np.array([SKELETON.index(side + name) for side in ("Left", "Right") for name in ("ForeArm", "Leg")])
 _BENT = log(REFERENCE[_HINGES])
@@ -23,28 +24,26 @@ def joints_of(pose: Pose, skeleton: Skeleton = SKELETON) -> tuple[np.ndarray, np
 
 def difference(to: Pose, start: Pose) -> np.ndarray:
     """What moves one pose onto another (1 + J, 3): of the root [m], and of the joints as rotation vectors [rad]."""
-    return np.concatenate([(to.root - start.root)[None], log(np.swapaxes(start.rotations, -1, -2) @ to.rotations)])
+    out = np.empty((1 + len(to.rotations), 3))
+    difference_kernel(to.root, to.rotations, start.root, start.rotations, out)
+    return out
 
 
 def moved(pose: Pose, by: np.ndarray) -> Pose:
     """The inverse of `difference`."""
-    return Pose(pose.root + by[0], pose.rotations @ exp(by[1:]))
+    root, rotations = np.empty(3), np.empty_like(pose.rotations)
+    moved_kernel(pose.root, pose.rotations, by, root, rotations)
+    return Pose(root, rotations)
 
 
 def unbroken(pose: Pose, of: Pose) -> Pose:
     """A pose whose elbows and knees bend no farther back than straight, or than those of another one: what fades may lead beyond."""
-    back = np.minimum(_bends(of), 0.0) - _bends(pose)
-    if not (back > 0.0).any():
+    back = np.empty(len(_HINGES))
+    if not back_kernel(pose.rotations, of.rotations, _HINGES, _BONES, _AXES, back):
         return pose
     rotations = np.array(pose.rotations, float)
-    rotations[_HINGES] = exp(np.maximum(back, 0.0)[:, None] * _AXES) @ rotations[_HINGES]
+    rotations[_HINGES] = exp(back[:, None] * _AXES) @ rotations[_HINGES]
     return Pose(pose.root, rotations)
-
-
-def _bends(pose):
-    """How far (4,) [rad] elbows and knees are bent."""
-    turned = (pose.rotations[_HINGES] @ _BONES[..., None])[..., 0]
-    return np.arctan2(np.sum(np.cross(_BONES, turned) * _AXES, -1), np.sum(_BONES * turned, -1))
 
 
 def guessed_past(pose: Pose, before: Pose | None, elapsed: float, dt: float) -> tuple[np.ndarray, np.ndarray]:

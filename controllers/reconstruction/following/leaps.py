@@ -6,7 +6,8 @@ import numpy as np
 
 from ...body import Pose, Skeleton
 from ..pose_vector import SKELETON
-from .hand_over import joints_of, moved
+from .hand_over import joints_of
+from .pose_kernels import apart_kernel
 
 LEAP = 0.03
 """A joint that is farther than this [m] from where its motion leads has leapt …"""
@@ -20,33 +21,38 @@ LIMBS = tuple(np.array([SKELETON.index(side + name) for name in names])
 
 
 def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.ndarray, went: np.ndarray | None, followed: np.ndarray, allowed: float, swerved: float
-        ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """By what (1 + J, 3) a body goes on from the pose before to the next, as it is shown: as it did where it leapt, but for `TAKEN`.
 
     goes: (1 + J, 3) by what it does, from the one to the other; step: by what it was taken to; went: by what it truly did to the pose before, None where that is not known. followed: joints whose points are followed; swerved: how far
     one of those points got from where its motion led [m]. allowed: within so far [m] nothing leaps.
     Also returns which rows (1 + J,) bool leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
+    None where all limbs are followed and nothing leapt.
     """
-    none, told, there = np.zeros_like(step), set(followed.tolist()), joints_of(pose, body)[0]
+    told, there, most = set(followed.tolist()), joints_of(pose, body)[0], allowed + BEYOND * swerved
     limbs = [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
-    step, trunk = step.copy(), np.ones(len(body), bool)
+    apart = _apart(body, there, before, step)
+    if not limbs and apart.max() <= most:
+        return None
+    none, step, trunk = np.zeros_like(step), step.copy(), np.ones(len(body), bool)
     for limb in limbs:
         trunk[limb] = False
-    rows, most = np.append(True, trunk), allowed + BEYOND * swerved
-    far = _apart(body, there, moved(before, step))[trunk].max()
-    if far > most and went is not None and _apart(body, there, moved(before, went))[trunk].max() <= most:
+    rows, far = np.append(True, trunk), apart[trunk].max()
+    if far > most and went is not None and _apart(body, there, before, went)[trunk].max() <= most:
         none[rows], far = step[rows] - goes[rows], 0.0
     leapt = rows & (far > most)
     step[rows] += (TAKEN / far if far > most else 1.0) * (goes[rows] - step[rows])
     for limb in limbs:
         alone = goes.copy()
         alone[limb + 1] = step[limb + 1]
-        far = _apart(body, there, moved(before, alone))[limb].max()
+        far = _apart(body, there, before, alone)[limb].max()
         leapt[limb + 1] = far > allowed
         step[limb + 1] += (TAKEN / far if far > allowed else 1.0) * (goes[limb + 1] - step[limb + 1])
     return step, leapt, none
 
 
-def _apart(body: Skeleton, there: np.ndarray, other: Pose) -> np.ndarray:
-    """How far (J,) [m] the joints of a pose are from where they are, (J, 3) [m]."""
-    return np.linalg.norm(there - joints_of(other, body)[0], axis=-1)
+def _apart(body: Skeleton, there: np.ndarray, pose: Pose, by: np.ndarray) -> np.ndarray:
+    """How far (J,) [m] the joints of a pose that is moved by (1 + J, 3) are from where they are, (J, 3) [m]."""
+    out = np.empty(len(body))
+    apart_kernel(body.parents, body.offsets, pose.root, pose.rotations, by, there, out)
+    return out

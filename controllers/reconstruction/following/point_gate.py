@@ -10,43 +10,14 @@ then settles (inertialisation), so that nothing pops.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from itertools import combinations
 
 import numpy as np
 
-from ...body import damp, exp, log, settle
+from ...contract import but
+from .gate_kernels import NEAR, ROUGHLY, SUDDEN, admit_kernel, confusable_kernel, leapt_kernel, sound_kernel, swerves_kernel, told_kernel
 
-SUDDEN = 0.15
-"""Farther than this [m] from where its motion leads no point gets within a frame: 540 m/s² is beyond any body."""
-ROUGHLY = 3.0
-"""Noise takes it farther, up to so many times as far as it lately did, but no farther than `NEAR`."""
-FASTEST = 15.0
-"""And one of which no motion is known yet no farther than this [m/s] goes."""
-BLINK = 0.15
-"""A point or a turn that is missing for no longer than this [s] goes on as it went; then it is lost."""
-SWERVE = 3.0
-"""Meanwhile it gets so much farther [m/s] from where its motion led: of recorded points five in a thousand do."""
-NEAR = 0.4
-"""A point that comes back within this of where the body has it [m] is believed at once."""
-PATIENCE = 0.3
-"""Farther away it has to be seen to move like a body for so long [s]."""
-STRAY = 1.5
-"""… and as much farther as somebody goes [m/s] for as long as no point was followed."""
-REACH = 1.5
-"""And beyond this [m] it is never believed."""
-EASE = 0.1
-"""Half-life with which a point that is back comes to where it is seen [s]."""
-NOISY = 2.0
-"""Noise makes points swerve by up to so many times as far as they were lately off."""
-THERE = 0.01
-"""It has come there as soon as it is nearer than this [m]."""
-SLIP = 3.0
-"""It is taken to move at most so much faster or slower than it is seen to [m/s]: else it would swing past."""
-SKEW = 0.1
-"""What no rotation's RᵀR is farther from 1 than."""
-PLAIN = 0.5
-"""Two points that are no nearer to where their own motion led than by this times their distance from where the other one's did may have been exchanged."""
 EVERY, SELDOM = 4, 2
 """In each so-manieth frame one pair is asked about, for which something speaks; where nothing does, so many times more seldom."""
 LISTENED = 2.0
@@ -56,8 +27,6 @@ CALM = 0.3
 MARGIN, MOST, ENOUGH = 0.2, 2.0, 4.0
 """The logarithm of how many times as much energy this assignment has as the other one speaks for that as far as it is beyond the first of these; a frame
 counts up to the second; and the third has to come together. In walks, with 5 cm of noise, too, not more than 1 ever does for a wrong one."""
-_ROUGH = 0.2  # s, half-life of the roughness that is told from places
-_RATE = 0.03  # s, half-life of the velocity that is told from places
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,23 +74,24 @@ class Gate:
         Two that leapt at once, farther than noise takes them, each to where the other one was going, have only exchanged their numbers. Closer
         to each other than `SUDDEN` they can't be told apart.
         """
-        seen, order = seen[self.order], self.order.copy()
-        ahead = self.raw + self.rate * dt
+        seen = seen[self.order]
+        if leapt_kernel(seen, dt, self.raw, self.rate, self.steady, self.rough) < 2:
+            return self, seen
+        order, ahead = self.order.copy(), self.raw + self.rate * dt
         apart = _length(seen[:, None] - ahead)  # of each seen one from where each one was going
         leapt = np.flatnonzero((self.steady > 0.0) & (np.diagonal(apart) > self.usual))
         for k, i in enumerate(leapt):
             for j in leapt[k + 1:]:
                 if apart[i, j] <= SUDDEN and apart[j, i] <= SUDDEN:
                     seen[[i, j]], order[[i, j]] = seen[[j, i]], order[[j, i]]
-        return replace(self, order=order), seen
+        return but(self, order=order), seen
 
     def confusable(self, pairs: np.ndarray, seen: np.ndarray, dt: float) -> np.ndarray:
         """Which pairs (P, 2) of points could have been exchanged (P,) bool when they came to seen (n, 3), dt [s] after the last ones: where both went
         on hardly nearer to where their own motion led than to where the other's did, or neither was followed for longer than a blink."""
-        a, b = pairs.T
-        ahead, lost = self.raw + self.rate * dt, ~self.trusted & ((self.gone > 0.0) | (self.steady > 0.0))
-        own, others = (np.square(seen - ahead).sum(-1), np.square(seen[a] - ahead[b]).sum(-1) + np.square(seen[b] - ahead[a]).sum(-1))
-        return (own[a] + own[b] >= PLAIN ** 2 * others) | (lost[a] & lost[b])
+        out = np.empty(len(pairs), bool)
+        confusable_kernel(pairs, seen, dt, self.raw, self.rate, self.gone, self.steady, self.trusted, out)
+        return out
 
     def exchanged(self, i: int, j: int) -> Gate:
         """The gate for which two points have had each other's number for some time."""
@@ -136,54 +106,26 @@ class Gate:
         seen: (n, 3) [m] as they come, NaN where lost. body: (n, 3) [m] where the body would have them now.
         motion: (n, 3) [m/s] how it moves them.
         """
-        there = np.all(np.isfinite(seen), axis=-1)
-        seen = np.where(there[:, None], seen, np.nan)
-        known = np.isfinite(self.raw).all(-1)
-        since = self.gone + dt
-        moved, ahead = seen - self.raw, self.raw + self.smooth * dt
-        away = np.minimum(_length(moved - self.rate * dt), _length(seen - ahead))
-        usual = self.usual
-        limit = usual + np.where(self.steady > 0.0, SWERVE * self.gone, FASTEST * since)
-        goes_on = there & known & (away <= limit)
-        blinks = ~there & known & (since <= BLINK)
-        steady = np.where(blinks, self.steady, np.where(goes_on, self.steady + since, 0.0))
-        rate = np.where(blinks[:, None], self.smooth, 0.0)
-        rate = np.where(goes_on[:, None], (moved + self.rate * self.gone[:, None]) / since[:, None], rate)
-        heard = np.where(there & known, damp(self.heard, 1.0, _ROUGH, dt), self.heard)
-        rough = np.where(there & known, damp(self.rough * self.heard, np.minimum(away, NEAR), _ROUGH, dt) / np.maximum(heard, 1e-9), self.rough)
-        smooth = np.where((self.steady > 0.0)[:, None], damp(self.smooth, rate, _RATE, dt), rate)
-        place = np.where(blinks[:, None], ahead, seen)
-        gap = _length(place - body)
-        believed = (gap <= REACH) & (blinks & self.trusted
-                                     | goes_on & (self.trusted | (gap <= NEAR + STRAY * lost) | (steady >= PATIENCE)))
-        back = (believed & there & ~(self.trusted & (away <= usual)))[:, None]
-        offset, slip = settle(self.offset, self.slip, EASE, dt)
-        back = back & (lost == 0.0)
-        offset = np.where(believed[:, None], np.where(back, body - seen, offset), 0.0)
-        slip = np.where(believed[:, None], np.where(back, _at_most(motion - smooth, SLIP), slip), 0.0)
-        swerve = np.where((goes_on & (self.gone == 0.0))[:, None], moved - self.rate * dt, 0.0)
-        after = replace(self, raw=place, rate=rate, smooth=smooth, swerve=swerve, swerved=self.swerve, gone=np.where(there, 0.0, since), steady=steady, rough=rough,
-                        heard=heard, trusted=believed, offset=offset, slip=slip)
-        return after, np.where(believed[:, None], place + offset, np.nan)
+        after = but(self, raw=self.raw.copy(), rate=self.rate.copy(), smooth=self.smooth.copy(), swerve=np.empty_like(self.swerve), swerved=self.swerve,
+                    gone=self.gone.copy(), steady=self.steady.copy(), rough=self.rough.copy(), heard=self.heard.copy(), trusted=self.trusted.copy(),
+                    offset=self.offset.copy(), slip=self.slip.copy())
+        goals = np.empty_like(after.raw)
+        admit_kernel(seen, body, motion, dt, lost, after.raw, after.rate, after.smooth, after.swerve, after.gone, after.steady, after.rough, after.heard,
+                     after.trusted, after.offset, after.slip, goals)
+        return after, goals
 
     @property
     def swerves(self) -> float:
         """How far [m] a point that is followed got from where its motion led, in both of the last frames and the same way, as none does that only jumped, and farther than noise takes it. Those that
         still come to where they are seen tell nothing."""
-        once = np.minimum(_length(self.swerve), _length(self.swerved)) * (np.sum(self.swerve * self.swerved, -1) > 0.0)
-        return float((once - NOISY * self.rough)[self.trusted & self.seen & (_length(self.offset) <= THERE)].max(initial=0.0))
+        return swerves_kernel(self.raw, self.swerve, self.swerved, self.gone, self.rough, self.trusted, self.offset)
 
     def told(self, turns: np.ndarray, dt: float) -> tuple[Gate, np.ndarray]:
         """How points are turned (n, 3, 3) dt [s] after the last ones, under their own numbers, NaN where that is not known, and
         the gate that knows it. A turn that is not told goes on for `BLINK`."""
-        there, known = (np.asarray(np.isfinite(some).all((-1, -2))) for some in (turns, self.turned))
-        since = self.untold + dt
-        blinks, goes_on = known & ~there & (since <= BLINK), known & there
-        old, new = (np.where(which[:, None, None], some, np.eye(3)) for which, some in ((known, self.turned), (there, turns)))
-        found = (log(np.swapaxes(old, -1, -2) @ new) + self.spin * self.untold[:, None]) / since[:, None]
-        spin = np.where(goes_on[:, None], damp(self.spin, found, _RATE, dt), np.where(blinks[:, None], self.spin, 0.0))
-        turned = np.where(blinks[:, None, None], old @ exp(self.spin * dt), np.where(there[:, None, None], new, np.nan))
-        return replace(self, turned=turned, spin=spin, untold=np.where(there, 0.0, since)), turned
+        after = but(self, turned=self.turned.copy(), spin=self.spin.copy(), untold=self.untold.copy())
+        told_kernel(turns, dt, after.turned, after.spin, after.untold)
+        return after, after.turned
 
     @property
     def usual(self) -> np.ndarray:
@@ -198,8 +140,10 @@ class Gate:
     def at_odds(self, dt: float) -> bool:
         """Whether all that is seen, two points or more, has moved like a body for two frames of dt [s], but not like this one:
         then the body is wrong, and not the points."""
+        if self.trusted.any():
+            return False
         there = self.seen
-        return int(there.sum()) >= 2 and not self.trusted.any() and bool((self.steady[there] > 1.5 * dt).all())
+        return int(there.sum()) >= 2 and bool((self.steady[there] > 1.5 * dt).all())
 
     @property
     def doubtful(self) -> bool:
@@ -226,12 +170,14 @@ class Doubts:
 
     def heard(self, confusable: np.ndarray, dt: float) -> Doubts:
         """The doubts dt [s] later. confusable: (P,) bool, which pairs could have been exchanged meanwhile."""
+        if not (confusable.any() or self.left.any()):
+            return self  # nothing is asked about, and nothing speaks for anything
         left = np.where(confusable, LISTENED, np.maximum(self.left - dt, 0.0))
-        return replace(self, left=left, evidence=np.where(left > 0.0, self.evidence, 0.0))
+        return but(self, left=left, evidence=np.where(left > 0.0, self.evidence, 0.0))
 
     def asked(self) -> tuple[Doubts, int | None]:
         """The doubts a frame later, and the number of the pair that is asked about now."""
-        after = replace(self, frames=self.frames + 1)
+        after = but(self, frames=self.frames + 1)
         if after.frames % EVERY:
             return after, None
         strongest = int(np.argmax(self.evidence)) if len(self.pairs) else 0
@@ -246,13 +192,13 @@ class Doubts:
         gain = math.log((now + CALM) / (other + CALM))
         evidence = self.evidence.copy()
         evidence[pair] = max(0.0, evidence[pair] + float(np.clip(gain - MARGIN, -MOST, MOST)))
-        return replace(self, evidence=evidence), bool(evidence[pair] >= ENOUGH)
+        return but(self, evidence=evidence), bool(evidence[pair] >= ENOUGH)
 
     def rather(self, pair: int, other: int) -> Doubts:
         """The doubts after it was found that another pair's exchange explains more than that of the one that was about to be taken."""
         evidence = self.evidence.copy()
         evidence[pair], evidence[other] = 0.0, max(evidence[other], 0.5 * ENOUGH)
-        return replace(self, evidence=evidence)
+        return but(self, evidence=evidence)
 
     @property
     def open(self) -> np.ndarray:
@@ -262,15 +208,10 @@ class Doubts:
 
 def rotations(turns: np.ndarray) -> np.ndarray:
     """Turns (n, 3, 3) as they were told, NaN where they are no rotations: mirrored, or by more than `SKEW` not orthonormal."""
-    known = np.isfinite(turns).all((-1, -2), keepdims=True)
-    some = np.where(known, np.clip(turns, -9.0, 9.0), np.eye(3))
-    skew = np.abs(np.swapaxes(some, -1, -2) @ some - np.eye(3)).max((-1, -2), keepdims=True)
-    return np.where(known & (skew <= SKEW) & (np.linalg.det(some)[:, None, None] > 0.5), turns, np.nan)
+    out = np.empty_like(turns)
+    sound_kernel(turns, out)
+    return out
 
 
 def _length(vectors):
     return np.linalg.norm(vectors, axis=-1)
-
-
-def _at_most(vectors, length):
-    return vectors * np.minimum(1.0, length / np.maximum(_length(vectors), 1e-9))[:, None]

@@ -43,6 +43,11 @@ class Feet:
         return Feet(four, four, np.full((4, 3), np.nan), np.zeros(4, bool), two, two, two, two, np.zeros(2, bool), np.zeros(2))
 
 
+def legs_of(skeleton: Skeleton) -> np.ndarray:
+    """The joints (2, 4) of both legs: hip, knee, foot and toe."""
+    return np.array([[skeleton.index(side + name) for name in ("UpLeg", "Leg", "Foot", "Toe")] for side in ("Left", "Right")])
+
+
 @dataclass(frozen=True, eq=False)
 class Footing:
     """Plants the feet of bodies with a skeleton, on a floor at height 0."""
@@ -66,12 +71,16 @@ class Footing:
 
     def told(self, joints: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Which feet (2,) bool trackers on joints (n,) tell of, that are at points (n, 3), NaN where not seen."""
-        seen = joints[np.isfinite(points).all(-1)]
-        return np.array([np.isin(seen, leg[2:]).any() for leg in self._body[0]])
+        seen = set(joints[np.isfinite(points).all(-1)].tolist())
+        return np.array([not seen.isdisjoint(leg) for leg in self._feet])
+
+    @cached_property
+    def _feet(self):
+        """Foot and toe joint of both feet."""
+        return self._body[0][:, 2:].tolist()
 
     @cached_property
     def _body(self):
         """Joints of both legs (2, 4), bones, parents, where the heel is in the foot, how high soles stand."""
-        legs = np.array([[self.skeleton.index(side + name) for name in ("UpLeg", "Leg", "Foot", "Toe")] for side in ("Left", "Right")])
-        return (legs, np.array(self.skeleton.offsets, float), np.array(self.skeleton.parents), np.array(heel_offset(self.skeleton), float),
+        return (legs_of(self.skeleton), np.array(self.skeleton.offsets, float), np.array(self.skeleton.parents), np.array(heel_offset(self.skeleton), float),
                 float(contact_height(self.skeleton)))

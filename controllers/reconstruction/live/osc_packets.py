@@ -9,6 +9,7 @@ Z first, then X, then Y: Unity's order), alone or in bundles. SlimeVR sends eith
 from __future__ import annotations
 
 import logging
+import math
 import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -79,9 +80,9 @@ def understood(packet: bytes) -> Seen | None:
             continue
         if reading is None:
             return None
-        before = found.get(reading.serial, reading)
-        found[reading.serial] = reading._replace(place=np.where(np.isnan(reading.place), before.place, reading.place),
-                                                 turn=np.where(np.isnan(reading.turn), before.turn, reading.turn))
+        before = found.get(reading.serial)
+        found[reading.serial] = reading if before is None else reading._replace(
+            place=np.where(np.isnan(reading.place), before.place, reading.place), turn=np.where(np.isnan(reading.turn), before.turn, reading.turn))
     return Seen(list(found.values()), sent)
 
 
@@ -100,7 +101,7 @@ def _parts(packet: bytes) -> int:
     return count
 
 
-def _tracker(serial: Any, kind: str, place: Sequence[Any], turn: Rotation | None) -> Reading | None:
+def _tracker(serial: Any, kind: str, place: Sequence[Any], turn: np.ndarray | None) -> Reading | None:
     """A tracker of a place (3,), nothing where it is not said, and a turn in Unity's axes; None if it can't be one."""
     if not isinstance(serial, str) or len(serial) > LONGEST_NAME:
         return None
@@ -109,20 +110,20 @@ def _tracker(serial: Any, kind: str, place: Sequence[Any], turn: Rotation | None
         if not _numbers(place, 3, 1e3):
             return None
         where = np.array(place, float) * FROM_UNITY
-    return Reading(serial, kind, where, np.full(4, np.nan) if turn is None else turn.as_quat() * MIRRORED)
+    return Reading(serial, kind, where, np.full(4, np.nan) if turn is None else turn * MIRRORED)
 
 
-def _turn(values: Sequence[Any]) -> Rotation | None:
-    """The turn of a quaternion; None of none, as some send for a tracker that knows no turn."""
-    if not _numbers(values, 4, 1.1) or not 0.9 < float(np.linalg.norm(values)) < 1.1:
+def _turn(values: Sequence[Any]) -> np.ndarray | None:
+    """The unit quaternion (4,) of one; None of none, as some send for a tracker that knows no turn."""
+    if not _numbers(values, 4, 1.1) or not 0.9 < (size := math.hypot(*values)) < 1.1:
         return None
-    return Rotation.from_quat(values)
+    return np.array(values, float) / size
 
 
-def _euler(values: Sequence[Any]) -> Rotation:
-    """The turn of Unity's Euler angles [°]: about Z, then X, then Y."""
+def _euler(values: Sequence[Any]) -> np.ndarray:
+    """The unit quaternion (4,) of Unity's Euler angles [°]: about Z, then X, then Y."""
     x, y, z = values
-    return Rotation.from_euler("YXZ", [y, x, z], degrees=True)
+    return Rotation.from_euler("YXZ", [y, x, z], degrees=True).as_quat()
 
 
 def _numbers(values: Sequence[Any], count: int, most: float) -> bool:

@@ -232,4 +232,4 @@ def slerp(start: np.ndarray, end: np.ndarray, share: float) -> np.ndarray:
     if angle < 1e-6:
         return end
     turn = (math.sin((1.0 - share) * angle) * start + math.sin(share * angle) * end) / math.sin(angle)
-    return turn / np.linalg.norm(turn)
+    return turn / math.sqrt(turn @ turn)

@@ -6,13 +6,14 @@ body is, /VMC/Ext/T. Turns are local and from the T-pose; axes are Unity's, left
 
 from __future__ import annotations
 
+import math
 import re
 import socket
+import struct
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
-from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
-from pythonosc.osc_message_builder import OscMessageBuilder
 from scipy.spatial.transform import Rotation
 
 from ...body import Pose, Skeleton
@@ -51,24 +52,32 @@ def bundle(skeleton: Skeleton, pose: Pose, ground: np.ndarray, time: float, sure
     sender. sure: 0 … 1 how sure the body is.
     """
     x, z, heading = (float(v) for v in ground)
-    turns = Rotation.from_matrix(np.asarray(pose.rotations, float))
-    about = Rotation.from_rotvec([0.0, heading, 0.0])
-    quaternions = turns.as_quat()
-    quaternions[0] = (about.inv() * turns[0]).as_quat()
-    places = np.array(skeleton.offsets, float)
-    places[0] = about.inv().apply(np.asarray(pose.root, float) - [x, 0.0, z])
-    builder = OscBundleBuilder(IMMEDIATELY)
-    for path, *values in (("/VMC/Ext/OK", 1),
-                          ("/VMC/Ext/Root/Pos", "root", *(np.array([x, 0.0, z]) * FROM_UNITY), *(about.as_quat() * MIRRORED)),
-                          *(("/VMC/Ext/Bone/Pos", BONES[name], *(place * FROM_UNITY), *(quaternion * MIRRORED))
-                            for name, place, quaternion in zip(skeleton.names, places, quaternions) if name in BONES),
-                          ("/VMC/Ext/Blend/Val", SURE, float(np.clip(sure, 0.0, 1.0))), ("/VMC/Ext/Blend/Apply",),
-                          ("/VMC/Ext/T", float(time))):
-        message = OscMessageBuilder(path)
-        for value in values:
-            message.add_arg(float(value) if isinstance(value, float) else value)
-        builder.add_content(message.build())
-    return builder.build().dgram
+    said = np.empty((1 + len(skeleton), 7))  # of the root and of all joints: place and turn
+    said[0] = x, 0.0, z, 0.0, math.sin(0.5 * heading), 0.0, math.cos(0.5 * heading)
+    said[1:, :3], said[1:, 3:] = skeleton.offsets, Rotation.from_matrix(np.asarray(pose.rotations, float)).as_quat()
+    hips, (c, s), (half, sine) = said[1], (math.cos(heading), math.sin(heading)), (said[0, 6], said[0, 4])
+    along, up, across = np.asarray(pose.root, float) - said[0, :3]
+    hips[:3] = c * along - s * across, up, s * along + c * across
+    i, j, k, w = hips[3:]
+    hips[3:] = half * i - sine * k, half * j - sine * w, half * k + sine * i, half * w + sine * j
+    said[:, :3] *= FROM_UNITY
+    said[:, 3:] *= MIRRORED
+    root, *bones = said.astype(">f4")
+    return b"".join([_HEAD, _begun("/VMC/Ext/Root/Pos", "root"), root.tobytes(),
+                     *(_begun("/VMC/Ext/Bone/Pos", BONES[name]) + bone.tobytes() for name, bone in zip(skeleton.names, bones) if name in BONES),
+                     _begun("/VMC/Ext/Blend/Val", SURE, "f"), struct.pack(">f", min(max(sure, 0.0), 1.0)), _begun("/VMC/Ext/Blend/Apply", numbers=""),
+                     _begun("/VMC/Ext/T", numbers="f"), struct.pack(">f", time)])
+
+
+@lru_cache(64)
+def _begun(path: str, name: str = "", numbers: str = "fffffff") -> bytes:
+    """A message of a bundle as far as its numbers, of these kinds: its size, where it goes, kinds, and its name if it has one (OSC 1.0)."""
+    head = b"".join(text.encode() + b"\0" * (4 - len(text) % 4) for text in (path, "," + "s" * bool(name) + numbers, name) if text)
+    return struct.pack(">i", len(head) + 4 * len(numbers)) + head
+
+
+_HEAD = b"#bundle\0" + struct.pack(">q", 1) + _begun("/VMC/Ext/OK", numbers="i") + struct.pack(">i", 1)
+"""A bundle that counts at once, and its first message: the body is there."""
 
 
 class Sender:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from ...body import Pose, wrap, yaw
+from ...body import Pose, wrap
+from ...compiled import kernel
 from ..pose_vector import FORWARD, LEFTWARD, YAW_RATE
 from ..regression import SPAN, posed
 
@@ -29,6 +32,16 @@ def shown_as(pose: np.ndarray) -> Pose:
     return posed(pose, pose[GROUND])
 
 
-def turned_on(turns: np.ndarray, ground: np.ndarray) -> np.ndarray:
-    """Turns (n, 3, 3) as seen from ground (3,)."""
-    return yaw(-ground[2]) @ turns
+@kernel
+def goals_kernel(points, turns, ground, firm, stiff, goals, spun, hold, keep):
+    """Fills goals (n, 3) and spun (n, 3, 3): points and turns as seen from ground (3,); and hold, keep (n,): firm and stiff where they are known, else 0."""
+    c, s = math.cos(ground[2]), math.sin(ground[2])
+    for n in range(len(points)):
+        x, z = points[n, 0] - ground[0], points[n, 2] - ground[1]
+        goals[n, 0], goals[n, 1], goals[n, 2] = c * x - s * z, points[n, 1], c * z + s * x
+        for k in range(3):
+            spun[n, 0, k] = c * turns[n, 0, k] - s * turns[n, 2, k]
+            spun[n, 1, k] = turns[n, 1, k]
+            spun[n, 2, k] = s * turns[n, 0, k] + c * turns[n, 2, k]
+        hold[n] = firm if np.isfinite(points[n]).all() else 0.0
+        keep[n] = stiff if np.isfinite(turns[n]).all() else 0.0

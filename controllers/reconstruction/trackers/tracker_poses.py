@@ -8,18 +8,19 @@ legs alone and in what is shown alone: who is solved with them is carried along 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ...body import Pose, Skeleton, forward_kinematics
+from ...contract import but
 from ..control_points import ControlPoints
 from ..footing import Feet, Footing
 from ..ours import Motion, noise, placed
 from ..pose_vector import ANGLES, REFERENCE, SKELETON, WIDTH, YAW_RATE, decode
-from ..regression import FAR, FLOOR, SPAN, on_ground, seen_kernel
-from .ground import GROUND, less, nothing, shown_as, turned_on
+from ..regression import FAR, FLOOR, SPAN, seen_kernel
+from .ground import GROUND, goals_kernel, less, nothing, shown_as
 from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
@@ -117,20 +118,20 @@ class Trackers:
             if filtered is None:
                 filtered = Motion(np.where(np.isfinite(points), points, 0.0), np.zeros_like(points), _LITTLE)
             fresh = ~np.isfinite(memory.recent[-1]) & np.isfinite(points)
-            filtered = replace(filtered, place=np.where(fresh, points - filtered.change, filtered.place))
+            filtered = but(filtered, place=np.where(fresh, points - filtered.change, filtered.place))
             level = noise(recent)
             filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
             points = np.where(np.isfinite(points), filtered.place, np.nan)
         after = self._followed(memory, points, turns, BLUR * level)
         found = after.pose
         if not self.steady:
-            return self._planted(replace(after, recent=recent), found, points)
+            return self._planted(but(after, recent=recent), found, points)
         if np.abs(less(found, memory.shown.place)).max() > _JUMP:
             shown = Motion(found, np.zeros(WIDTH), _LITTLE)
         else:
             near = memory.shown.place + less(found, memory.shown.place)
             shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
-        return self._planted(replace(after, recent=recent, points=filtered, shown=shown), shown.place, points)
+        return self._planted(but(after, recent=recent, points=filtered, shown=shown), shown.place, points)
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
              ) -> tuple[np.ndarray, np.ndarray]:
@@ -171,7 +172,7 @@ class Trackers:
         points, turns = np.full((len(known), 3), np.nan), np.full((len(known), 3, 3), np.nan)
         points[known], turns[known] = memory.places[0, self._slots[known]], memory.turns[0, self._slots[known]]
         points[self.controls.offsets.any(-1)] = np.nan
-        return self._solved(replace(memory, off=np.zeros(WIDTH)), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
+        return self._solved(but(memory, off=np.zeros(WIDTH)), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
 
     def exchanged(self, memory: Remembered, i: int, j: int) -> Remembered:
         """The memory in which two trackers had each other's number all the time; the same one where they have no slots."""
@@ -180,8 +181,8 @@ class Trackers:
             return memory
         slots, order = np.arange(len(SLOTS)), np.arange(len(self.controls))
         slots[[a, b]], order[[i, j]] = (b, a), (j, i)
-        points = memory.points and replace(memory.points, place=memory.points.place[order], change=memory.points.change[order])
-        return replace(memory, places=memory.places[:, slots], turns=memory.turns[:, slots], turning=memory.turning[order],
+        points = memory.points and but(memory.points, place=memory.points.place[order], change=memory.points.change[order])
+        return but(memory, places=memory.places[:, slots], turns=memory.turns[:, slots], turning=memory.turning[order],
                        recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH))
 
     def _followed(self, memory, points, turns, blur):
@@ -190,28 +191,23 @@ class Trackers:
             told = self._told(memory, points, turns)
             pose = memory.pose + RESTING * less(memory.pose, memory.before)
             pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
-            return replace(told, pose=pose, before=memory.pose, standing=_NONE)
+            return but(told, pose=pose, before=memory.pose, standing=_NONE)
         return self._solved(self._told(memory, points, turns), points, turns, blur)[0]
 
     def _told(self, memory, points, turns):
         """The memory with what trackers say now."""
         place, turn = np.full((len(SLOTS), 3), np.nan), np.full((len(SLOTS), 3, 3), np.nan)
         known = np.isfinite(turns).all((-1, -2))
+        place[self._slots[self._plain]] = points[self._plain]
+        turning = known & (self._slots >= 0)
+        turn[self._slots[turning]] = turns[turning]
         last = None
-        for n, slot in enumerate(self._slots):
-            if slot < 0:
-                continue
-            beside = self.controls.offsets[n]
-            if beside.any():
-                if not known[n] and last is None:
-                    last = self._joints(memory.pose)[1]
-                held = turns[n] if known[n] or last is None else last[self.controls.joints[n]]
-                place[slot] = points[n] - held @ beside
-            else:
-                place[slot] = points[n]
-            if known[n]:
-                turn[slot] = turns[n]
-        return replace(memory, places=np.concatenate([place[None], memory.places[:-1]]),
+        for n in self._beside:
+            if not known[n] and last is None:
+                last = self._joints(memory.pose)[1]
+            held = turns[n] if known[n] or last is None else last[self.controls.joints[n]]
+            place[self._slots[n]] = points[n] - held @ self.controls.offsets[n]
+        return but(memory, places=np.concatenate([place[None], memory.places[:-1]]),
                        turns=np.concatenate([turn[None], memory.turns[:-1]]), turning=memory.turning | known)
 
     def _solved(self, memory, points, turns, blur=0.0):
@@ -223,22 +219,21 @@ class Trackers:
         view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
         mean = expected + FADING * memory.off
-        goals, hold, keep = on_ground(points, ground), np.zeros(len(points)), np.zeros(len(points))
-        hold[np.isfinite(points).all(-1)] = 1.0 / (EXACT_PLACE ** 2 + blur ** 2)
-        keep[np.isfinite(turns).all((-1, -2))] = EXACT_TURN ** -2.0
+        goals, spun, hold, keep = np.empty_like(points), np.empty_like(turns), np.empty(len(points)), np.empty(len(points))
+        goals_kernel(points, turns, ground, 1.0 / (EXACT_PLACE ** 2 + blur ** 2), EXACT_TURN ** -2.0, goals, spun, hold, keep)
         frame, pose = np.empty(WIDTH), np.empty(WIDTH)
         parents, offsets, joints, beside = self._body
         energy = fit_kernel(mean, self._precision(here[0].tobytes(), turned[0].tobytes()), mean, self.network.lower, self.network.upper, parents, offsets,
-                            REFERENCE, FIRST, joints, beside, goals, hold, turned_on(turns, ground), keep, STEPS, TOLERANCE, frame,
+                            REFERENCE, FIRST, joints, beside, goals, hold, spun, keep, STEPS, TOLERANCE, frame,
                             np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         seen_kernel(frame, ground, _WORLD, pose)
-        return replace(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing), energy
+        return but(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing), energy
 
     def _planted(self, memory, shown, points):
         """The memory with feet as they stand, and the pose to show. shown: (D,) the placed pose without. points: (n, 3) of trackers, NaN where not seen."""
         told = self._footing.told(self.controls.joints, points)
         feet, pose = self._footing.step(memory.feet, shown_as(shown), memory.standing, told, self.dt)
-        return replace(memory, feet=feet), pose
+        return but(memory, feet=feet), pose
 
     def _hearing(self, turning):
         """Which slots (S,) have a tracker that turns."""
@@ -259,6 +254,16 @@ class Trackers:
             if len(slot) and slot[0] not in found:
                 found[n] = slot[0]
         return found
+
+    @cached_property
+    def _plain(self) -> np.ndarray:
+        """The trackers that have a slot and are in their joints."""
+        return np.flatnonzero((self._slots >= 0) & ~self.controls.offsets.any(-1))
+
+    @cached_property
+    def _beside(self) -> list[int]:
+        """The trackers that have a slot and are beside their joints."""
+        return np.flatnonzero((self._slots >= 0) & self.controls.offsets.any(-1)).tolist()
 
     @cached_property
     def _body(self):
