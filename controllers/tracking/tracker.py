@@ -16,7 +16,7 @@ from .cameras import Lens
 from .pose import (SETTINGS, Evidence, Fit, Glimpse, SolverSettings, calmed, carried, in_hindsight, judged, observed, overlap, penalty_of, predicted,
                    solve)
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
-from .silhouettes import Surface, View, redrawn, rendered, skinned
+from .silhouettes import Surface, View, hidden, is_mask, own, redrawn, rendered, skinned
 from .together import together
 from .twists import Configuration, posed
 
@@ -80,8 +80,8 @@ class Tracker:
         return Track(now, before or now, Evidence.fresh(len(self.lenses)))
 
     def step(self, track: Track, seen: Sequence[np.ndarray | None]) -> Track:
-        """The track after one more frame. seen: of each camera a mask (H, W) bool, or a picture (H, W, 3) or (H, W) uint8;
-        None of one whose frame was dropped.
+        """The track after one more frame. seen: of each camera a mask (H, W) bool, or int8 where others are seen, too (`silhouettes.masks`),
+        or a picture (H, W, 3) or (H, W) uint8; None of one whose frame was dropped.
 
         ValueError for another number of them, or one of another size than its camera's pictures.
         """
@@ -89,7 +89,7 @@ class Tracker:
             raise ValueError(f"{len(self.lenses)} cameras need as many masks or pictures, got {len(seen)}")
         chosen, chain = self.settings, self.surface.chain
         there = np.array([one is not None for one in seen])
-        shown = np.array([one is not None and one.dtype != bool for one in seen])
+        shown = np.array([one is not None and not is_mask(one) for one in seen])
         target = predicted(chain, track.now, track.before)
         start = target if chosen.start == "prediction" else track.now
         rough = ROUGH if track.fit is None else min(max(track.fit.residual, CLEANEST), ROUGHEST)
@@ -99,6 +99,7 @@ class Tracker:
             penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
             if chosen.carriage:
                 penalty = carried(chain, penalty, chosen.carriage * (rough / ROUGH) ** 2)
+        hiding = [hidden(one) for one in seen]
         evidence, believed, found, drawn = track.evidence, there, None, None
         for k in range(chosen.rounds if shown.any() else 1):
             found, drawn = self._found(seen, start, found, drawn)
@@ -109,7 +110,7 @@ class Tracker:
                 if chosen.gate and first:
                     evidence, believed = judged(evidence, np.where(shown, agreements, overlaps))
                 return believed & there
-            views = together(observed, self.lenses, [one.mask for one in found])
+            views = together(observed, self.lenses, [one.mask for one in found], hiding)
             fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver, drawn)
             start = fit.where
         doubted = there & ~fit.believed
@@ -136,18 +137,18 @@ class Tracker:
         """
         chain, now = self.surface.chain, track.now
         starts = [target, calmed(chain, now, target, 0.0)] if there.any() and track.evidence.doubted.any() else [target]
-        usual = evidence.usual * np.where(shown, COLOURED, EXPLAINED)
+        usual, hiding = evidence.usual * np.where(shown, COLOURED, EXPLAINED), [hidden(one) for one in seen]
         for where in starts:
             found, drawn, fit = None, None, None
             for _ in range(2):
                 found, drawn = self._found(seen, where, found, drawn)
-                views = together(observed, self.lenses, [one.mask for one in found])
+                views = together(observed, self.lenses, [one.mask for one in found], hiding)
                 fit = solve(self.surface, views, where, None, lambda _: there, self.settings.solver, drawn)
                 where = fit.where
             found, _ = self._found(seen, where, found, drawn)
             vertices = skinned(self.surface, *posed(chain, where)[:2])
-            overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask)
-                                 for lens, one, colours in zip(self.lenses, found, shown)])
+            overlaps = np.array([one.agreement if colours else overlap(one.mask, rendered(lens, vertices, self.surface.triangles).mask, others)
+                                 for lens, one, colours, others in zip(self.lenses, found, shown, hiding)])
             if fit is not None and there.any() and (overlaps[there] >= usual[there]).all():
                 return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted))
         return None
@@ -163,14 +164,14 @@ class Tracker:
         before: what an earlier turn found in the same pictures. room: views to draw over.
         """
         many = len(seen)
-        if all(one is None or one.dtype == bool for one in seen):
-            return [Segmented(np.zeros(lens.size[::-1], bool) if one is None else one, 0.0) for lens, one in zip(self.lenses, seen)], None
+        if all(one is None or is_mask(one) for one in seen):
+            return [Segmented(np.zeros(lens.size[::-1], bool) if one is None else own(one), 0.0) for lens, one in zip(self.lenses, seen)], None
         vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
 
         def act(lens: Lens, one: np.ndarray | None, plate: np.ndarray | None, old: Segmented | None, kept: View | None
                 ) -> tuple[Segmented, View | None]:
-            if one is None or one.dtype == bool:
-                return Segmented(np.zeros(lens.size[::-1], bool) if one is None else one, 0.0), None
+            if one is None or is_mask(one):
+                return Segmented(np.zeros(lens.size[::-1], bool) if one is None else own(one), 0.0), None
             drawn = redrawn(lens, vertices, self.surface.triangles, kept)
             return segmented(one, drawn.mask, plate, self.settings.segmentation, None if old is None else old.cut), drawn
         parts = together(act, self.lenses, seen, self.plates or (None,) * many, before or (None,) * many, room or (None,) * many)

@@ -27,8 +27,10 @@ class Evidence:
         return Evidence(np.full(cameras, 0.8), np.zeros(cameras, int))
 
 
-def overlap(one: np.ndarray, other: np.ndarray) -> float:
-    """The intersection of two masks over their union; 0 where both are empty."""
+def overlap(one: np.ndarray, other: np.ndarray, hidden: np.ndarray | None = None) -> float:
+    """The intersection of two masks over their union, but for what is hidden; 0 where both are empty."""
+    if hidden is not None:
+        one, other = one & ~hidden, other & ~hidden
     union = np.count_nonzero(one | other)
     return np.count_nonzero(one & other) / union if union else 0.0
 
