@@ -45,7 +45,8 @@ AROUND = 4
 @dataclass(frozen=True, eq=False)
 class Fit:
     """where: the pose. residual: mean distance of contours [pixels]. overlaps: (C,) of the starting pose with each mask.
-    believed: (C,) which cameras had a say. matrix (6 + D, 6 + D), vector (6 + D,): what cameras say of a step from there, which
+    NaN where
+    a camera shows nobody, and should not. believed: (C,) which cameras had a say. matrix (6 + D, 6 + D), vector (6 + D,): what cameras say of a step from there, which
     costs ½ δᵀ M δ − vᵀ δ [pixels²] without the penalty; the root's part is a shift of the hips and a turn about them."""
 
     where: Configuration
