@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from .cameras import Lens
-from .pose import (PATIENCE, SETTINGS, Evidence, Fit, Glimpse, SolverSettings, brought, calmed, carried, in_hindsight, judged, observed, overlap, part_way,
+from .pose import (SETTINGS, Evidence, Fit, Glimpse, SolverSettings, brought, calmed, carried, in_hindsight, judged, observed, overlap, part_way,
                    penalty_of, predicted, solve)
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, View, hidden, is_mask, own, redrawn, rendered, skinned
@@ -155,9 +155,10 @@ class Tracker:
         starts = [target, calmed(chain, now, target, 0.0)] if there.any() and track.evidence.doubted.any() else [target]
         usual, hiding = evidence.usual * np.where(shown, COLOURED, EXPLAINED), [hidden(one) for one in seen]
         led = len(starts)
-        if track.unseen >= PATIENCE and not shown.any() and (there_now := brought(
-                self.surface, self.lenses, self.masks(seen, now), hiding, track.sure or now)) is not None:
-            starts.append(there_now)
+        if track.unseen >= GOES_ON * self.rate and not shown.any():
+            if (shifted := brought(self.surface, self.lenses, self.masks(seen, now), hiding, track.sure or now)) is None:
+                return None
+            starts.append(shifted)
         for k, where in enumerate(starts):
             found, drawn, fit = None, None, None
             for _ in range(2):

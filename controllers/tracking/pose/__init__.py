@@ -1,7 +1,7 @@
 """The pose that fits what cameras see: correspondences, Plücker constraints, the penalty on jitter, and the solver of all."""
 
 from .bringing import brought
-from .evidence import PATIENCE, Evidence, judged, overlap
+from .evidence import Evidence, judged, overlap
 from .observed import Observed, observed
 from .penaliser import Penalty, calmed, carried, part_way, penalty_of, penalty_rows, predicted
 from .plucker import constraint, normal_rows, plucker_rows
@@ -9,6 +9,6 @@ from .pose_solver import SETTINGS, Fit, SolverSettings, solve
 from .hindsight import Glimpse, in_hindsight
 
 __all__ = [
-    "PATIENCE", "SETTINGS", "Evidence", "Fit", "Glimpse", "Observed", "Penalty", "SolverSettings", "brought", "calmed", "carried", "constraint", "in_hindsight", "judged", "normal_rows", "observed",
+    "SETTINGS", "Evidence", "Fit", "Glimpse", "Observed", "Penalty", "SolverSettings", "brought", "calmed", "carried", "constraint", "in_hindsight", "judged", "normal_rows", "observed",
     "overlap", "part_way", "penalty_of", "penalty_rows", "plucker_rows", "predicted", "solve",
 ]
