@@ -115,7 +115,7 @@ class Strike:
 class Sighting:
     """What cameras see of somebody in one frame.
 
-    pictures: of each camera a mask (H, W) bool, a picture (H, W, 3) or (H, W) uint8, or None of one whose frame is missing.
+    pictures: of each camera a mask (H, W) bool, or int8 with −1 where others are, a picture (H, W, 3) or (H, W) uint8, or None of one whose frame is missing.
     place: (3,) [m] how far all of them are from where they were calibrated, as they may go along.
     """
 

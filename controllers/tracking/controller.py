@@ -122,4 +122,5 @@ def _shifted(track: Track, by: np.ndarray) -> Track:
         root[:3, 3] += by
         return Configuration(root, one.angles)
     fit = track.fit if track.fit is None else replace(track.fit, where=moved(track.fit.where))
-    return Track(moved(track.now), moved(track.before), track.evidence, fit, tuple(replace(one, where=moved(one.where)) for one in track.recent))
+    sure = track.sure if track.sure is None else moved(track.sure)
+    return replace(track, sure=sure, now=moved(track.now), before=moved(track.before), fit=fit, recent=tuple(replace(one, where=moved(one.where)) for one in track.recent))

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from .pose import overlap
-from .silhouettes import Surface, rendered, shaped, skinned
+from .silhouettes import Surface, hidden, is_mask, own, rendered, shaped, skinned
 from .tracker import Tracker
 from .twists import Configuration, posed
 
@@ -33,7 +33,7 @@ class Shape:
 
 def fitted_shape(tracker: Tracker, now: Configuration, before: Configuration, frames: Sequence[Sequence[np.ndarray | None]]) -> Shape:
     """The size of whoever is tracked, by frames of all cameras, masks or pictures, that follow after the poses `before` and `now`."""
-    shown = any(one is not None and one.dtype != bool for seen in frames for one in seen)
+    shown = any(one is not None and not is_mask(one) for seen in frames for one in seen)
     stature = girth = 1.0
     value = first = 0.0
     for turn in range(ROUNDS[shown]):
@@ -59,7 +59,7 @@ def _masks(tracker: Tracker, now: Configuration, before: Configuration, frames: 
     track, made = tracker.start(now, before), []
     for seen in frames:
         track = tracker.step(track, seen)
-        made.append([None if one is None else mask for one, mask in zip(seen, tracker.masks(seen, track.now))])
+        made.append([one if one is None or is_mask(one) else mask for one, mask in zip(seen, tracker.masks(seen, track.now))])
     return made
 
 
@@ -69,6 +69,6 @@ def _covered(tracker: Tracker, now: Configuration, before: Configuration, frames
     for seen in frames:
         track = tracker.step(track, seen)
         vertices = skinned(tracker.surface, *posed(tracker.surface.chain, track.now)[:2])
-        shares += [overlap(one, rendered(lens, vertices, tracker.surface.triangles).mask)
-                   for lens, one in zip(tracker.lenses, seen) if one is not None and one.any()]
+        shares += [overlap(own(one), rendered(lens, vertices, tracker.surface.triangles).mask, hidden(one))
+                   for lens, one in zip(tracker.lenses, seen) if one is not None and own(one).any()]
     return float(np.mean(shares)) if shares else 0.0

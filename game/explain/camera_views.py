@@ -72,7 +72,7 @@ def camera_views(tracked: Character, world: World) -> np.ndarray | None:
 
 def _filmed(controller: Filmed, filming) -> Iterator[np.ndarray]:
     """Each camera's picture of the last frame that was seen, with the contour that was found in it and the model's."""
-    from gambol.controllers.tracking.silhouettes import contour_of, rendered, skinned
+    from gambol.controllers.tracking.silhouettes import contour_of, is_mask, own, rendered, skinned
     from gambol.controllers.tracking.twists import posed
 
     tracker, where = controller.tracker, filming.watching.track.now
@@ -81,7 +81,7 @@ def _filmed(controller: Filmed, filming) -> Iterator[np.ndarray]:
     for lens, one, found in zip(tracker.lenses, seen, tracker.masks(seen, where)):
         picture = np.full((*lens.size[::-1], 3), GROUND, np.uint8)
         if one is not None:
-            picture[:] = np.where(one[..., None], BODY, GROUND) if one.dtype == bool else one if one.ndim == 3 else one[..., None]
+            picture[:] = np.where(own(one)[..., None], BODY, GROUND) if is_mask(one) else one if one.ndim == 3 else one[..., None]
             _drawn(picture, contour_of(found).pixels, FOUND)
         _drawn(picture, contour_of(rendered(lens, vertices, tracker.surface.triangles).mask).pixels, MODEL)
         yield picture

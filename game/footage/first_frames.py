@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from gambol.controllers.mocap import load, retarget
 from gambol.controllers.tracking import ClickError, Tracker, clicked, exchanged, read_clicks
-from gambol.controllers.tracking.silhouettes import Surface
+from gambol.controllers.tracking.silhouettes import Surface, of_person
 from gambol.controllers.tracking.twists import Configuration, fitted
 
 from ..meshes import surface_of
@@ -85,12 +85,13 @@ def settled(footage: Footage, tracker: Tracker, pose: Configuration, person: int
 
 
 def seen_in(footage: Footage, number: int, person: int = 0, masks: bool = False) -> list[np.ndarray | None]:
-    """What each camera saw in a frame: pictures (H, W, 3) uint8, or masks (H, W) bool of a person; None of what was dropped."""
+    """What each camera saw in a frame: pictures (H, W, 3) uint8, or masks of a person, (H, W) bool, or int8
+    where others are seen, too; None of what was dropped."""
     out: list[np.ndarray | None] = []
     for lens in footage.lenses:
         if masks:
             found = footage.picture(lens.name, "mask", number)
-            out.append(None if found is None else found == person + 1)
+            out.append(None if found is None else of_person(found, person))
             continue
         shown = footage.picture(lens.name, "frame", number)
         if shown is not None and (shown.dtype != np.uint8 or shown.shape[2:] not in ((), (3,))):

@@ -12,6 +12,8 @@ MEMORY = 0.15
 """How much of the usual overlap each frame that is believed replaces."""
 PATIENCE = 6
 """After so many frames that were not believed, they are: then it was us who were wrong."""
+LEAST = 0.2
+"""But not one that overlaps less than this: its contours are another's than those expected near them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,14 +29,18 @@ class Evidence:
         return Evidence(np.full(cameras, 0.8), np.zeros(cameras, int))
 
 
-def overlap(one: np.ndarray, other: np.ndarray) -> float:
-    """The intersection of two masks over their union; 0 where both are empty."""
+def overlap(one: np.ndarray, other: np.ndarray, hidden: np.ndarray | None = None) -> float:
+    """The intersection of two masks over their union, but for what is hidden; NaN where both are empty."""
+    if hidden is not None:
+        one, other = one & ~hidden, other & ~hidden
     union = np.count_nonzero(one | other)
-    return np.count_nonzero(one & other) / union if union else 0.0
+    return np.count_nonzero(one & other) / union if union else np.nan
 
 
 def judged(evidence: Evidence, overlaps: np.ndarray) -> tuple[Evidence, np.ndarray]:
-    """What is remembered now, and which cameras (C,) bool are believed in this frame. overlaps: (C,) with the expected."""
-    believed = (overlaps >= SHARE * evidence.usual) | (evidence.doubted >= PATIENCE)
-    usual = np.where(believed, (1 - MEMORY) * evidence.usual + MEMORY * overlaps, evidence.usual)
+    """What is remembered now, and which cameras (C,) bool are believed in this frame. overlaps: (C,) with the expected; NaN of
+    a camera that neither shows somebody nor should, which is not doubted for that."""
+    silent = np.isnan(overlaps)
+    believed = silent | (overlaps >= SHARE * evidence.usual) | (evidence.doubted >= PATIENCE) & (overlaps >= LEAST)
+    usual = np.where(believed & ~silent, (1 - MEMORY) * evidence.usual + MEMORY * overlaps, evidence.usual)
     return Evidence(usual, np.where(believed, 0, evidence.doubted + 1)), believed

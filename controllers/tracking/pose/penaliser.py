@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..twists import Chain, Configuration, inverse, local_turns, retract_kernel, rigid, turn_log_kernel, twist_log_kernel
+from ...body import exp
 from ...body import log as vector
 
 JOINT_ACCELERATION = 250.0
@@ -55,6 +56,14 @@ def calmed(chain: Chain, now: Configuration, target: Configuration, pace: float)
     angles = now.angles.copy()
     retract_kernel(chain.first, chain.count, pace * step, np.eye(4), angles, chain.lower, chain.upper)
     return Configuration(target.root, angles)
+
+
+def part_way(chain: Chain, now: Configuration, target: Configuration, share: float) -> Configuration:
+    """A pose `share` of the way, 0 … 1, from one to another: the hips straight on, everything turned by so much."""
+    root = np.eye(4)
+    root[:3, :3] = exp(share * vector(target.root[:3, :3] @ now.root[:3, :3].T)) @ now.root[:3, :3]
+    root[:3, 3] = now.root[:3, 3] + share * (target.root[:3, 3] - now.root[:3, 3])
+    return Configuration(root, calmed(chain, now, target, share).angles)
 
 
 def penalty_of(chain: Chain, target: Configuration, rate: float, firmness: float = 1.0) -> Penalty:

@@ -45,7 +45,8 @@ AROUND = 4
 @dataclass(frozen=True, eq=False)
 class Fit:
     """where: the pose. residual: mean distance of contours [pixels]. overlaps: (C,) of the starting pose with each mask.
-    believed: (C,) which cameras had a say. matrix (6 + D, 6 + D), vector (6 + D,): what cameras say of a step from there, which
+    NaN where
+    a camera shows nobody, and should not. believed: (C,) which cameras had a say. matrix (6 + D, 6 + D), vector (6 + D,): what cameras say of a step from there, which
     costs ½ δᵀ M δ − vᵀ δ [pixels²] without the penalty; the root's part is a shift of the hips and a turn about them."""
 
     where: Configuration
@@ -96,7 +97,7 @@ def solve(surface: Surface, views: Sequence[Observed], start: Configuration, pen
                 buffers[k] = made = redrawn(view.lens, vertices, surface.triangles, made)
             if first:
                 box = _around(made.box, settings.reach)
-                overlaps[k] = _overlap(view.mask, made, box)
+                overlaps[k] = _overlap(view, made, box)
                 views[k] = view.within(box)
             return _points(view.lens, made, surface, centre)
         drawn = together(draw, range(len(views)))
@@ -136,11 +137,11 @@ def _around(box: tuple[int, int, int, int], reach: float) -> tuple[int, int, int
     return max(left - more, 0), max(top - more, 0), right + more, bottom + more
 
 
-def _overlap(mask: np.ndarray, made: View, box: tuple[int, int, int, int]) -> float:
-    """Of the pixels in a box that are the model's or the mask's, how many are both's."""
+def _overlap(view: Observed, made: View, box: tuple[int, int, int, int]) -> float:
+    """Of the pixels in a box that are the model's or the mask's, how many are both's; others' don't count."""
     left, top, right, bottom = box
-    inside, ours = mask[top:bottom, left:right], made.triangles[top:bottom, left:right] >= 0
-    return overlap(inside, ours)
+    part = np.s_[top:bottom, left:right]
+    return overlap(view.mask[part], made.triangles[part] >= 0, None if view.hidden is None else view.hidden[part])
 
 
 def _points(lens: Lens, made: View, surface: Surface, centre: np.ndarray) -> _Drawn:
@@ -173,7 +174,11 @@ def _sums(surface: Surface, views: Sequence[Observed], drawn: Sequence[_Drawn | 
             _shift(one, view.lens, surface, turned_about, step, centre)
         ours, theirs = one.edge, view.edge
         pairs, squares = np.empty((2 * settings.points + 8, 2), np.int64), np.empty(2 * settings.points + 8)
-        count = closest_kernel(ours, theirs, settings.facing, -(-len(ours) // settings.points), pairs, squares, False, 0)
+        seen = None if view.hidden is None else _in_sight(ours, view.hidden)
+        asking = ours if seen is None else ours[seen]
+        count = closest_kernel(asking, theirs, settings.facing, -(-max(len(asking), 1) // settings.points), pairs, squares, False, 0)
+        if seen is not None:
+            pairs[:count, 0] = seen[pairs[:count, 0]]
         if settings.both:
             count = closest_kernel(theirs, ours, settings.facing, -(-len(theirs) // settings.points), pairs, squares, True, count)
         gate = settings.reach * float(np.ptp(ours[:, :2], axis=0).max()) + 2.0
@@ -184,6 +189,13 @@ def _sums(surface: Surface, views: Sequence[Observed], drawn: Sequence[_Drawn | 
     total, used = sum(part[2] for part in parts), sum(part[3] for part in parts)
     scale = min(settings.effective / max(used, 1), 1.0)
     return np.sum([part[0] for part in parts], 0) * scale, np.sum([part[1] for part in parts], 0) * scale, total / max(used, 1)
+
+
+def _in_sight(edge: np.ndarray, hidden: np.ndarray) -> np.ndarray:
+    """Which of a model's contour (N, 4), pixels and normals, are not where others are (H, W) bool, so that there is a match to look for."""
+    height, width = hidden.shape
+    x, y = np.clip(np.rint(edge[:, :2]).astype(int), 0, (width - 1, height - 1)).T
+    return np.flatnonzero(~hidden[y, x])
 
 
 def _shift(one: _Drawn, lens: Lens, surface: Surface, columns: np.ndarray | None, step: np.ndarray, centre: np.ndarray) -> None:
