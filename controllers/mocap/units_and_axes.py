@@ -57,7 +57,7 @@ def read(path, *, asf=None) -> Clip:
         return read_bvh(path)
     if ending == ".amc":
         return read_amc(path, asf)
-    fail(path, None, f"'{ending}' is no motion file: .bvh and .amc are read")
+    fail(path, None, "is a folder: name a .bvh or .amc file in it" if Path(path).is_dir() else f"'{ending}' is no motion file: .bvh and .amc are read")
 
 
 def load(path, *, up: str | None = None, scale: float | None = None, tpose: int | None = None,

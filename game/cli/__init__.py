@@ -5,6 +5,8 @@ Everything heavy is imported where it is used, so that help comes at once.
 """
 
 import os
+import signal
+import sys
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: threads cost small matrices far more than they save
 
@@ -16,5 +18,6 @@ __all__ = ["app", "database", "filming", "films", "jumps", "learn", "library", "
 
 
 def main() -> None:
-    """The `gambol` command."""
+    """The `gambol` command. Ended from outside it goes as programs do that end by themselves, and what it began ends with it."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     app()

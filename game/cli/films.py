@@ -114,7 +114,7 @@ def _draw(scenes, frames: int, title: str, target, size: tuple[int, int], fps: i
         if isinstance(error, GraphicsError):
             raise Mistake(str(error)) from None
         raise
-    say(f"{target.path}: {frames} frames, {frames / fps:g} s, {size[0]} × {size[1]}")
+    say(f"{target.path}: {frames} frames, {frames / fps:g} s, {target.picture[0]} × {target.picture[1]}")
 
 
 @app.command()

@@ -62,7 +62,7 @@ def recorder(path: str | Path, size: tuple[int, int], fps: int) -> Recorder:
 
 
 class Film:
-    """An H.264 film. size: width, height; odd ones lose their last row or column. fps: frames a second.
+    """An H.264 film. size: width, height; odd ones lose their last row or column, picture is what is left. fps: frames a second.
 
     OutputError where it can't be written: at once if that can be known, else when it happens.
     """
@@ -71,7 +71,7 @@ class Film:
         self.path = output_file(path, ".mp4")
         self.part = self.path.with_stem(f"{self.path.stem}.part")
         self.size, self.fps, self.count = size, fps, 0
-        self._even = size[0] - size[0] % 2, size[1] - size[1] % 2
+        self.picture = size[0] - size[0] % 2, size[1] - size[1] % 2
         self._container: Any = None
 
     def __enter__(self) -> Film:
@@ -83,7 +83,7 @@ class Film:
             self._container = av.open(str(self.part), "w", format="mp4", options={
                 "movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"})
         self._stream = self._container.add_stream("libx264", rate=Fraction(self.fps))
-        self._stream.width, self._stream.height = self._even
+        self._stream.width, self._stream.height = self.picture
         self._stream.pix_fmt = "yuv420p"
         # short groups of pictures and no long look-ahead: a kill costs about a second, no more
         self._stream.gop_size = max(self.fps // 2, 1)
@@ -100,7 +100,7 @@ class Film:
         from av.video.reformatter import ColorRange, Colorspace
 
         _check(frame, self.size)
-        width, height = self._even
+        width, height = self.picture
         pixels = np.ascontiguousarray(frame[:height, :width])
         picture = av.VideoFrame.from_ndarray(pixels, format="rgba" if frame.shape[2] == 4 else "rgb24")
         picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709,
@@ -131,7 +131,8 @@ class Pictures:
 
     def __init__(self, folder: str | Path, size: tuple[int, int]):
         self.path = self.part = output_folder(folder)
-        self.size, self.count = size, 0
+        self.size = self.picture = size
+        self.count = 0
 
     def __enter__(self) -> Pictures:
         return self

@@ -27,6 +27,8 @@ def doubts(scenario: Scenario) -> Iterator[str]:
             if apart < CLOSE and abs(one.enters - other.enters) < 1.0:
                 yield f"actors[{second}].start: {other.name} begins {apart:.2f} m from {one.name}, in actors[{first}]: they stand in each other"
     for number, actor in own:
+        if actor.enters >= scenario.duration:
+            yield f"actors[{number}].enters: {actor.name} enters after {actor.enters:g} s, and the film is over after {scenario.duration:g} s: nobody sees him"
         for k, move in enumerate(actor.moves):
             where = f"actors[{number}].moves[{k}]"
             asked = max([move.speed or 0.0, *(abs(speed[0]) for speed in (move.velocity, move.until) if speed is not None)])

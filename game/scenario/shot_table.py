@@ -60,6 +60,8 @@ class CameraTable(Table):
                 raise ValueError(f"{article} {self.kind} shot needs {name} = {shape}")
         if self.kind in ("fixed", "dolly") and (self.target is None) == (self.look_at is None):
             raise ValueError(f"a {self.kind} shot needs either target = [x, y, z] or look_at = an actor's name")
+        if self.eye is not None and self.eye == self.target:
+            raise ValueError("eye and target are the same place: a camera needs somewhere to look")
         if self.kind == "orbit" and self.target is not None and self.actor is not None:
             raise ValueError("an orbit shot goes round an actor or a target, not both")
         return self

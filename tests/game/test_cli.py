@@ -1,5 +1,6 @@
 """The command line: what it makes, and one clear line for every mistake."""
 
+import signal
 import subprocess
 import sys
 from dataclasses import fields
@@ -205,6 +206,24 @@ def test_an_interrupted_film_is_kept_and_named(short, tmp_path, monkeypatch, err
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display unless told otherwise")
+def test_who_ends_it_from_outside_ends_what_it_began():
+    code = """
+import atexit, time
+from gambol.game import cli
+def app():
+    atexit.register(print, "tidied up", flush=True)
+    print("runs", flush=True)
+    time.sleep(60.0)
+cli.app = app
+cli.main()
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as program:
+        assert program.stdout.readline() == "runs\n"
+        program.terminate()
+        assert program.stdout.read() == "tidied up\n"
+    assert program.returncode == 128 + signal.SIGTERM
+
+
 def test_playing_without_a_display_says_what_to_do(short, monkeypatch):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)

@@ -234,7 +234,8 @@ def test_what_is_hardly_meant_is_told(tmp_path):
                            ("0.5, 2.5]", "-1, 1]", "actors[0].moves[1].jump_to: (0, -1, 1) is 1.00 m below"),
                            ("0.5, 2.5]", "1.2, 2.5]", "actors[0].moves[1].jump_to: (0, 1.2, 2.5) is 0.70 m above"),
                            ("start = [1, 0, 0]", "start = [0.1, 0, 0]", "actors[1].start: B begins 0.10 m from A"),
-                           ("start = [1, 0, 0]", "start = [0.1, 0, 0]\nenters = 4", None)):
+                           ("start = [1, 0, 0]", "start = [0.1, 0, 0]\nenters = 4", None),
+                           ("start = [1, 0, 0]", "start = [1, 0, 0]\nenters = 99", "actors[1].enters: B enters after 99 s, and the film is over")):
         file.write_text(sound.replace(old, new))
         told = list(doubts(load(file)))
         assert len(told) == (said is not None) and all(line.startswith(said) for line in told)

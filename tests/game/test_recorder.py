@@ -49,7 +49,7 @@ def test_odd_sizes_become_even(tmp_path):
     with Film(tmp_path / "odd.mp4", (33, 17), 60) as film:
         film.write(picture(3, (33, 17)))
     frames, _, _ = read(tmp_path / "odd.mp4")
-    assert frames[0].shape == (16, 32, 3)
+    assert frames[0].shape == (16, 32, 3) and film.picture == (32, 16)
 
 
 def test_an_error_leaves_the_old_film_and_a_playable_part(tmp_path):

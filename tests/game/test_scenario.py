@@ -75,6 +75,7 @@ FAULTS = [
     ("duration = 2", "duration = ", "not TOML"),
     ("duration = 2", 'duration = 2\n[[shots]]\nkind = "dolly"\npath = [[0, 1, 0]]\ntarget = [0, 1, 9]', "shots[0].path: needs at least 2, has "),
     ("duration = 2", 'duration = 2\n[[shots]]\nkind = "dolly"\ntarget = [0, 1, 9]', "shots[0]: a dolly shot needs path = [[x, y, z], …]"),
+    ("duration = 2", 'duration = 2\n[[shots]]\nkind = "fixed"\neye = [0, 1, 0]\ntarget = [0, 1, 0]', "shots[0]: eye and target are the same place"),
     ("duration = 2", 'duration = 2\n[[shots]]\neye = [0, 1, 0]', "shots[0]: a follow shot has no eye; that goes with kind = fixed"),
     ("duration = 2", 'duration = 2\n[[shots]]\nkind = "orbit"\nactor = "A"\ntarget = [0, 1, 0]', "shots[0]: an orbit shot goes round an actor or a target, not both"),
     ("duration = 2", 'duration = 2\n[[shots]]\nunder = "what"', "shots[0]: `under` stands under a caption"),

@@ -123,7 +123,7 @@ def check(path, text, line, message, opened=None):
 
 def test_what_is_no_file(tmp_path):
     for path, message in ((tmp_path / "none.bvh", "no such file"), (tmp_path / "none.amc", "no such file"),
-                          (tmp_path / "a.txt", "'.txt' is no motion file"), (tmp_path, "is no motion file"),
+                          (tmp_path / "a.txt", "'.txt' is no motion file"), (tmp_path, "is a folder: name a .bvh or .amc file"),
                           (tmp_path / "nul\0.bvh", "can't be opened")):
         with pytest.raises(MotionFileError, match=message):
             load(path)
