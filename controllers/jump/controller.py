@@ -328,7 +328,7 @@ class Jump(Reach, Controller):
 
     def _sets_feet(self, state: CharacterState) -> bool:
         """Whether it goes, and still has to set its feet before it crouches."""
-        return not isinstance(state.memory, Jumping | Crouching) and sets_feet(self.physique, state, self.start_of(state))
+        return not isinstance(state.memory, Jumping | Crouching) and sets_feet(self.physique, state)
 
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""

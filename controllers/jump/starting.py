@@ -28,7 +28,7 @@ NEAR = 1e-6
 KNEES, APART = 0.31, 0.06
 """Knees of a crouch are so far ahead of their ankles, as the feet point. Ankles and knees that are nearer than the second to each other, across the way that
 the body faces, are too near [m], at standard height."""
-TURNED = np.radians(45.0)
+TURNED = np.radians(40.0)
 """A foot that is turned farther from there [rad] is not crouched over."""
 STANDS = 0.01
 """Who is slower than this [m/s, rad/s], and stands on both feet, has set them."""
@@ -139,12 +139,14 @@ def ready(physique: Physique, state: CharacterState) -> bool:
     return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
 
 
-def sets_feet(physique: Physique, state: CharacterState, start: Start) -> bool:
+def sets_feet(physique: Physique, state: CharacterState) -> bool:
     """Whether somebody on the move still has to set his feet: as they come to stand now, his legs would go through each other in a crouch. Where he moves, his
     gait sets them within a step or two; a runner pushes off one foot, and does not crouch."""
-    if start.single is not None or np.all(state.contacts) and np.abs(state.velocity).max() < STANDS:
+    if np.all(state.contacts) and np.abs(state.velocity).max() < STANDS:
         return False
-    body = physique.tables
+    body, start = physique.tables, start_of(physique, state)
+    if start.single is not None:
+        return False
     feet = start.planted(float(state.floor), body)
     turned = wrap(feet[:, 3] - start.heading)
     ankles = feet[:, :3] @ yaw(start.heading)[:, 0] - body.toe[2] * np.sin(turned)  # to the left
