@@ -5,10 +5,11 @@ flight, landing, and take-offs from a run. A jump is planned whole, then played;
 from .body import GRAVITY, Physique
 from .controller import Jump, Jumping
 from .crouching import Crouching
-from .reach import BESIDE, Refused
+from .reach import BESIDE, MOMENTARY, SETS_FEET, Refused
 from .starting import FRESH, RUNNING, start_of, stands, stayed
 from .warm_up import rehearse
 
 __all__ = [
-    "BESIDE", "Crouching", "FRESH", "GRAVITY", "RUNNING", "Jump", "Jumping", "Physique", "Refused", "rehearse", "stands", "start_of", "stayed",
+    "BESIDE", "Crouching", "FRESH", "GRAVITY", "MOMENTARY", "RUNNING", "SETS_FEET", "Jump", "Jumping", "Physique", "Refused", "rehearse", "stands", "start_of",
+    "stayed",
 ]

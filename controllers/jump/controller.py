@@ -18,8 +18,8 @@ from .crouching import Crouching, begun, crouched
 from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, landed, ready, rebounding, start_of, stayed, turning
+from .reach import SETS_FEET, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
+from .starting import FEET, Jumping, landed, ready, rebounding, sets_feet, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -79,7 +79,7 @@ class Jump(Reach, Controller):
         if intent.around and self._lost_floor(state, intent):
             return HOLDS
         if intent.leap is None:
-            return READY if intent.aim is not None and self._stands(state) else 0.0
+            return READY if intent.aim is not None and self._stands(state) and not self._sets_feet(state) else 0.0
         return READY if ready(self.physique, state) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
@@ -88,8 +88,13 @@ class Jump(Reach, Controller):
         return self._began(state, intent) or replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
 
     def seek(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> CharacterState:
-        """The same, of which no more is worked out than a step has time for."""
-        return self._began(state, intent) or replace(state, memory=Jumping.begun(self.sought(state, intent, onward), state, intent.leap))
+        """The same, of which no more is worked out than a step has time for. Refused for now, too, who still sets his feet."""
+        began = self._began(state, intent)
+        if began is not None:
+            return began
+        if self._sets_feet(state):
+            raise Refused(SETS_FEET, onward=Onward(None))
+        return replace(state, memory=Jumping.begun(self.sought(state, intent, onward), state, intent.leap))
 
     def _began(self, state: CharacterState, intent: Intent) -> CharacterState | None:
         """The state at the beginning of what needs no plan, a crouch or a fall; None where a leap is asked."""
@@ -110,17 +115,18 @@ class Jump(Reach, Controller):
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
         """The same, sought in pieces. onward: of the step before, where the same was asked. Refused until a plan is found, with why there is none as
         far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
-        onward = (onward or Onward(Seeking(self._looked_for(state, intent, self._waits(state))))).next
-        found = onward.seeking.after(onward.steps)
+        seeking, steps = onward or Onward(None)
+        seeking, steps = seeking or Seeking(self._looked_for(state, intent, self._waits(state))), steps + 1
+        found, onward = seeking.after(steps), Onward(seeking, steps)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
         leap = intent.leap
         if not isinstance(found, Found):
             raise Refused(*found)
         assert leap is not None  # or nothing would have been found
-        if onward.steps == 1:
+        if steps == 1:
             return found.made
-        if isinstance(onward.seeking.after(onward.steps - 1), str):  # it was found just now: no step makes two plans
+        if isinstance(seeking.after(steps - 1), str):  # it was found just now: no step makes two plans
             raise Refused("", onward=onward)
         found = self.again(found.arc.how, self.start_of(state, leap), found.place, float(level(state.floor)), leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
@@ -168,7 +174,7 @@ class Jump(Reach, Controller):
             start, place, floor, _ = self._meant(state, intent.leap)
         except Refused as reason:
             return str(reason)
-        return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1]
+        return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1] or SETS_FEET * self._sets_feet(state)
 
     def _meant(self, state: CharacterState, leap: Leap) -> tuple[Start, np.ndarray, float, np.ndarray]:
         """From where a leap goes off, to which place (3,), off which floor [m], and where (3,) it stands. Refused where nobody can leap so from anywhere."""
@@ -319,6 +325,10 @@ class Jump(Reach, Controller):
     def _waits(self, state: CharacterState) -> bool:
         """Whether it will be in a moment where it is now."""
         return isinstance(state.memory, Crouching) or not isinstance(state.memory, Jumping) and self._stands(state)
+
+    def _sets_feet(self, state: CharacterState) -> bool:
+        """Whether it goes, and still has to set its feet before it crouches."""
+        return not isinstance(state.memory, Jumping | Crouching) and sets_feet(self.physique, state)
 
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
+from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap, yaw
 from ..contract import CharacterState, Leap
 from .body import FLAT, Physique, Start, soles, vectors
 from .motion import PLANT, Plan
@@ -25,6 +25,13 @@ UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 NEAR = 1e-6
 """Who is no farther from where he was left than this [m, rad] is there."""
+KNEES, APART = 0.31, 0.06
+"""Knees of a crouch are so far ahead of their ankles, as the feet point. Ankles and knees that are nearer than the second to each other, across the way that
+the body faces, are too near [m], at standard height."""
+TURNED = np.radians(40.0)
+"""A foot that is turned farther from there [rad] is not crouched over."""
+STANDS = 0.01
+"""Who is slower than this [m/s, rad/s], and stands on both feet, has set them."""
 SPRINGS = 0.05
 """So long after the lowest point of a landing [s] another leap may still go off from there."""
 
@@ -130,6 +137,21 @@ def ready(physique: Physique, state: CharacterState) -> bool:
         return speed < RUNNING and bool(low.any())
     towards = start.velocity * FLAT / max(speed, 1e-9)
     return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
+
+
+def sets_feet(physique: Physique, state: CharacterState) -> bool:
+    """Whether somebody on the move still has to set his feet: as they come to stand now, his legs would go through each other in a crouch. Where he moves, his
+    gait sets them within a step or two; a runner pushes off one foot, and does not crouch."""
+    if np.all(state.contacts) and np.abs(state.velocity).max() < STANDS:
+        return False
+    body, start = physique.tables, start_of(physique, state)
+    if start.single is not None:
+        return False
+    feet = start.planted(float(state.floor), body)
+    turned = wrap(feet[:, 3] - start.heading)
+    ankles = feet[:, :3] @ yaw(start.heading)[:, 0] - body.toe[2] * np.sin(turned)  # to the left
+    knees = ankles + KNEES * body.size * np.sin(turned)
+    return bool(np.abs(turned).max() > TURNED or min(ankles[0] - ankles[1], knees[0] - knees[1]) < APART * body.size)
 
 
 def _feet(skeleton: Skeleton, positions: np.ndarray, turned: np.ndarray) -> np.ndarray:

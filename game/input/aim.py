@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
+from gambol.controllers.jump import SETS_FEET
 from gambol.controllers.navigation import floor_at, in_world
 
 from .run_up import AHEAD
@@ -40,7 +41,7 @@ SINKS = 0.35
 PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 TURNS = 0.3
-"""That passes at this pace while a standing body still turns to the ring: half a turn takes 2.2 s."""
+"""That passes at this pace while a standing body still turns to the ring, or sets its feet: half a turn takes 2.2 s."""
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
 LOOKED = 0.2
@@ -74,8 +75,9 @@ class Aim:
             if self.aiming:
                 x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
-            given_up = self.waiting <= dt and not aloft or not self.moving and state.refused
-            pace = 0.0 if aloft else TURNS if self._askew(state) else 1.0
+            sets = state.refused == SETS_FEET
+            given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
+            pace = 0.0 if aloft else TURNS if sets or self._askew(state) else 1.0
             return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, Status, but
-from gambol.controllers.jump import BESIDE, Jumping
+from gambol.controllers.jump import MOMENTARY, Jumping
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
 from .moves import Jump, Move
@@ -71,7 +71,7 @@ class Making:
         now, intent = now._ask(move, state, dt)
         if move.jump is not None:
             now, intent = now._ask_jump(move, move.jump, state, intent, dt)
-            if now.asked and state.refused and state.refused != BESIDE:
+            if now.asked and state.refused and state.refused not in MOMENTARY:
                 now = replace(now, why=state.refused)
         stands = now.path is not None and not now.jumped and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
         return replace(now, steps=now.steps + 1, stood=now.stood + 1 if stands else 0), intent

@@ -65,3 +65,13 @@ def segments_apart(a, b, c, d) -> np.ndarray:
         s = np.clip(((a + t[..., None] * u - c) * v).sum(-1) / vv, 0.0, 1.0)
         t = np.clip(((c + s[..., None] * v - a) * u).sum(-1) / uu, 0.0, 1.0)
     return np.linalg.norm(a + t[..., None] * u - c - s[..., None] * v, axis=-1)
+
+
+def legs_apart(skeleton, roots: np.ndarray, rotations: np.ndarray) -> np.ndarray:
+    """How far (N,) [m] the axes of the left and the right leg of N poses are apart, from a third of the thighs down."""
+    joints = forward_kinematics(skeleton, np.asarray(roots, float), np.asarray(rotations, float))[0]
+    legs = []
+    for side in ("Left", "Right"):
+        hip, knee, ankle = (joints[:, skeleton.index(side + name)] for name in ("UpLeg", "Leg", "Foot"))
+        legs.append(((hip + (knee - hip) / 3.0, knee), (knee, ankle)))
+    return np.min([segments_apart(*one, *other) for one in legs[0] for other in legs[1]], 0)

@@ -4,7 +4,8 @@
 
 Somebody stands, aims at random targets for a while and lets go. Runners of many speeds aim as one plays, let go at many moments of
 their strides, leap over the ring and run on. Others leap from walks and runs to random places ahead: how much faster along the floor they leave than they came. Some leap from a stand, a walk
-or a run to random places all over what is before them: how deep soles come into the floor, and how far hips are off their way as walking takes over. Everything but how fast they leave is told from the poses
+or a run to random places all over what is before them: how deep soles come into the floor, and how far hips are off their way as walking takes over. Or somebody lets go
+in the midst of a turn, a side step or an arc, and leaps: how near his legs come to each other. Everything but how fast they leave is told from the poses
 that are played.
 """
 
@@ -17,6 +18,7 @@ from dataclasses import replace
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
+from _limbs import legs_apart
 from jump_trials import FPS
 
 from gambol.controllers.body import forward_kinematics, sole_corners
@@ -35,6 +37,14 @@ PATIENCE = 0.9
 BEFORE = 4
 """So many steps before a leap are looked at, too."""
 SPEEDS = 2.2, 2.6, 3.0, 3.4
+MOVES = {"turns on the spot": [(0.0, turn, 0.0) for turn in (1.0, 2.0, 3.0, -1.0, -2.0, -3.0)],
+         "side and diagonal steps, backward": [(0.0, 0.0, 0.6), (0.0, 0.0, -0.6), (0.6, 0.0, 0.5), (0.6, 0.0, -0.5), (-0.5, 0.0, 0.4), (-0.5, 0.0, -0.4), (-0.7, 0.0, 0.0)],
+         "arcs": [(0.5, 2.0, 0.0), (0.5, -2.0, 0.0)]}
+"""What somebody does until he leaps: forward, turning, left [m/s, rad/s]."""
+LASTED = np.arange(0.3, 2.51, 0.2)
+"""So long he does it [s]."""
+NEAR = 0.10
+"""Axes of legs that are nearer than this are in each other's flesh [m]."""
 
 
 def led(someone: Supervisor, state: CharacterState, intent: Intent, seconds: float) -> CharacterState:
@@ -181,6 +191,37 @@ def report_feet(someone: Supervisor, leaps: int, rng: np.random.Generator) -> No
     print(f"  hands until the take-off of {len(pulls)} off one foot, over 1/30 s: median {np.median(pulls):.0f}, 90 % {np.percentile(pulls, 90):.0f}, worst {max(pulls):.0f} m/s²")
 
 
+def leap_amid(someone: Supervisor, state: CharacterState, leap: Leap) -> tuple[float, float, float] | None:
+    """How near the legs of somebody come who lets go of all keys and leaps [m], how long he waits, and how long until he is in the air [s]; None where he can't leap."""
+    states: list[CharacterState] = []
+    for n in range(2 * FPS):
+        state, _ = someone.step(state, Intent(leap=leap), 1 / FPS)
+        if isinstance(state.memory.memory, Jumping):
+            made, states = state.memory.memory.plan, [state]
+            while states[-1].active == "jump" and states[-1].memory.memory.time < made.duration:
+                states.append(someone.step(states[-1], Intent(), 1 / FPS)[0])
+            near = legs_apart(someone.skeleton, np.stack([s.pose.root for s in states]), np.stack([s.pose.rotations for s in states]))
+            return float(near.min()), n / FPS, n / FPS + made.take_off
+    return None
+
+
+def report_turns(someone: Supervisor) -> None:
+    """How near legs come to each other in leaps out of the midst of a turn, of side steps and of arcs, and how long feet are set before."""
+    print(f"Leaps of 0.9 m and straight up out of the midst of a move of {LASTED[0]:g} … {LASTED[-1]:.1f} s: of how many, refused; axes of legs nearer than {100.0 * NEAR:g} cm; nearest; "
+          "wait at all; waited s, of those median, worst; to the air median, worst")
+    for kind, velocities in MOVES.items():
+        found = []
+        for velocity in velocities:
+            for lasted in LASTED:
+                state = led(someone, someone.start(), Intent(np.array(velocity)), lasted)
+                x, z, heading = state.ground
+                found += [leap_amid(someone, state, leap) for leap in (Leap(None), Leap(np.array([x + 0.9 * np.sin(heading), 0.0, z + 0.9 * np.cos(heading)])))]
+        near, waits, takes = np.array([one for one in found if one is not None]).T
+        waited = waits[waits > 0.0]
+        print(f"  {kind}: {len(found)}, {len(found) - len(near)}; {np.sum(near < NEAR)}; {100.0 * near.min():.1f} cm; {100.0 * np.mean(waits > 0.0):.0f} %; "
+              f"{np.median(waited):.2f}, {waited.max():.2f}; {np.median(takes):.2f}, {takes.max():.2f}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--targets", type=int, default=100)
@@ -191,6 +232,7 @@ def main() -> None:
     if given.targets < 10 or given.phases < 1 or given.leaps < 10:
         parser.error("--targets must be 10 or more, --phases 1 or more, --leaps 10 or more")
     someone = person(Locomotion.load(settings=Settings(idle=0.0)))
+    report_turns(someone)
     report_release(someone, given.targets, np.random.default_rng(given.seed))
     report_strides(someone, given.phases)
     report_gains(someone, given.leaps, np.random.default_rng(given.seed))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gambol.controllers.contract import Leap
+from gambol.controllers.jump import SETS_FEET
 from gambol.controllers.person import person
 from gambol.controllers.navigation import gap
 from gambol.game.app.views import previews, scenes
@@ -47,6 +48,22 @@ def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
     assert jumped == 6, "three jumps, twice"
     assert np.array_equal(ends[0].pose.rotations, ends[1].pose.rotations) and np.array_equal(ends[0].ground, ends[1].ground)
     assert ends[0].floor == 0.0 and np.isfinite(ends[0].pose.root).all()
+
+
+@pytest.mark.parametrize("ticks", [55, 69])
+@pytest.mark.parametrize("turn", [0.0, 1.0])
+def test_who_taps_it_in_the_midst_of_a_turn_sets_his_feet_is_told_so_and_leaps(somebody, ticks, turn):
+    """Whether he lets go of the key that turns him or not; nothing is given up meanwhile."""
+    timeline, told = Timeline(opening(somebody)), []
+    for wish in [Wish(turn=1.0)] * ticks + [Wish(turn=turn, jump=True)] * 2 + [Wish(turn=turn)] * 60:
+        before = timeline.now
+        timeline.advance((wish.rounded(),))
+        state = timeline.now.after.characters[0].state
+        assert not refused(before, timeline.now)
+        if jumping(state) is not None:
+            break
+        told.append(state.refused)
+    assert jumping(state) is not None and SETS_FEET in told
 
 
 def test_who_holds_the_button_crouches_and_is_off_soon_after_letting_go(somebody):

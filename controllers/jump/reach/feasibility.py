@@ -35,6 +35,10 @@ TOO_WEAK = "this body is too weak to jump here at all"
 """Why nobody leaps whose muscles don't lift him off the floor."""
 BESIDE = "no foot is under it to push off at this moment"
 """Why nobody leaps off feet that are too far before, behind or beside him, as they are in the midst of a stride."""
+SETS_FEET = "it sets its feet first, which are too near each other, or turned too far, to crouch over"
+"""Why nobody leaps yet whose legs would go through each other."""
+MOMENTARY = BESIDE, SETS_FEET
+"""Why a leap is refused for a moment only: the next footfall may be another."""
 HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
 GRAZE = 0.05

@@ -73,12 +73,7 @@ def _sought(known: tuple[Any, ...]) -> Seeking[Any]:
 
 
 class Onward(NamedTuple):
-    """How far somebody is with seeking: what, and after how many steps."""
+    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, and after how many steps."""
 
-    seeking: Seeking[Any]
+    seeking: Seeking[Any] | None
     steps: int = 0
-
-    @property
-    def next(self) -> Onward:
-        """A step later."""
-        return Onward(self.seeking, self.steps + 1)
