@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body import contact_height, contact_points, end_positions, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump.body.dynamics import Physique
-from gambol.controllers.jump.body.start import soles
+from gambol.controllers.jump.body import soles
 from gambol.controllers.jump.controller import Jump, Jumping
 from gambol.controllers.jump.reach.feasibility import Refused
 from gambol.controllers.navigation import gap
