@@ -144,7 +144,9 @@ class Jump(Reach, Controller):
         if leap.airtime is not None:
             other, _ = yield from self.seen(start, place, floor, None, intent.around, parted)
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
-                return (f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
+                if leap.place is None and leap.airtime > self.longest:
+                    return f"too high: this body gets {self.highest:.2f} m up at most, in {self.longest:.2f} s, and {leap.airtime:.2f} s were asked", None, here
+                return (f"{leap.airtime:.2f} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
                         f"body there; the jump takes {other.made.path.airtime:.2f} s", None, here)
         if start.single is None and not self.path(start, place, floor, leap.airtime).strong:
             usual = self.path(start, here, floor, leap.airtime)
@@ -195,9 +197,14 @@ class Jump(Reach, Controller):
     @cached_property
     def longest(self) -> float:
         """How long [s] it can be in the air at most as it jumps straight up from a stand."""
-        heights, g = measures(self.physique), -float(self.gravity[1])
+        return airtime_up(self.physique, self.highest, self.gravity)
+
+    @cached_property
+    def highest(self) -> float:
+        """How far [m] it rises at most, having left the floor, as it jumps straight up from a stand."""
+        heights = measures(self.physique)
         speed = strongest(self.physique, heights.leave(0.0) - heights.stand, self.gravity)
-        return airtime_up(self.physique, SPARES * 0.5 * speed**2 / g, self.gravity)
+        return SPARES * 0.5 * speed**2 / -float(self.gravity[1])
 
     def landing(self, state: CharacterState) -> CharacterState:
         """The state of somebody who jumps as he will stand once he has landed, if it is on both feet; of everybody else as it is."""

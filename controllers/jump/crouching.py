@@ -23,6 +23,8 @@ RATE = 10.0
 """Rate of the springs of a standard adult on Earth [1/s]: down in half a second, and never pulled."""
 INSIDE, FAR = 0.8, 0.6
 """Who aims farther than the second [m], at standard height, leans ahead by this share of half the soles; who aims nearer, less, and as the jump begins."""
+RAISED = 0.14
+"""A heel that is raised by less stands still [rad]."""
 RISEN, SLOW = 0.01, 0.05
 """A body stands again that is so near to standing [m] and so slow [m/s]."""
 
@@ -114,7 +116,9 @@ def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple
     roots, local = np.empty((1, 3)), np.tile(np.eye(3), (1, len(skeleton), 1, 1))
     ground_kernel(body, FLEX * reach.physique.flexibility, after.place[None, 3:], carriage.joints_of(skeleton), left, turned.reshape(1, 3, 3),
                   after.place[None, :3], feet, np.array(root, float), roots, local)
-    return after, Pose(roots[0], local[0]), np.ones(4, bool)
+    stands = np.ones(4, bool)
+    stands[::2] = feet[0, :, 4] < RAISED
+    return after, Pose(roots[0], local[0]), stands
 
 
 def crouched(reach: Reach, state: CharacterState, leap: Leap | None, dt: float) -> CharacterState:

@@ -117,10 +117,13 @@ def test_whoever_stands_before_a_slope_leaps_onto_it_and_off_it(jump, person, up
 def test_whoever_aims_on_a_slope_crouches_and_leaps_and_stands_there(person):
     things = hill(12.0)
     leap = Leap(on(things, 0.3, 0.5))
-    states = played(person, things, (0.0, 0.0, 0.5), lambda t: {} if t < 0.3 or t > 1.6 else {"aim": leap} if t < 1.4 else {"leap": leap})
+    states = played(person, things, (0.0, 0.0, 0.5), lambda t: {} if t < 0.3 or t > 1.6 else {"aim": leap} if t < 1.4 else {"leap": leap}, 4.5)
     high, jumps = over_ground(person.skeleton, states, things), np.array([s.active == "jump" for s in states])
     assert high.min() > -GRAZES and jumps[40] and not jumps[-1]
-    assert np.abs(high[70:84]).max() < 0.01, "he waits on flat soles"
+    stands = np.array([s.contacts for s in states])[60:80]
+    soles = high[60:80].reshape(20, 2, 3, 2)  # heel, ball, tip
+    assert np.abs(soles[:, :, 1:]).max() < 0.005 and not stands.all(), "he waits on the balls of his feet: ankles bend no farther uphill"
+    assert (np.abs(soles[:, :, 0]).max(-1)[stands[:, ::2]] < 0.03).all()
     assert np.hypot(*(states[-1].ground[:2] - leap.place[[0, 2]])) < 0.1
 
 
