@@ -19,7 +19,7 @@ from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, landed, ready, rebounding, sets_feet, start_of, stayed, turning
+from .starting import FEET, Jumping, landed, on_ground, ready, rebounding, sets_feet, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -102,7 +102,7 @@ class Jump(Reach, Controller):
             fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
             return replace(state, memory=Jumping.begun(fallen, state, intent.leap, "there was nothing to step on"))
         if intent.leap is None and intent.aim is not None:
-            return replace(state, memory=begun(self, self.start_of(state), float(level(state.floor))))
+            return replace(state, memory=begun(self, self.start_of(state, around=intent.around), float(level(state.floor))))
         return None
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
@@ -128,7 +128,7 @@ class Jump(Reach, Controller):
             return found.made
         if isinstance(seeking.after(steps - 1), str):  # it was found just now: no step makes two plans
             raise Refused("", onward=onward)
-        found = self.again(found.arc.how, self.start_of(state, leap), found.place, float(level(state.floor)), leap.airtime, intent.around)
+        found = self.again(found.arc.how, self.start_of(state, leap, intent.around), found.place, float(level(state.floor)), leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
             raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
         return found.made
@@ -139,7 +139,7 @@ class Jump(Reach, Controller):
         leap = intent.leap
         if leap is None:
             raise Refused("nobody asked for a jump")
-        start, place, floor, here = self._meant(state, leap)
+        start, place, floor, here = self._meant(state, leap, intent.around)
         asked = start, place, floor, leap.airtime, intent.around
         known = None if leap.how is None else self.again(leap.how, *asked)
         if known is not None:
@@ -150,7 +150,9 @@ class Jump(Reach, Controller):
         if leap.airtime is not None:
             other, _ = yield from self.seen(start, place, floor, None, intent.around, parted)
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
-                return (f"{leap.airtime:g} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
+                if leap.place is None and leap.airtime > self.longest:
+                    return f"too high: this body gets {self.highest:.2f} m up at most, in {self.longest:.2f} s, and {leap.airtime:.2f} s were asked", None, here
+                return (f"{leap.airtime:.2f} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
                         f"body there; the jump takes {other.made.path.airtime:.2f} s", None, here)
         if start.single is None and not self.path(start, place, floor, leap.airtime).strong:
             usual = self.path(start, here, floor, leap.airtime)
@@ -171,18 +173,18 @@ class Jump(Reach, Controller):
         if intent.leap is None:
             return "nobody asked for a jump"
         try:
-            start, place, floor, _ = self._meant(state, intent.leap)
+            start, place, floor, _ = self._meant(state, intent.leap, intent.around)
         except Refused as reason:
             return str(reason)
         return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1] or SETS_FEET * self._sets_feet(state)
 
-    def _meant(self, state: CharacterState, leap: Leap) -> tuple[Start, np.ndarray, float, np.ndarray]:
+    def _meant(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> tuple[Start, np.ndarray, float, np.ndarray]:
         """From where a leap goes off, to which place (3,), off which floor [m], and where (3,) it stands. Refused where nobody can leap so from anywhere."""
         if leap.heading is not None and not np.isfinite(leap.heading):
             raise Refused(f"the heading must be a finite number of radians, or None, got {leap.heading!r}")
         if leap.on not in (None, *FEET):
             raise Refused(f"a leap lands on 'left', 'right' or 'both' to hop on, or None to stand, got {leap.on!r}")
-        start, floor = self.start_of(state, leap), float(level(state.floor))
+        start, floor = self.start_of(state, leap, around), float(level(state.floor))
         here = self.middle(start, floor)
         return start, meant(here if leap.place is None else leap.place, leap.airtime), floor, here
 
@@ -192,7 +194,7 @@ class Jump(Reach, Controller):
         if leap is None:
             return None
         try:
-            start, place, floor, _ = self._meant(state, leap)
+            start, place, floor, _ = self._meant(state, leap, intent.around)
         except Refused:
             return None
         found, _ = whole(self.seen(start, place, floor, leap.airtime, intent.around, False))
@@ -201,19 +203,25 @@ class Jump(Reach, Controller):
     @cached_property
     def longest(self) -> float:
         """How long [s] it can be in the air at most as it jumps straight up from a stand."""
-        heights, g = measures(self.physique), -float(self.gravity[1])
+        return airtime_up(self.physique, self.highest, self.gravity)
+
+    @cached_property
+    def highest(self) -> float:
+        """How far [m] it rises at most, having left the floor, as it jumps straight up from a stand."""
+        heights = measures(self.physique)
         speed = strongest(self.physique, heights.leave(0.0) - heights.stand, self.gravity)
-        return airtime_up(self.physique, SPARES * 0.5 * speed**2 / g, self.gravity)
+        return SPARES * 0.5 * speed**2 / -float(self.gravity[1])
 
     def landing(self, state: CharacterState) -> CharacterState:
         """The state of somebody who jumps as he will stand once he has landed, if it is on both feet; of everybody else as it is."""
         memory = state.memory
         return state if not isinstance(memory, Jumping) or memory.plan.path.lands is not None else landed(self.physique, state, memory.plan)
 
-    def start_of(self, state: CharacterState, leap: Leap | None = None) -> Start:
-        """What a jump needs to know of a state, and of how a leap shall land."""
+    def start_of(self, state: CharacterState, leap: Leap | None = None, around: Sequence[Any] = ()) -> Start:
+        """What a jump needs to know of a state, of how a leap shall land, and of the ground among boxes and pillars around."""
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
-        return turning(rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start, leap)
+        start = turning(rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start, leap)
+        return on_ground(start, state, around)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""
@@ -233,7 +241,7 @@ class Jump(Reach, Controller):
         pose = made.at(time)
         n = int(np.clip(np.searchsorted(made.times, time) , 0, len(made.times) - 1))
         landed = time >= made.touch_down
-        floor = float(made.feet[0, 1] - self.physique.tables.sole) if landed else float(state.floor)
+        floor = float(made.feet[:, 1].mean() - self.physique.tables.sole) if landed else float(state.floor)
         centre, (vx, _, vz) = made.moving(time)
         turned = made.path.heading + float(made.path.turned(time))
         ground = np.array([*centre[[0, 2]], turned]) + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
@@ -282,7 +290,7 @@ class Jump(Reach, Controller):
         memory, leap = state.memory, intent.leap
         if leap is None:
             if intent.aim is not None and memory.rebounds and memory.time >= memory.plan.lowest:
-                return replace(state, memory=begun(self, self.start_of(state), float(memory.plan.feet[0, 1] - self.physique.tables.sole)))
+                return replace(state, memory=begun(self, self.start_of(state, around=intent.around), float(memory.plan.feet[:, 1].mean() - self.physique.tables.sole)))
             return state if memory.asked is None else replace(state, memory=replace(memory, asked=None, refused="", onward=None))
         return self._leapt(state, intent, leap) if memory.rebounds else state
 

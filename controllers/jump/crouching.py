@@ -13,7 +13,7 @@ import numpy as np
 
 from ..body import Pose, yaw
 from ..contract import CharacterState, Leap
-from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, turns, vectors
+from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, standing, turns, vectors
 from .motion import FADE, faded, ground_kernel
 from .prior import BETWEEN, LEGS
 from .reach import Onward, Reach
@@ -23,6 +23,8 @@ RATE = 10.0
 """Rate of the springs of a standard adult on Earth [1/s]: down in half a second, and never pulled."""
 INSIDE, FAR = 0.8, 0.6
 """Who aims farther than the second [m], at standard height, leans ahead by this share of half the soles; who aims nearer, less, and as the jump begins."""
+RAISED = 0.14
+"""A heel that is raised by less stands still [rad]."""
 RISEN, SLOW = 0.01, 0.05
 """A body stands again that is so near to standing [m] and so slow [m/s]."""
 
@@ -66,20 +68,20 @@ def begun(reach: Reach, start: Start, floor: float) -> Crouching:
     place, still = np.concatenate([start.centre, carriage.STAND]), np.zeros(LEGS)
     planted = start.planted(floor, reach.physique.tables)
     return Crouching(start, 0.0, vectors(start.rotations @ np.swapaxes(local, -1, -2)), planted, place, np.concatenate([start.velocity, still]),
-                     np.concatenate([start.acceleration, still]), _upright(reach, planted, floor))
+                     np.concatenate([start.acceleration, still]), _upright(reach, start, planted, floor))
 
 
 def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float) -> Crouching:
     """The same crouch for another leap; None stands up. What is no place counts as no other."""
     if leap is None:
-        return replace(memory, leap=None, goal=_upright(reach, memory.planted, floor))
+        return replace(memory, leap=None, goal=_upright(reach, memory.start, memory.planted, floor))
     if leap.same(memory.leap):
         return memory
-    goal = _upright(reach, memory.planted, floor)
+    goal = _upright(reach, memory.start, memory.planted, floor)
     body = reach.physique.tables
     still = turning(replace(memory.start, centre=goal[:3], velocity=np.zeros(3), feet=memory.planted, feet_rates=np.zeros((2, 5)), ready=True, single=None),
                     leap)
-    place = soles(memory.planted, body).mean(0) * FLAT + [0.0, floor, 0.0] if leap.place is None else np.asarray(leap.place, float)
+    place = reach.middle(still, floor) if leap.place is None else np.asarray(leap.place, float)
     if place.shape != (3,) or not np.isfinite(place).all():
         return memory
     way = reach.path(still, place, floor, leap.airtime)
@@ -108,13 +110,15 @@ def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple
     turned = turns(left[:, 0]) @ yaw(start.heading) @ turns(after.place[3:4] * [1.0, 0.0, 0.0])
     left[:, 0] = 0.0
     left[:, (body.hip[:, None] + np.arange(4)).ravel()] = 0.0
-    feet = np.ones((1, 2, 6))
+    feet = standing(1, start.slope)
     feet[..., :5] = memory.planted + faded(start.feet - memory.planted, start.feet_rates, FOOT_FADE, now)
     feet[..., 1] = np.maximum(feet[..., 1], memory.planted[:, 1])
     roots, local = np.empty((1, 3)), np.tile(np.eye(3), (1, len(skeleton), 1, 1))
     ground_kernel(body, FLEX * reach.physique.flexibility, after.place[None, 3:], carriage.joints_of(skeleton), left, turned.reshape(1, 3, 3),
                   after.place[None, :3], feet, np.array(root, float), roots, local)
-    return after, Pose(roots[0], local[0]), np.ones(4, bool)
+    stands = np.ones(4, bool)
+    stands[::2] = feet[0, :, 4] < RAISED
+    return after, Pose(roots[0], local[0]), stands
 
 
 def crouched(reach: Reach, state: CharacterState, leap: Leap | None, dt: float) -> CharacterState:
@@ -124,7 +128,7 @@ def crouched(reach: Reach, state: CharacterState, leap: Leap | None, dt: float) 
     return replace(state, velocity=np.zeros(3), pose=pose, contacts=contacts, memory=replace(memory, stood=stands(state)))
 
 
-def _upright(reach: Reach, planted: np.ndarray, floor: float) -> np.ndarray:
+def _upright(reach: Reach, start: Start, planted: np.ndarray, floor: float) -> np.ndarray:
     """Where (14,) centre of mass and carriage are as it stands."""
     middle = soles(planted, reach.physique.tables).mean(0)
-    return np.concatenate([middle * FLAT + [0.0, floor + measures(reach.physique).stand, 0.0], carriage.STAND])
+    return np.concatenate([middle * FLAT + [0.0, floor + start.rise(middle) + measures(reach.physique).stand, 0.0], carriage.STAND])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
+from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, standing, striding_feet, turns, vectors
 from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, MOMENT, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
                      lifted, lowest, settling, sinking)
 from .prior import BETWEEN, EACH, LEGS
@@ -51,8 +51,8 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
     Checks nothing: see `reach`.
     """
     place = np.asarray(place, float)
-    landing = (landing_feet(place, start.lands, physique.tables) if way.lands is None
-               else striding_feet(place, start.lands, physique.tables, way.lands))
+    landing = (landing_feet(place, start.lands, physique.tables, start.lands_on) if way.lands is None
+               else striding_feet(place, start.lands, physique.tables, way.lands, start.lands_on))
     planted = start.planted(floor, physique.tables)
     return _Draft(physique, start, way, planted, landing).plan()
 
@@ -124,7 +124,7 @@ class _Draft(Airborne):
         rising = heels_rise(start, self.planted, self.centres, share, self.push.duration)
         late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
-        self.feet = np.ones((len(self.times), 2, 6))
+        self.feet = standing(len(self.times), start.slope)
         self.feet[..., 5] += (start.haste < 2) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
         risen = heels_up(start, self.planted, way.leave, self.push.duration, self.body) * late**2
@@ -143,7 +143,7 @@ class _Draft(Airborne):
         assert course is not None  # a path with a push has one before it is planned
         places = hermite(course.times, course.place, course.velocity, self.times)
         pressed = np.stack([np.interp(self.times, course.times, part) for part in course.pressed.T], 1)
-        high = self.centres[:, 1] - (self.planted[0, 1] - self.body.sole)
+        high = self.centres[:, 1] - (self.planted[:, 1].mean() - self.body.sole)
         self.centres[:, [0, 2]] = places
         self.forces[:, [0, 2]] = (self.forces[:, 1] / high)[:, None] * (places - pressed)
         self.velocities[:, [0, 2]] = np.stack([np.interp(self.times, course.times, part) for part in course.velocity.T], 1)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap, yaw
 from ..contract import CharacterState, Leap
+from ..navigation import floor_at, slope_at
 from .body import FLAT, Physique, Start, soles, vectors
 from .motion import PLANT, Plan
 from .reach import Onward
@@ -32,6 +35,8 @@ TURNED = np.radians(40.0)
 """A foot that is turned farther from there [rad] is not crouched over."""
 STANDS = 0.01
 """Who is slower than this [m/s, rad/s], and stands on both feet, has set them."""
+UNEVEN = 0.02
+"""Ground is no slope where the floor under a foot lies by more than this beside it [m]."""
 SPRINGS = 0.05
 """So long after the lowest point of a landing [s] another leap may still go off from there."""
 
@@ -111,6 +116,19 @@ def turning(start: Start, leap: Leap | None) -> Start:
     return replace(start, turn=turn + math.tau if turn < -math.pi + HALF_TURN else turn)
 
 
+def on_ground(start: Start, state: CharacterState, around: Sequence[Any]) -> Start:
+    """The same start on ground as it rises under somebody; as it is on level ground, and where a foot stands beside the slope."""
+    x, z, _ = np.asarray(state.ground, float)
+    floor = float(state.floor)
+    slope = slope_at(x, z, around, floor + UP)
+    if not slope.any():
+        return start
+    sloping = start.on(slope, np.array([x, z]) + (floor - floor_at(x, z, around, floor + UP)) / (slope @ slope) * slope)
+    heights = floor + sloping.rise(start.feet[:, :3])
+    even = all(abs(floor_at(ball[0], ball[2], around, high + UNEVEN) - high) < UNEVEN for ball, high in zip(start.feet, heights))
+    return sloping if even else start
+
+
 def rebounding(start: Start, made: Plan, time: float) -> Start:
     """The start of one who is `time` [s] into a plan and comes down: its landing is the crouch of the jump that follows."""
     n = int(np.clip(np.searchsorted(made.times, time), 1, len(made.times) - 1))
@@ -125,7 +143,7 @@ def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterSt
     middle = made.centres[-1] if made.rolls else soles(made.feet, physique.tables).mean(0)
     pose = made.at(made.duration if np.isinf(made.through) else made.lowest)
     return replace(state, ground=np.array([middle[0], middle[2], made.path.heading + made.path.turn]), velocity=np.zeros(3), pose=pose, contacts=np.ones(4, bool),
-                   memory=None, floor=float(made.feet[0, 1] - physique.tables.sole), previous=None, elapsed=0.0)
+                   memory=None, floor=float(made.feet[:, 1].mean() - physique.tables.sole), previous=None, elapsed=0.0)
 
 
 def ready(physique: Physique, state: CharacterState) -> bool:

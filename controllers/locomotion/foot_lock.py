@@ -49,6 +49,8 @@ PELVIS_HALFLIFE = 0.08
 """The pelvis follows what the legs need with this half-life [s]."""
 PELVIS_DROP = 0.03
 """The most that short legs may lower the pelvis [m]."""
+DOWN, BENDS = 0.12, 0.012
+"""Whoever stands on a slope stands lower, by the first at most [m], for both heels to be down: on legs that are the second shorter than straight."""
 STRAINED = (0.35, 0.8)
 """A ball lets go, the more the farther its heel had to rise [rad] between these."""
 LEAVES, LENT = -1.0, 0.3
@@ -84,17 +86,16 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
             ball = 2 * foot + 1
             swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
-    need = 0.0
+    need = m.lower = 0.0
+    stands = tops.shape[0] > 0 and (m.settled or m.waits) and not (m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0)
     for foot in range(2):
         hip = legs.hip[foot]
         _turn_foot(m, body, foot, hip + 2, legs.height, lift[foot], orientations, ankle[foot], dt, work)
         reach = (REACH - 0.001) * leg_length(body, hip)
+        if stands:
+            m.lower = max(m.lower, min(_lacks(positions[hip], ankle[foot], reach - BENDS) + m.middle - m.level, DOWN))
         give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], dt, work)
-        flat = (positions[hip, 0] - ankle[foot, 0]) ** 2 + (positions[hip, 2] - ankle[foot, 2]) ** 2
-        if flat < reach * reach:
-            need = max(need, positions[hip, 1] - ankle[foot, 1] - math.sqrt(reach * reach - flat))
-        else:
-            need = 1.0
+        need = max(need, _lacks(positions[hip], ankle[foot], reach))
     most = PELVIS_DROP + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
     need = min(need, most)
     drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
@@ -111,6 +112,13 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         relative_kernel(orientations[hip + 1], orientations[hip + 2], local[hip + 2])
         if tops.shape[0] > 0:
             touch(m, body, hip, foot, legs.height, tops, floor, positions, orientations)
+
+
+@kernel
+def _lacks(hip, ankle, reach):
+    """How much lower a hip must be for its ankle to be within reach [m]; 1 where no depth is enough."""
+    flat = (hip[0] - ankle[0]) ** 2 + (hip[2] - ankle[2]) ** 2
+    return hip[1] - ankle[1] - math.sqrt(reach * reach - flat) if flat < reach * reach else 1.0
 
 
 @kernel

@@ -137,7 +137,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("coming", "f8", (2, 2, 2)),  # where heel and ball of each foot of the blend come down, x, z in the world
         ("pace", "f4"), ("most", "f4"), ("stairs", "f4"), ("wished", "f4", 2),  # the share of the wished speed that short steps leave; the most [m/s] that the ground ahead allows, 0 if all; likewise, but of stairs that it stands on, in every direction; the wish, to the left and ahead [m/s]
         ("high", "f8", 2), ("off", "i4", 4),  # how high the ground that each foot is led on lies over where it comes down; which points are shown off the ground
-        ("level", "f8"), ("level_rate", "f8"),  # how high the body's own plane lies over the floor
+        ("level", "f8"), ("level_rate", "f8"), ("middle", "f8"), ("lower", "f8"),  # how high the body's own plane lies over the floor, and between its feet; how much lower it is to stand for its heels to
         ("anchor", "f4", 2),  # how much each foot hangs on its ball rather than its heel
         ("aside", "f4", (2, 2)), ("aside_rate", "f4", (2, 2)),  # how each foot gives way to the other, x, z in the world
         ("swing", "f4", 2),  # how far each foot had to go when it left

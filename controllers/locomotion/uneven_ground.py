@@ -106,8 +106,8 @@ def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
     low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
     before, rate = m.level, m.level_rate
-    m.level, m.level_rate = spring_kernel(m.level, m.level_rate, min(0.5 * (low + high), low + LOW + 0.25 * (high - low)),
-                                          LEVEL_HALFLIFE, dt)
+    m.middle = min(0.5 * (low + high), low + LOW + 0.25 * (high - low))
+    m.level, m.level_rate = spring_kernel(m.level, m.level_rate, m.middle - m.lower, LEVEL_HALFLIFE, dt)
     if m.level_rate < rate - GRAVITY * dt:  # nobody sinks faster than they fall
         m.level_rate = rate - GRAVITY * dt
         m.level = before + 0.5 * (rate + m.level_rate) * dt

@@ -173,7 +173,18 @@ def box_kernel(points, centre, size, heading, slope, out):
 
 def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -> float:
     """The height [m] of the highest box or the floor at a place, no higher than `below`."""
-    height = 0.0
+    return _ground_at(x, z, around, below)[0]
+
+
+def slope_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -> np.ndarray:
+    """How (2,) the highest box or the floor at a place rises along x and z [m/m], if it is no higher there than `below` [m]."""
+    thing = _ground_at(x, z, around, below)[1]
+    return np.zeros(2) if thing is None else slope(thing) * np.array([np.sin(thing.heading), np.cos(thing.heading)])
+
+
+def _ground_at(x: float, z: float, around: Sequence[Any], below: float) -> tuple[float, Any]:
+    """The height [m] of the highest box or the floor at a place, no higher than `below`, and which box that is, if it is one."""
+    height, highest = 0.0, None
     for thing in around:
         if is_box(thing):
             c, s = np.cos(thing.heading), np.sin(thing.heading)
@@ -182,8 +193,8 @@ def floor_at(x: float, z: float, around: Sequence[Any], below: float = np.inf) -
             top = thing.centre[1] + 0.5 * thing.size[1] + slope(thing) * along
             if (abs(c * dx - s * dz) <= 0.5 * thing.size[0] and abs(along) <= 0.5 * thing.size[2]
                     and height < top <= below):
-                height = top
-    return height
+                height, highest = top, thing
+    return height, highest
 
 
 def slide(place: ArrayLike, velocity: ArrayLike, floor: float, around: Sequence[Any], agile: float = 1.0) -> np.ndarray:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body import contact_height, contact_points, end_positions, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump.body.dynamics import Physique
-from gambol.controllers.jump.body.start import soles
+from gambol.controllers.jump.body import soles
 from gambol.controllers.jump.controller import Jump, Jumping
 from gambol.controllers.jump.reach.feasibility import Refused
 from gambol.controllers.navigation import gap
@@ -96,7 +96,7 @@ def test_a_step_must_be_one(jump, standing, dt):
     (Physique(), leap(8.0), r"too far: [78]\.\d m; the nearest that it reaches is .* m away"),
     (Physique(), leap(0.8, 2.0), r"too high: 0\.[78] m away and 2.0 m up"),
     (Physique(strength=0.15), leap(1.0), "too weak"),
-    (Physique(), leap(0.5, airtime=2.0), "2 s in the air is too long"),
+    (Physique(), leap(0.5, airtime=2.0), "2.00 s in the air is too long"),
     (Physique(), leap(1.0, -30.0), "too deep"),
 ], ids=lambda v: v if isinstance(v, str) else "")
 def test_what_can_t_be_is_refused_before_the_wind_up_and_says_why(standing, physique, intent, reason):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body.support_polygon import hull, margin
 from gambol.controllers.jump.body.ballistics import along
 from gambol.controllers.jump.body.dynamics import Physique
-from gambol.controllers.jump.body.start import landing_feet, measures, soles
+from gambol.controllers.jump.body import landing_feet, measures, soles
 from gambol.controllers.jump.controller import Jump
 
 law = settings(max_examples=60, deadline=None)

@@ -10,7 +10,7 @@ from gambol.controllers.jump.body import carriage as style
 from gambol.controllers.jump.body.balance import FLEX
 from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.body.planted_pose import STRAIGHT, nearest_kernel, stand_kernel
-from gambol.controllers.jump.body.start import landing_feet, measures
+from gambol.controllers.jump.body import landing_feet, measures
 
 BODIES = (Physique(), Physique(30.0, 1.25), Physique(110.0, 1.85, 0.8, 0.8, "female"))
 

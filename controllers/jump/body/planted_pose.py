@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from ...body import distance_kernel, relative_kernel, two_bone_kernel
+from ...body import distance_kernel, product_kernel, relative_kernel, two_bone_kernel
 from ...compiled import kernel
 from .dynamics import centre_kernel, place_kernel
 
@@ -43,6 +43,22 @@ def foot_kernel(yaw, pitch, out):
 
 
 @kernel
+def lying_kernel(foot, pitch, out):
+    """Write the orientation (3, 3) of a foot (6,) or (8,) that points `pitch` [rad] down from the ground under it: the last two are how that rises along x and z [m/m]."""
+    foot_kernel(foot[3], pitch, out)
+    if foot.shape[0] < 8 or (foot[6] == 0.0 and foot[7] == 0.0):
+        return
+    size = math.sqrt(1.0 + foot[6] * foot[6] + foot[7] * foot[7])
+    x, z, c = -foot[7] / size, foot[6] / size, 1.0 / size  # by the smallest turn from upright to the ground's normal: about its cross product with that
+    k = 1.0 / (1.0 + c)
+    tilt, flat = np.empty((3, 3)), out.copy()
+    tilt[0, 0], tilt[0, 1], tilt[0, 2] = c + k * x * x, -z, k * x * z
+    tilt[1, 0], tilt[1, 1], tilt[1, 2] = z, c, -x
+    tilt[2, 0], tilt[2, 1], tilt[2, 2] = k * x * z, x, c + k * z * z
+    product_kernel(tilt, flat, out)
+
+
+@kernel
 def ankle_kernel(body, foot, turned, out):
     """Write where the ankle (3,) is. foot: (6,) ball x, y, z [m], yaw, pitch [rad], heel's freedom."""
     for i in range(3):
@@ -60,7 +76,7 @@ def nearest_kernel(body, hip, foot):
 
 @kernel
 def leg_kernel(body, side, foot, flex, local, positions, orientations):
-    """Pose one leg so that its foot is where `foot` (6,) says; the hip's placement is known.
+    """Pose one leg so that its foot is where `foot` (6,) or, on a slope, (8,) says, see `lying_kernel`; the hip's placement is known.
 
     A planted heel (foot[5] > 0) rises where the leg is too short or the ankle would bend beyond
     `flex` [rad]; foot[4] then becomes the pitch that this needs. A leg whose foot[5] is 2 straightens softly, see SOFT; one whose is 1
@@ -72,25 +88,26 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
     soft = SOFT * max(foot[5] - 1.0, 0.0) * (body.thigh + body.shank)
     root = positions[hip]
     pelvis = orientations[0]
+    uphill = math.atan(foot[6] * heading[0] + foot[7] * heading[2]) if foot.shape[0] > 6 else 0.0
     for _ in range(4):
-        foot_kernel(foot[3], foot[4], turned)
+        lying_kernel(foot, foot[4], turned)
         ankle_kernel(body, foot, turned, at)
         reach = STRAIGHT * (body.thigh + body.shank)
         beyond = distance_kernel(root, at) - reach + soft
         if soft > 0.0 and beyond > 0.0:
             reach -= soft * math.exp(-beyond / soft)
         if foot[5] > 0.0 and distance_kernel(root, at) > reach:
-            low, high = foot[4], max(foot[4], min(nearest_kernel(body, root, foot), 1.25))
+            low, high = foot[4], max(foot[4], min(nearest_kernel(body, root, foot) + uphill, 1.25))
             for _ in range(40):
                 middle = 0.5 * (low + high)
-                foot_kernel(foot[3], middle, turned)
+                lying_kernel(foot, middle, turned)
                 ankle_kernel(body, foot, turned, at)
                 if distance_kernel(root, at) > reach:
                     low = middle
                 else:
                     high = middle
             foot[4] = high
-            foot_kernel(foot[3], high, turned)
+            lying_kernel(foot, high, turned)
             ankle_kernel(body, foot, turned, at)
         for i in range(3):  # knees point between pelvis and foot
             pole[i] = pelvis[i, 2] + 1.5 * heading[i] + 0.5 * (positions[hip, i] - positions[0, i])
@@ -113,7 +130,7 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
         for k in range(3):
             positions[ball, i] += turned[i, k] * body.toe[k]
     # the toes stay on the floor while the heel is up
-    foot_kernel(foot[3], min(foot[4], 0.0) if foot[5] > 0.0 else foot[4] - min(max(foot[4], 0.0), 0.5), orientations[ball])
+    lying_kernel(foot, min(foot[4], 0.0) if foot[5] > 0.0 else foot[4] - min(max(foot[4], 0.0), 0.5), orientations[ball])
     relative_kernel(pelvis, orientations[hip], local[hip])
     relative_kernel(orientations[hip], orientations[knee], local[knee])
     relative_kernel(orientations[knee], turned, local[ankle])
@@ -139,7 +156,7 @@ def _frames(hip, knee, ankle, pole, thigh, shank):
 
 @kernel
 def stand_kernel(body, centre, feet, flex, root, local, positions, orientations):
-    """Move the pelvis `root` (3,) until the body over its feet (2, 6) has its centre of mass at `centre`.
+    """Move the pelvis `root` (3,) until the body over its feet (2, 6), or (2, 8) on a slope, has its centre of mass at `centre`.
 
     local: (J, 3, 3) all but the legs given; also those whose foot is free (feet[side, 5] < 0). Returns the worst of the two ankles' gaps and of what
     the centre of mass still lacks [m].

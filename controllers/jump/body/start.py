@@ -8,12 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...body import HALF_SOLE, exp_kernel, product_kernel, yaw
+from ...body import exp_kernel, product_kernel
 from ...compiled import kernel
 from . import carriage
-from .balance import HALF_STANCE, STAND_REACH
+from .balance import STAND_REACH
 from .ballistics import apex_airtime
 from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
+from .feet import LEVEL, landing_feet, raised, rise, uphill
 from .planted_pose import stand_kernel
 
 FLAT = np.array([1.0, 0.0, 1.0])
@@ -30,8 +31,6 @@ FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
-NARROW = 0.015
-"""How far to its side a foot comes down on which one runs on [m], at standard height."""
 TRAIL = (0.16, 0.30)
 """How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
 TURNED = 0.2, 0.92
@@ -50,7 +49,8 @@ class Start:
     turn: how far to the left it turns until it lands [rad], looking where it goes; None where nobody told. springs: the landing was made to hop on
     from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on. haste: 0 it leaves hardly
     faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
-    and a free leg as fast as it takes, too.
+    and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
+    pitched against that ground. lands_on: (2,) how it rises where it lands.
     """
 
     root: np.ndarray
@@ -69,6 +69,19 @@ class Start:
     springs: bool = False
     onto: int | None = None
     haste: int = 0
+    slope: np.ndarray = field(default_factory=lambda: LEVEL)
+    here: np.ndarray = field(default_factory=lambda: LEVEL)
+    lands_on: np.ndarray = field(default_factory=lambda: LEVEL)
+
+    def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
+        """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""
+        feet = self.feet.copy()
+        feet[:, 4] += uphill(feet, slope)
+        return replace(self, feet=feet, slope=slope, here=here)
+
+    def rise(self, places: np.ndarray) -> np.ndarray:
+        """How high (...) the ground on which it stands is over its floor at places (..., 3) [m]."""
+        return rise(places[..., [0, 2]] - self.here, self.slope)
 
     @property
     def runs(self) -> bool:
@@ -102,7 +115,7 @@ class Start:
     def planted(self, floor: float, body: BodyTables) -> np.ndarray:
         """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""
         feet = self.feet + self.feet_rates * (FOOT_FADE / (2.0 * np.log(2.0)))
-        feet[:, 1], feet[:, 4] = floor + body.sole, 0.0
+        feet[:, 1], feet[:, 4] = floor + raised(body, self.slope) + self.rise(feet[:, :3]), 0.0
         return feet
 
 
@@ -236,32 +249,6 @@ def stretched_kernel(body, angles, joints, feet, pitch, share, heading, guess):
         if abs(short) < 1e-6:
             break
     return centre[1]
-
-
-def soles(feet: np.ndarray, body: BodyTables) -> np.ndarray:
-    """The corners (4 F, 3) [m] of the soles of flat feet (F, 5): heels and tips."""
-    half = HALF_SOLE * body.size
-    corners = [(side * half, -body.sole, along) for along in (body.heel[2] - body.toe[2], body.tip[2])
-               for side in (-1.0, 1.0)]
-    return np.concatenate([foot[:3] + np.array(corners) @ yaw(foot[3]).T for foot in feet])
-
-
-def landing_feet(place: np.ndarray, heading: float, body: BodyTables) -> np.ndarray:
-    """Two feet (2, 5) whose soles' middle is at `place` (3,), toes slightly out."""
-    middle = 0.5 * (body.heel[2] - body.toe[2] + body.tip[2])
-    feet = np.zeros((2, 5))
-    for side, sign in enumerate((1.0, -1.0)):
-        feet[side, 3] = heading + sign * 0.08
-        ball = np.array([sign * HALF_STANCE * body.size, body.sole, 0.0])
-        feet[side, :3] = place + yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
-    return feet
-
-
-def striding_feet(place: np.ndarray, heading: float, body: BodyTables, side: int) -> np.ndarray:
-    """Two feet (2, 5) of which that on a side, 0 left or 1 right, comes down at `place` (3,), a little to its side."""
-    feet = landing_feet(place, heading, body)
-    feet[:, :3] -= (1 - 2 * side) * (HALF_STANCE - NARROW) * body.size * yaw(heading)[:, 0]
-    return feet
 
 
 def over(height: float, aside: float) -> float:

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from ...body import yaw
-from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, turns, vectors
+from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, standing, turns, vectors
 from ..prior import BETWEEN, EACH, LEGS
 from .footing import faded
 from .ground_kernels import FREE, carry_on_kernel, ground_kernel
@@ -72,7 +72,7 @@ class Airborne:
         self.flex = FLEX * physique.flexibility
         self.legs = (self.body.hip[:, None] + np.arange(4)).ravel()
         self.down = leave + way.airtime
-        self.support = soles(landing if way.lands is None else landing[way.lands:way.lands + 1], self.body)
+        self.support = soles(landing if way.lands is None else landing[way.lands:way.lands + 1], self.body, start.lands_on)
         goal = self.support.mean(0) + [0.0, measures(physique).stand, 0.0]
         self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None and not way.hops, way.hops, rolls(physique, way))
         self.after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
@@ -166,11 +166,11 @@ class Airborne:
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The local rotations (J, 3, 3) at touch-down, the body turned `turn` (3, 3), and how fast the legs
         (8, 3) bend then [rad/s]: they begin to give before the floor makes them."""
-        step, feet = 1.0 / 240.0, np.zeros((2, 6))
+        step, feet = 1.0 / 240.0, standing(1, self.start.lands_on)[0]
         positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
         posed = np.stack([self.air[-1], self.air[-1]])
         posed[:, 0] = turn
-        feet[:, :4] = self.landing[:, :4]
+        feet[:, :4], feet[:, 5] = self.landing[:, :4], 0.0
         centre = self.way.land.copy()
         root = centre - [0.0, 0.05, 0.0]
         self._free(feet)
@@ -188,7 +188,7 @@ class Airborne:
         body = self.body
         after, landing, (c, v, a) = self.after, self.absorbs, self.sunk
         angles = self.carriage(self.down + after)
-        feet = np.ones((len(after), 2, 6))
+        feet = standing(len(after), self.start.lands_on)
         feet[..., :5] = self.landing
         feet[..., 4] = self._toes_down(after)[:, None]
         self._free(feet)

@@ -7,15 +7,15 @@ Beyond the thesis; after Faloutsos 2001, whose controllers end in a state that a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ...body import Pose, Skeleton, end_positions, forward_kinematics, sole_corners
-from ...navigation import floor_at, gap
+from ...navigation import floor_at, gap, slope_at
 from ..body import (FLAT, TRAIL, Physique, Start, hermite, landing_feet, measures, momentum_kernel, carriage,
-                    soles, turns, vectors)
+                    rise, soles, turns, vectors)
 from ..prior import BETWEEN, LEGS, Prior
 from .airborne import SAME, Airborne
 from .flight import flight_kernel
@@ -104,7 +104,8 @@ def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any
     features = prior.features(falls, 0.0, 0.0, physique.size, False)
     way = Path(start.centre, start.centre, land, velocity, velocity, time, 0.0, gravity, None, start.centre, start.centre, heading=start.heading,
                keys=prior.keys(features, features))
-    landing, tucks = landing_feet(place, start.heading, physique.tables), np.zeros(2)
+    start = replace(start, lands_on=slope_at(place[0], place[2], around, place[1] + GRAZES))
+    landing, tucks = landing_feet(place, start.heading, physique.tables, start.lands_on), np.zeros(2)
     best = _Fall(physique, start, way, landing, tucks).plan()
     deep = least = _deep(physique, best, around)
     for tuck in TUCKS:
@@ -164,15 +165,17 @@ def _down(physique: Physique, centre: np.ndarray, velocity: np.ndarray, heading:
 
 def _clear(physique: Physique, place: np.ndarray, heading: float, around: Sequence[Any]) -> np.ndarray:
     """The place (3,) near another one at its height where both soles come down whole, or as whole as can be: out of risers, and not over edges."""
-    size, corners = physique.size, soles(landing_feet(place, heading, physique.tables), physique.tables)
+    size, slope = physique.size, slope_at(place[0], place[2], around, place[1] + GRAZES)
+    corners = soles(landing_feet(place, heading, physique.tables, slope), physique.tables, slope)
 
     def cost(aside: np.ndarray) -> float:
-        high = np.array([floor_at(x, z, around, place[1] + LOW * size) for x, _, z in corners + aside]) - place[1]
+        high = np.array([floor_at(x, z, around, y + LOW * size) - y for x, y, z in corners + aside])
         return float(np.hypot(*aside[[0, 2]]) + DEEP * max(high.max() - GRAZES, 0.0) + HANGS * (high < -GRAZES).sum())
     best = np.zeros(3)
     if not len(around) or cost(best) == 0.0:
         return place
     ways = [far * size * np.array([np.sin(angle), 0.0, np.cos(angle)]) for far in BESIDE for angle in ROUND]
+    ways = [way + [0.0, rise(way[[0, 2]], slope), 0.0] for way in ways]
     return place + min([best, *ways], key=cost)
 
 

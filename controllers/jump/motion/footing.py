@@ -56,9 +56,9 @@ def heels_up(start: Start, planted: np.ndarray, leave: np.ndarray, pushes: float
     return min(start.heel_up * min(pushes / SHORT_PUSH, 1.0), max(NEARER * float(nearest_kernel(body, hips, foot)), LEAST_UP))
 
 
-def heels_down(centres: np.ndarray, feet: np.ndarray, body: BodyTables, flex: float) -> np.ndarray:
+def heels_down(centres: np.ndarray, feet: np.ndarray, body: BodyTables, flex: np.ndarray | float) -> np.ndarray:
     """Whether heels (N, 2) of feet (N, 2, 5) can be on the floor under a mass at centres (N, 3): neither is the leg too short nor does the ankle
-    bend by more than `flex` [rad]."""
+    bend by more than `flex` (2,) [rad]."""
     heading = np.stack([np.sin(feet[..., 3]), np.zeros(feet.shape[:2]), np.cos(feet[..., 3])], -1)
     leg = (centres - [0.0, HIPS * body.size, 0.0])[:, None] - feet[..., :3] + body.toe[2] * heading + [0.0, body.toe[1], 0.0]
     long = np.linalg.norm(leg, axis=-1)

@@ -15,7 +15,7 @@ FREE = -1.0
 @kernel
 def ground_kernel(body, flex, angles, joints, offsets, turns, centres, feet, root, roots, local):
     """Poses over planted feet: angles (N, 11), what is left of the start (N, J, 3), the pelvis' turns
-    (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), whose pitch is written.
+    (N, 3, 3), centres of mass (N, 3), feet (N, 2, 6), or (N, 2, 8) on a slope, whose pitch is written.
 
     root: (3,) a first guess. roots: (N, 3) and local: (N, J, 3, 3) are written.
     """

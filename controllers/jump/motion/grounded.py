@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..body import FLAT, FLEX, Physique, Start, hermite, measures, over, take_off_velocity
+from ..body import FLAT, FLEX, Physique, Start, hermite, measures, over, take_off_velocity, uphill
 from ..prior import BETWEEN, LEGS
 from .centroidal import course_kernel
 from .descent import descent, sinking
@@ -80,8 +80,9 @@ def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, fl
     feet = settling(start, planted, physique.tables, times)
     flat = np.ones(feet.shape[:2], bool)
     if start.single is not None:  # whose hips are under his mass; who crouches on two feet sits back, heels down
-        flat = heels_down(centres, feet, physique.tables, FLEX * physique.flexibility)
+        flat = heels_down(centres, feet, physique.tables, FLEX * physique.flexibility - uphill(planted, start.slope))
     flat &= (share <= heels_rise(start, planted, centres, share, way.push.duration))[:, None]
+    feet[..., 1] -= planted[:, 1] - planted[0, 1]  # as if it were level
     hulls, counts = standing_soles(feet, float(planted[0, 1]), flat, start.single, physique.tables)
     near = np.full(KNOTS, NEAR)
     near[0] = BEGINS

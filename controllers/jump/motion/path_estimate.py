@@ -130,8 +130,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     """
     body, upright = physique.tables, measures(physique)
     size, g, prior = body.size, -float(gravity[1]), prior or Prior.load()
-    ground = soles(feet, body)
-    middle, goal = ground.mean(0), soles(landing, body).mean(0)
+    ground = soles(feet, body, start.slope)
+    middle, goal = ground.mean(0), soles(landing, body, start.lands_on).mean(0)
     flat = (goal - middle) * FLAT
     far = float(np.linalg.norm(flat))
     towards = flat / far if far > 1e-6 else np.zeros(3)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body import yaw
-from ..body import FLAT, TAKE_OFF_REACH, BodyTables, Measures, Physique, Start, over, stretched
+from ..body import FLAT, TAKE_OFF_REACH, BodyTables, Measures, Physique, Start, over, stretched, uphill
 from ..muscles import crouch_depth, strength
 from .footing import heels_up
 from .pendulum import waiting_kernel
@@ -91,7 +91,8 @@ def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, 
         astray = velocity * FLAT - max(float(velocity @ facing), 0.0) * facing
         share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
         reach = min(reach, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
-    return stretched(physique, angles, feet, heels_up(start, feet, guess, pushes, body), reach, heading, guess) + lifted
+    down = heels_up(start, feet, guess, pushes, body) - float(uphill(feet, start.slope).mean())
+    return stretched(physique, angles, feet, down, reach, heading, guess) + lifted
 
 
 def straightest(speed: float, body: BodyTables, astray: float) -> float:

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...contract import level
-from ...navigation import floor_at, gap
-from ..body import FLAT, Physique, Start, landing_feet, soles
+from ...navigation import floor_at, gap, slope_at
+from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, path
 from ..prior import Prior
 from .feasibility import HARD, fault, meant
@@ -25,6 +25,8 @@ LITTLE, RISES = 0.06, 0.03
 """Who leaves in haste is elsewhere by so much at most [m]; and a body that flies higher by no more than the rise of its arc and the second [m]."""
 FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
+STEEPEST = 0.4
+"""Nobody leaps off ground that rises by more than this a metre, or onto it."""
 
 
 class How(NamedTuple):
@@ -57,8 +59,16 @@ class Arcs:
     def __init__(self, physique: Physique, gravity: np.ndarray, prior: Prior):
         self.physique, self.gravity, self.prior = physique, gravity, prior
 
+    def onto(self, start: Start, place: np.ndarray, around: Sequence[Any]) -> Start:
+        """The same start of one who lands at a place (3,), as the ground rises there."""
+        slope = slope_at(place[0], place[2], around, place[1] + FLUSH) if len(around) else LEVEL
+        return replace(start, lands_on=slope) if slope.any() or start.lands_on.any() else start
+
     def footing(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> str:
         """Why nobody can stand at a place (3,), if so."""
+        for slope, way in ((start.slope, "off"), (start.lands_on, "onto")):
+            if np.hypot(*slope) > STEEPEST:
+                return f"too steep to leap {way}: {np.degrees(np.arctan(np.hypot(*slope))):.0f}°, where {np.degrees(np.arctan(STEEPEST)):.0f}° can be"
         around = [thing for thing in around if not hasattr(thing, "place")]
         if any(gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0 for thing in around):
             return "that place is inside something solid"
@@ -66,8 +76,8 @@ class Arcs:
         if around and below < place[1] - FLUSH:
             return f"there is nothing to land on at {place[1]:.2f} m; the floor there lies at {below:.2f} m"
         body = self.physique.tables
-        corners = soles(landing_feet(place, start.lands, body), body)
-        if around and min(floor_at(x, z, around, place[1] + FLUSH) for x, _, z in corners) < place[1] - FLUSH:
+        corners = soles(landing_feet(place, start.lands, body, start.lands_on), body, start.lands_on)
+        if around and min(floor_at(x, z, around, y + FLUSH) - y for x, y, z in corners) < -FLUSH:
             return "too near an edge: only part of its feet would find floor"
         return ""
 
@@ -132,6 +142,7 @@ class Arcs:
     def surveyed(self, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any],
                   heights: Sequence[float]) -> Pieces[tuple[Path, str]]:
         """What `survey` gives, in pieces."""
+        start = self.onto(start, place, around)
         why = self.footing(start, place, floor, around)
         if why:
             return self.path(start, place, floor, airtime), why
@@ -146,7 +157,8 @@ class Arcs:
     def middle(self, start: Start, floor: float) -> np.ndarray:
         """The middle (3,) of both soles as they come to stand on a floor [m]: where a jump straight up lands."""
         body = self.physique.tables
-        return soles(start.planted(floor, body), body).mean(0) * FLAT + [0.0, floor, 0.0]
+        middle = soles(start.planted(floor, body), body).mean(0)
+        return middle * FLAT + [0.0, floor + start.rise(middle), 0.0]
 
     def path(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, low_arms: bool = False,
              tucked: bool = False) -> Path:
@@ -154,7 +166,7 @@ class Arcs:
         body = self.physique.tables
         feet = start.planted(floor, body)
         pushing = feet if start.single is None else feet[start.single:start.single + 1]
-        return path(self.physique, start, pushing, landing_feet(place, start.lands, body), floor,
+        return path(self.physique, start, pushing, landing_feet(place, start.lands, body, start.lands_on), floor,
                     self.gravity, airtime, low_arms, self.prior, tucked)
 
 

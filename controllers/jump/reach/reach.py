@@ -76,6 +76,7 @@ class Reach(Arcs):
     def planned(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
                 around: Sequence[Any], tries: int | None = None) -> Pieces[tuple[Found | None, str]]:
         """What `attempt` gives, in pieces, and along which arc."""
+        start = self.onto(start, place, around)
         why = self.footing(start, place, floor, around)
         if why:
             return None, why
@@ -100,6 +101,7 @@ class Reach(Arcs):
         known = self._known(_asked(start, place, floor, airtime, None), around)
         if known is not None and known[0] is not None and known[0].arc.how == how:
             return known[0]
+        start = self.onto(start, place, around)
         if self.footing(start, place, floor, around):
             return None
         arc = self.arc(start, place, floor, around, how)
@@ -125,6 +127,7 @@ class Reach(Arcs):
 
     def touching(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, around: Sequence[Any] = ()) -> Touch | None:
         """What the usual jump to a place (3,) would touch, and how the body would lie in it; None if nothing, or if there is no such jump."""
+        start = self.onto(start, place, around)
         arc = whole(following(self.arcs(start, place, floor, airtime, around)))
         assert arc is not None  # there is always one
         way = arc.path
