@@ -8,7 +8,7 @@ from .ballistics import along, apex_airtime, least_effort, take_off_velocity
 from .curves import hermite, monotone
 from .dynamics import (GRAVITY, BodyTables, Physique, centre_kernel, momentum_kernel, parts_kernel, place_kernel, turns,
                        vectors)
-from .feet import LEVEL, landing_feet, rise, soles, standing, striding_feet, uphill
+from .sloped_feet import LEVEL, landing_feet, rise, soles, standing, striding_feet, uphill
 from .planted_pose import bend_kernel, nearest_kernel, stand_kernel
 from .start import (FLAT, FOOT_FADE, HEEL_UP, TAKE_OFF_REACH, TOES_DOWN, TOUCH_REACH, TRAIL, TURNED, Measures, Start, airtime_up, carried, measures,
                     over, stretched)

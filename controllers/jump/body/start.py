@@ -14,7 +14,7 @@ from . import carriage
 from .balance import STAND_REACH
 from .ballistics import apex_airtime
 from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
-from .feet import LEVEL, landing_feet, raised, rise, uphill
+from .sloped_feet import LEVEL, landing_feet, raised, rise, uphill
 from .planted_pose import stand_kernel
 
 FLAT = np.array([1.0, 0.0, 1.0])

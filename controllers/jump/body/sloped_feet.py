@@ -59,7 +59,7 @@ def landing_feet(place: np.ndarray, heading: float, body: BodyTables, slope: np.
         feet[side, 3] = heading + sign * 0.08
         ball = np.array([sign * HALF_STANCE * body.size, 0.0, 0.0])
         way = yaw(heading) @ ball - yaw(feet[side, 3]) @ [0.0, 0.0, middle]
-        feet[side, :3] = place + way + [0.0, raised(body, slope) + rise(way[[0, 2]], slope), 0.0]
+        feet[side, :3] = place + way + np.array([0.0, raised(body, slope) + rise(way[[0, 2]], slope), 0.0])
     return feet
 
 
@@ -67,5 +67,5 @@ def striding_feet(place: np.ndarray, heading: float, body: BodyTables, side: int
     """Two feet (2, 5) of which that on a side, 0 left or 1 right, comes down at `place` (3,), a little to its side, on ground that rises by slope (2,) [m/m]."""
     feet = landing_feet(place, heading, body, slope)
     way = (1 - 2 * side) * (HALF_STANCE - NARROW) * body.size * yaw(heading)[:, 0]
-    feet[:, :3] -= way + [0.0, rise(way[[0, 2]], slope), 0.0]
+    feet[:, :3] -= way + np.array([0.0, float(rise(way[[0, 2]], slope)), 0.0])
     return feet
