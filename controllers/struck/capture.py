@@ -16,7 +16,7 @@ import numpy as np
 from ..body import margin_kernel
 from ..compiled import kernel
 from .swaying import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
-from .stepping import SOONEST, aim_kernel, far_kernel, home_kernel, soon_kernel, walks_kernel, which_kernel
+from .stepping import SOONEST, far_kernel, home_kernel, soon_kernel, step_kernel, walks_kernel, which_kernel
 from .surroundings import NOTHING, point_kernel, tread_kernel
 
 LONGEST = 6.0
@@ -123,8 +123,9 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
             swing, lands, closing = side, now + max(min(haste * SWINGS, swift), SOONEST), False
             if over:
                 lands = now + soon_kernel(things, body, swing, feet, x, v, p, rate, lands - now, heading, points, corners)
-            gone = aim_kernel(things, body, swing, feet, x, v, p, rate, lands - now, heading, wish, over, target, points, corners)
-            steps[taken, 0], steps[taken, 1], steps[taken, 2] = swing, now, lands
+            long, gone = step_kernel(things, body, swing, feet, x, v, p, rate, lands - now, now, heading, wish, over, target, points, corners)
+            lands = now + long
+            steps[taken, 0], steps[taken, 1], steps[taken, 2] = swing, 0.0, lands  # it has swung since the strike
             steps[taken, 3:7] = target
             taken += 1
             fate = STEPS
@@ -143,8 +144,8 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                     long = haste * SWINGS if taken == 0 else AGAIN
                     if over:
                         long = soon_kernel(things, body, swing, feet, x, v, p, rate, long, heading, points, corners)
+                    long, gone = step_kernel(things, body, swing, feet, x, v, p, rate, long, 0.0, heading, wish, over, target, points, corners)
                     lands, closing, fate, lifts = now + long, False, STEPS, -1.0
-                    gone = aim_kernel(things, body, swing, feet, x, v, p, rate, long, heading, wish, over, target, points, corners)
             elif inside >= 0.0:
                 lifts = -1.0
                 if home_kernel(things, body, 1 - stance, feet, heading, target) > HOME * body.size and not closed:

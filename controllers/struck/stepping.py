@@ -8,6 +8,7 @@ import numpy as np
 
 from ..body import HALF_SOLE
 from ..compiled import kernel
+from .passing import PACE, length_kernel
 from .swaying import RATE, middle_kernel, support_kernel, sway_kernel
 from .surroundings import place_kernel
 
@@ -29,6 +30,8 @@ CROSSES, SIDEWAYS = (0.10, 0.16, 0.0), 0.6
 beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
 SOONEST = 0.1
 """No foot lands sooner [s]."""
+ROUNDS = 4
+"""So often it is looked whether a foot gets there in time."""
 BEYOND = 0.05
 """A foot is set down so far beyond the capture point [m], at standard height: its sole brakes."""
 
@@ -60,7 +63,9 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     ox, oz = feet[1 - side, 0] - there[0], feet[1 - side, 1] - there[1]
     own = 1.0 - 2.0 * side
     other = c * ox - s * oz
-    if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead):  # across the other, before it
+    bx, bz = feet[side, 0] - feet[1 - side, 0], feet[side, 1] - feet[1 - side, 1]
+    behind = own * (c * bx - s * bz) < 0.0 and s * bx + c * bz < 0.0  # has crossed there: it does not get before the other on that side
+    if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead) and not behind:  # across the other, before it
         ahead = max(ahead, s * ox + c * oz + CROSSES[1] * size + along)
     elif own * (left - other) < (OWN + HALF_SOLE) * size:
         left = other + own * (OWN + HALF_SOLE) * size
@@ -71,6 +76,19 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     target[1] = there[1] - s * left + c * ahead - along * math.cos(yaw)
     target[2] = yaw
     return place_kernel(things, body, side, feet, heading, over, target)
+
+
+@kernel
+def step_kernel(things, body, side, feet, x, v, p, rate, time, swung, heading, wish, over, target, points, corners):
+    """Write where a foot that has swung for `swung` [s] and would land in `time` [s] is set down, see `aim_kernel`; in how long, later where it has too far to go; and whether that is over an edge."""
+    gone, slowest = False, PACE * math.sqrt(body.size)
+    for _ in range(ROUNDS):
+        gone = aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, target, points, corners)
+        needs = length_kernel(feet[side], target, feet[1 - side], 1.0 - 2.0 * side, heading, body.size) / slowest - swung
+        if needs <= time + 0.5 / RATE:
+            break
+        time = needs
+    return time, gone
 
 
 @kernel
