@@ -7,12 +7,13 @@ import math
 
 import numpy as np
 
+from ..body import Skeleton, forward_kinematics
 from ..compiled import kernel
 
 ROOM = 0.28, 0.13
 """A ball passes the other so far before or behind it, and so far beside it [m], at standard height: feet are that long, and shins lean."""
-PACE = 4.4
-"""A foot swings no faster than this [m/s] in the mean, at standard height: 8 m/s at its fastest."""
+PACES = 4.4, 5.4, 6.6
+"""A foot swings no faster than the first [m/s] in the mean, at standard height, 8 m/s at its fastest; who would fall for that, or put a leg through the other, is as much faster as he must."""
 EARLIEST, LATEST = 0.2, 0.8
 """The share of its straight way at which a foot is farthest out of it is between these."""
 
@@ -60,3 +61,16 @@ def out_of_way(share: np.ndarray, most: float) -> np.ndarray:
     """How far (K,) a foot is out of its straight way after shares of it, 1 at `most`: q^α (1 − q)^β, of which neither is below 1, so that it leaves and lands as smoothly as it goes."""
     rises, sinks = max(1.0, most / (1.0 - most)), max(1.0, (1.0 - most) / most)
     return share**rises * (1.0 - share) ** sinks / (most**rises * (1.0 - most) ** sinks)
+
+
+def legs_apart(skeleton: Skeleton, roots: np.ndarray, local: np.ndarray) -> float:
+    """How near [m] the axes of one shin and foot come to those of the other in poses (N, 3), (N, J, 3, 3): by turns, each one's nearest place to the other."""
+    places = forward_kinematics(skeleton, roots, local)[0]
+    left, right = (np.stack([places[:, skeleton.index(side + part)] for part in ("Leg", "Foot", "Toe")], 1) for side in ("Left", "Right"))
+    a, c = left[:, :2, None], right[:, None, :2]
+    u, v = np.diff(left, axis=1)[:, :, None], np.diff(right, axis=1)[:, None]
+    uu, vv, off, there = (u * u).sum(-1), (v * v).sum(-1), a - c, np.full((len(roots), 2, 2), 0.5)
+    for _ in range(4):
+        here = np.clip(((off + there[..., None] * u) * v).sum(-1) / vv, 0.0, 1.0)
+        there = np.clip(((here[..., None] * v - off) * u).sum(-1) / uu, 0.0, 1.0)
+    return float(np.linalg.norm(off + there[..., None] * u - here[..., None] * v, axis=-1).min(initial=np.inf))

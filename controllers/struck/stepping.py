@@ -8,7 +8,7 @@ import numpy as np
 
 from ..body import HALF_SOLE
 from ..compiled import kernel
-from .passing import PACE, length_kernel
+from .passing import length_kernel
 from .swaying import RATE, middle_kernel, support_kernel, sway_kernel
 from .surroundings import place_kernel
 
@@ -25,11 +25,11 @@ OWN = 0.06
 """A foot keeps so far to its own side of the other [m], at standard height."""
 APART = 0.27
 """How far apart feet are that rest beside each other [m], at standard height."""
-CROSSES, SIDEWAYS = (0.10, 0.16, 0.0), 0.6
+CROSSES, SIDEWAYS = (0.10, 0.28, 0.0), 0.6
 """A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then [m], at standard height; and it does so first where the capture point is so far
 beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
-SOONEST = 0.1
-"""No foot lands sooner [s]."""
+SOONEST, LATER = 0.1, 0.3
+"""No foot lands sooner, and none later than the second or its time because it has far to go [s]."""
 ROUNDS = 4
 """So often it is looked whether a foot gets there in time."""
 BEYOND = 0.05
@@ -79,16 +79,23 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
 
 
 @kernel
-def step_kernel(things, body, side, feet, x, v, p, rate, time, swung, heading, wish, over, target, points, corners):
-    """Write where a foot that has swung for `swung` [s] and would land in `time` [s] is set down, see `aim_kernel`; in how long, later where it has too far to go; and whether that is over an edge."""
-    gone, slowest = False, PACE * math.sqrt(body.size)
+def step_kernel(things, body, side, feet, x, v, p, rate, time, swung, heading, wish, over, pace, target, points, corners):
+    """Write where a foot that has swung for `swung` [s] and would land in `time` [s] is set down, see `aim_kernel`, if it swings no faster than `pace` [m/s] in the mean: where it has too far
+    to go it lands a little later, and short of that. In how long it lands, and whether that is over an edge."""
+    latest, share = max(time, LATER), 1.0
     for _ in range(ROUNDS):
         gone = aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, target, points, corners)
-        needs = length_kernel(feet[side], target, feet[1 - side], 1.0 - 2.0 * side, heading, body.size) / slowest - swung
+        length = length_kernel(feet[side], target, feet[1 - side], 1.0 - 2.0 * side, heading, body.size)
+        needs = length / (pace * math.sqrt(body.size)) - swung
         if needs <= time + 0.5 / RATE:
+            return time, gone
+        share = (time + swung) / (needs + swung)
+        if time >= latest:
             break
-        time = needs
-    return time, gone
+        time = min(needs, latest)
+    for i in range(2):
+        target[i] = feet[side, i] + share * (target[i] - feet[side, i])
+    return time, place_kernel(things, body, side, feet, heading, over, target)
 
 
 @kernel
