@@ -17,7 +17,7 @@ from ..body import margin_kernel
 from ..compiled import kernel
 from .passing import PACES
 from .swaying import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
-from .stepping import SOONEST, far_kernel, home_kernel, soon_kernel, step_kernel, walks_kernel, which_kernel
+from .stepping import SOONEST, far_kernel, home_kernel, short_kernel, soon_kernel, step_kernel, walks_kernel, which_kernel
 from .surroundings import NOTHING, point_kernel, tread_kernel
 
 LONGEST = 6.0
@@ -87,7 +87,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
     stance = 0 if math.hypot(feet[0, 0] - x[0], feet[0, 1] - x[1]) < math.hypot(feet[1, 0] - x[0], feet[1, 1] - x[1]) else 1
     haste = max(1.0 - HASTE[1] * max(math.hypot(velocity[0], velocity[1]) - HASTE[0], 0.0), HASTE[2])
     first, wishes, ends = not (free[0] or free[1]), wish[0] != 0.0 or wish[1] != 0.0, math.inf
-    count = support_kernel(body, feet, free, points, corners)
+    count, short = support_kernel(body, feet, free, points, corners), short_kernel(rate)
     if count > 0:
         into_kernel(corners, count, p)
     for n in range(len(centres)):
@@ -107,7 +107,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 last, stance, swing, landed = swing, swing, -1, now
                 count = support_kernel(body, feet, free, points, corners)
                 behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, 2.0 * last - 1.0, wishes, body.size) > 1.0
-                lost = margin_kernel(corners, count, point[0], point[1]) < -LOST * body.size or caught > MOST or behind
+                lost = margin_kernel(corners, count, point[0] - short * wish[0], point[1] - short * wish[1]) < -LOST * body.size or caught > MOST or behind
                 if lost and not over or caught > 2 * MOST:
                     return n + 1, taken, FALLS, caught
                 if not closing and wishes and walks_kernel(v, heading, body.size):

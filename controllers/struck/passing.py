@@ -12,9 +12,9 @@ from ..compiled import kernel
 
 ROOM = 0.28, 0.13
 """A ball passes the other so far before or behind it, and so far beside it [m], at standard height: feet are that long, and shins lean."""
-PACES = 4.4, 5.4, 6.6
+PACES = 4.4, 5.4, 6.8
 """A foot swings no faster than the first [m/s] in the mean, at standard height, 8 m/s at its fastest; who would fall for that, or put a leg through the other, is as much faster as he must."""
-EARLIEST, LATEST = 0.2, 0.8
+EARLIEST, LATEST = 0.3, 0.7
 """The share of its straight way at which a foot is farthest out of it is between these."""
 
 

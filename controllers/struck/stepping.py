@@ -25,7 +25,7 @@ OWN = 0.06
 """A foot keeps so far to its own side of the other [m], at standard height."""
 APART = 0.27
 """How far apart feet are that rest beside each other [m], at standard height."""
-CROSSES, SIDEWAYS = (0.10, 0.28, 0.0), 0.6
+CROSSES, SIDEWAYS = (0.10, 0.22, 0.0), 0.6
 """A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then [m], at standard height; and it does so first where the capture point is so far
 beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
 SOONEST, LATER = 0.1, 0.3
@@ -34,6 +34,12 @@ ROUNDS = 4
 """So often it is looked whether a foot gets there in time."""
 BEYOND = 0.05
 """A foot is set down so far beyond the capture point [m], at standard height: its sole brakes."""
+
+
+@kernel
+def short_kernel(rate):
+    """Who walks on sets his feet down so short of the capture point [m], for each m/s: as he does with two steps a second."""
+    return 0.5 / (math.exp(0.5 * rate) - 1.0)
 
 
 @kernel
@@ -51,7 +57,7 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     px, pz = moves[0] / rate, moves[1] / rate  # from the mass centre to its capture point
     far = math.hypot(px, pz)
     more = BEYOND * body.size / max(far, 0.05) if pace == 0.0 else 0.0
-    back = 0.5 / (math.exp(0.5 * rate) - 1.0)  # who walks on sets his feet down this short of it, for each m/s
+    back = short_kernel(rate)
     px, pz = px * (1.0 + more) - back * wish[0], pz * (1.0 + more) - back * wish[1]
     ahead, left = s * px + c * pz, c * px - s * pz
     size = body.size
