@@ -107,7 +107,8 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 last, stance, swing, landed = swing, swing, -1, now
                 count = support_kernel(body, feet, free, points, corners)
                 behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, 2.0 * last - 1.0, wishes, body.size) > 1.0
-                lost = margin_kernel(corners, count, point[0] - short * wish[0], point[1] - short * wish[1]) < -LOST * body.size or caught > MOST or behind
+                inside = max(margin_kernel(corners, count, point[0], point[1]), margin_kernel(corners, count, point[0] - short * wish[0], point[1] - short * wish[1]))
+                lost = inside < -LOST * body.size or caught > MOST or behind
                 if lost and not over or caught > 2 * MOST:
                     return n + 1, taken, FALLS, caught
                 if not closing and wishes and walks_kernel(v, heading, body.size):

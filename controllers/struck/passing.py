@@ -42,10 +42,14 @@ def past_kernel(begin, end, other, own, heading, size, out):
     across_a, across_l = -side * along_l, side * along_a
     lacks = max(1.0 - (a * across_a + l * across_l), 0.0)
     share = -(a * along_a + l * along_l) / far
-    if 0.0 < share < 1.0:
-        ahead, left = lacks * across_a * ROOM[0] * size, own * lacks * across_l * ROOM[1] * size
-        out[0], out[1] = s * ahead + c * left, c * ahead - s * left
-    return min(max(share, EARLIEST), LATEST)
+    if not 0.0 < share < 1.0 or lacks == 0.0:
+        return 0.5
+    ahead, left = lacks * across_a * ROOM[0] * size, own * lacks * across_l * ROOM[1] * size
+    vx, vz = share * (end[0] - begin[0]) + s * ahead + c * left, share * (end[1] - begin[1]) + c * ahead - s * left  # the place where it passes
+    there = math.hypot(vx, vz)
+    share = min(max(there / (there + math.hypot(end[0] - begin[0] - vx, end[1] - begin[1] - vz)), EARLIEST), LATEST)
+    out[0], out[1] = vx - share * (end[0] - begin[0]), vz - share * (end[1] - begin[1])
+    return share
 
 
 @kernel
