@@ -24,7 +24,7 @@ LEFT, RIGHT = ([list(LIMBS).index(side + part) for part in ("Leg", "Foot")] for 
 @dataclass(frozen=True)
 class Push:
     """One who was pushed. apart: how near axes of shins and feet come [m], and when [s]; foot: how fast an ankle goes at most [m/s]; thrown: how hard a joint is accelerated over
-    1/30 s [m/s²]; hips: how low they come, as a share of where they stand. fate: "stride", "steps" or "falls". Falls are looked at until he falls no more than anybody."""
+    1/30 s [m/s²]; hips: how low they come, as a share of where they stand. fate: "stride", "steps" or "falls"."""
 
     speed: float
     towards: float
@@ -82,3 +82,14 @@ def pushes(somebody, speeds=SPEEDS) -> list[Push]:
                     apart, foot, thrown, hips = looked_at(somebody.skeleton, states)
                     found.append(Push(speed, towards, gain, phase, float(apart.min()), float(apart.argmin() * DT), float(foot.max()), float(thrown.max()), float(hips.min()), fate))
     return found
+
+
+def told(found: list[Push], speed: float) -> str:
+    """A line of text about pushes of who goes so fast; legs, feet, joints and hips of those who step."""
+    rows = [push for push in found if push.speed == speed]
+    steps = [push for push in rows if push.fate == "steps"]
+    fates = ", ".join(f"{sum(push.fate == fate for push in rows)} {said}" for fate, said in (("stride", "in stride"), ("steps", "step"), ("falls", "fall")))
+    apart, foot, thrown = (np.array([getattr(push, name) for push in steps]) for name in ("apart", "foot", "thrown"))
+    return (f"{'standing' if not speed else f'at {speed:g} m/s'}, {len(rows)} pushes: {fates}; who step: legs' axes within {100 * NEAR:g} cm in {(apart < NEAR).sum()}, nearest {100 * apart.min():.1f} cm; "
+            f"ankles {np.median(foot):.1f} m/s (median), {np.quantile(foot, 0.95):.1f} (95 %), {foot.max():.1f} at most, over {FAST:g} in {(foot > FAST).sum()}; "
+            f"joints {np.quantile(thrown, 0.95):.0f} m/s² (95 %); hips {min(push.hips for push in steps):.2f}")
