@@ -8,7 +8,7 @@ import numpy as np
 
 from ..body import HALF_SOLE
 from ..compiled import kernel
-from .passing import length_kernel
+from .passing import PACES, length_kernel
 from .swaying import RATE, middle_kernel, support_kernel, sway_kernel
 from .surroundings import place_kernel
 
@@ -25,8 +25,8 @@ OWN = 0.06
 """A foot keeps so far to its own side of the other [m], at standard height."""
 APART = 0.27
 """How far apart feet are that rest beside each other [m], at standard height."""
-CROSSES, SIDEWAYS = (0.10, 0.22, 0.0), 0.6
-"""A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then [m], at standard height; and it does so first where the capture point is so far
+CROSSES, NARROWLY, SIDEWAYS = (0.10, 0.22, 0.0), 0.16, 0.6
+"""A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then, or NARROWLY of who swings it as fast as he can [m], at standard height; and it does so first where the capture point is so far
 beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
 SOONEST, LATER = 0.1, 0.3
 """No foot lands sooner, and none later than the second or its time because it has far to go [s]."""
@@ -43,9 +43,9 @@ def short_kernel(rate):
 
 
 @kernel
-def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, target, points, corners):
+def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, before, target, points, corners):
     """Write where a foot that lands in `time` [s] is set down (4,): where the capture point will be then, a little beyond, as far as legs reach, on its own side or well across, and where ground
-    carries it. Whether that is over an edge, as none is who may not go `over` one."""
+    carries it. before: so far before the other [m], at standard height, where it crosses over. Whether that is over an edge, as none is who may not go `over` one."""
     there, moves, press, goal, free = x.copy(), v.copy(), p.copy(), np.empty(2), np.zeros(2, np.bool_)
     free[side] = True
     middle_kernel(body, feet[1 - side], goal)
@@ -72,7 +72,7 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     bx, bz = feet[side, 0] - feet[1 - side, 0], feet[side, 1] - feet[1 - side, 1]
     behind = own * (c * bx - s * bz) < 0.0 and s * bx + c * bz < 0.0  # has crossed there: it does not get before the other on that side
     if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead) and not behind:  # across the other, before it
-        ahead = max(ahead, s * ox + c * oz + CROSSES[1] * size + along)
+        ahead = max(ahead, s * ox + c * oz + before * size + along)
     elif own * (left - other) < (OWN + HALF_SOLE) * size:
         left = other + own * (OWN + HALF_SOLE) * size
     elif abs(left) < 0.3 * abs(ahead):  # straight on: a little to its side, as one walks
@@ -88,9 +88,9 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
 def step_kernel(things, body, side, feet, x, v, p, rate, time, swung, heading, wish, over, pace, target, points, corners):
     """Write where a foot that has swung for `swung` [s] and would land in `time` [s] is set down, see `aim_kernel`, if it swings no faster than `pace` [m/s] in the mean: where it has too far
     to go it lands a little later, and short of that. In how long it lands, and whether that is over an edge."""
-    latest, share = max(time, LATER), 1.0
+    latest, share, before = max(time, LATER), 1.0, CROSSES[1] if pace < PACES[-1] else NARROWLY
     for _ in range(ROUNDS):
-        gone = aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, target, points, corners)
+        gone = aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, before, target, points, corners)
         length = length_kernel(feet[side], target, feet[1 - side], 1.0 - 2.0 * side, heading, body.size)
         needs = length / (pace * math.sqrt(body.size)) - swung
         if needs <= time + 0.5 / RATE:
