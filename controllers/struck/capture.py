@@ -15,8 +15,9 @@ import numpy as np
 
 from ..body import margin_kernel
 from ..compiled import kernel
+from .passing import PACES
 from .swaying import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
-from .stepping import SOONEST, aim_kernel, far_kernel, home_kernel, soon_kernel, walks_kernel, which_kernel
+from .stepping import SOONEST, far_kernel, home_kernel, short_kernel, soon_kernel, step_kernel, walks_kernel, which_kernel
 from .surroundings import NOTHING, point_kernel, tread_kernel
 
 LONGEST = 6.0
@@ -60,10 +61,10 @@ class Way(NamedTuple):
 
 
 def way(centre: np.ndarray, velocity: np.ndarray, feet: np.ndarray, free: np.ndarray, heading: float, rate: float, wish: np.ndarray, body, floor: float = 0.0,
-        things: np.ndarray = NOTHING, over: bool = False) -> Way:
+        things: np.ndarray = NOTHING, over: bool = False, pace: float = PACES[0]) -> Way:
     """The way of a mass centre (2,) x, z [m] that moves with a velocity (2,) [m/s]. feet: (2, 3) where the balls are and point, x, z [m], yaw [rad]; free: (2,) which is
     in the air. rate: ω [1/s]. wish: (2,) [m/s] in the world, how it wants to move on. floor: [m] on which it stands. things: (K, 9) what stands about, as of `about`. over: it is not to
-    fall, but to go on until a foot comes down over an edge."""
+    fall, but to go on until a foot comes down over an edge. pace: how fast feet swing at most [m/s], in the mean, at standard height."""
     count = int(LONGEST * RATE)
     out = np.empty((2, count, 2))
     steps, stood = np.empty((2 * MOST + 4, 7)), np.empty((2, 4))
@@ -72,12 +73,12 @@ def way(centre: np.ndarray, velocity: np.ndarray, feet: np.ndarray, free: np.nda
         stood[side, 3] = floor if free[side] else tread_kernel(things, stood[side, 0], stood[side, 1], floor + 0.2, float(floor))
     levels = stood[:, 3].copy()
     n, taken, fate, caught = way_kernel(np.asarray(centre, float), np.asarray(velocity, float), stood, np.array(free, bool), float(heading), float(rate),
-                                        np.asarray(wish, float), body, things, bool(over), out[0], out[1], steps)
+                                        np.asarray(wish, float), body, things, bool(over), float(pace), out[0], out[1], steps)
     return Way(out[0, :n].copy(), out[1, :n].copy(), steps[:taken].copy(), levels, fate, caught)
 
 
 @kernel
-def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, over, centres, velocities, steps):
+def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, over, pace, centres, velocities, steps):
     """See `way`. Returns how many moments and steps, the fate, and the steps that caught it."""
     x, v, p, goal, point = centre.copy(), velocity.copy(), centre.copy(), np.empty(2), np.empty(2)
     points, corners, target, other = np.empty((8, 2)), np.empty((9, 2)), np.empty(4), np.empty(2)
@@ -86,7 +87,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
     stance = 0 if math.hypot(feet[0, 0] - x[0], feet[0, 1] - x[1]) < math.hypot(feet[1, 0] - x[0], feet[1, 1] - x[1]) else 1
     haste = max(1.0 - HASTE[1] * max(math.hypot(velocity[0], velocity[1]) - HASTE[0], 0.0), HASTE[2])
     first, wishes, ends = not (free[0] or free[1]), wish[0] != 0.0 or wish[1] != 0.0, math.inf
-    count = support_kernel(body, feet, free, points, corners)
+    count, short = support_kernel(body, feet, free, points, corners), short_kernel(rate)
     if count > 0:
         into_kernel(corners, count, p)
     for n in range(len(centres)):
@@ -106,7 +107,8 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 last, stance, swing, landed = swing, swing, -1, now
                 count = support_kernel(body, feet, free, points, corners)
                 behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, 2.0 * last - 1.0, wishes, body.size) > 1.0
-                lost = margin_kernel(corners, count, point[0], point[1]) < -LOST * body.size or caught > MOST or behind
+                inside = max(margin_kernel(corners, count, point[0], point[1]), margin_kernel(corners, count, point[0] - short * wish[0], point[1] - short * wish[1]))
+                lost = inside < -LOST * body.size or caught > MOST or behind
                 if lost and not over or caught > 2 * MOST:
                     return n + 1, taken, FALLS, caught
                 if not closing and wishes and walks_kernel(v, heading, body.size):
@@ -123,8 +125,9 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
             swing, lands, closing = side, now + max(min(haste * SWINGS, swift), SOONEST), False
             if over:
                 lands = now + soon_kernel(things, body, swing, feet, x, v, p, rate, lands - now, heading, points, corners)
-            gone = aim_kernel(things, body, swing, feet, x, v, p, rate, lands - now, heading, wish, over, target, points, corners)
-            steps[taken, 0], steps[taken, 1], steps[taken, 2] = swing, now, lands
+            long, gone = step_kernel(things, body, swing, feet, x, v, p, rate, lands - now, now, heading, wish, over, pace, target, points, corners)
+            lands = now + long
+            steps[taken, 0], steps[taken, 1], steps[taken, 2] = swing, 0.0, lands  # it has swung since the strike
             steps[taken, 3:7] = target
             taken += 1
             fate = STEPS
@@ -143,8 +146,8 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                     long = haste * SWINGS if taken == 0 else AGAIN
                     if over:
                         long = soon_kernel(things, body, swing, feet, x, v, p, rate, long, heading, points, corners)
+                    long, gone = step_kernel(things, body, swing, feet, x, v, p, rate, long, 0.0, heading, wish, over, pace, target, points, corners)
                     lands, closing, fate, lifts = now + long, False, STEPS, -1.0
-                    gone = aim_kernel(things, body, swing, feet, x, v, p, rate, long, heading, wish, over, target, points, corners)
             elif inside >= 0.0:
                 lifts = -1.0
                 if home_kernel(things, body, 1 - stance, feet, heading, target) > HOME * body.size and not closed:

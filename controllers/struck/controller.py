@@ -16,6 +16,7 @@ from ..navigation import gap
 from ..navigation.passing import drawn_in
 from .capture import FALLS, Way, way
 from .flesh import flesh
+from .passing import PACES, legs_apart
 from .recorded_pushes import response
 from .recovery import Recovery
 from .settled import LATE
@@ -40,6 +41,8 @@ GRAZES = 0.03
 """Nobody sets his feet home who would get deeper into anything for that [m], as into the edges of treads."""
 KNEELS, UPRIGHT = 0.5, 0.85
 """Whose hips would come lower than the first, as a share of where they are as he stands, falls; who has fallen is down until they are at the second."""
+ROOMY = 0.06
+"""Legs whose axes come no nearer than this [m] are not in each other."""
 ALOFT = 0.12
 """Who is higher over the floor with both feet [m], at standard height, is in the air and no runner: there nobody can be struck."""
 
@@ -118,19 +121,25 @@ class Struck(Controller):
         height = CHEST * size if strike.height is None else strike.height
         things = about(intent.around, start.centre[[0, 2]])
 
-        def going(over: bool) -> Way:
-            return way(start.centre[[0, 2]], start.velocity[[0, 2]], start.feet[:, [0, 2, 3]], free, start.heading, self.rate, wish, self.physique.tables, floor, things, over)
+        def going(over: bool, pace: float) -> Way:
+            return way(start.centre[[0, 2]], start.velocity[[0, 2]], start.feet[:, [0, 2, 3]], free, start.heading, self.rate, wish, self.physique.tables, floor, things, over, pace)
 
         def played(goes: Way) -> Recovery:
             return stumble(self.physique, start, goes, free, response(), floor, height)
 
-        goes = going(False)
-        if goes.fate != FALLS:
-            made = played(goes)
-            if _slides(self.skeleton, made) < SLIDES and self._raised(made).min() > KNEELS:
-                return made
+        best, room = None, -1.0
+        for pace in PACES:
+            goes = going(False, pace)
+            made = None if goes.fate == FALLS else played(goes)
+            if made is not None and _slides(self.skeleton, made) < SLIDES and self._raised(made).min() > KNEELS:
+                apart = legs_apart(self.skeleton, made.roots, made.local)
+                if apart > ROOMY:
+                    return made
+                best, room = (made, apart) if apart > room else (best, room)
+        if best is not None:
+            return best
         made = topple(self.physique, start, floor, self.rate, things)
-        if made.supported or (goes := going(True)).fate == FALLS:
+        if made.supported or (goes := going(True, PACES[-1])).fate == FALLS:
             return made
         return played(goes)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..body import HALF_SOLE
 from ..compiled import kernel
+from .passing import PACES, length_kernel
 from .swaying import RATE, middle_kernel, support_kernel, sway_kernel
 from .surroundings import place_kernel
 
@@ -24,19 +25,27 @@ OWN = 0.06
 """A foot keeps so far to its own side of the other [m], at standard height."""
 APART = 0.27
 """How far apart feet are that rest beside each other [m], at standard height."""
-CROSSES, SIDEWAYS = (0.10, 0.16, 0.0), 0.6
-"""A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then [m], at standard height; and it does so first where the capture point is so far
+CROSSES, NARROWLY, SIDEWAYS = (0.10, 0.22, 0.0), 0.16, 0.6
+"""A foot crosses over that belongs so far beyond the other [m]; so far before the other's ball is its own then, or NARROWLY of who swings it as fast as he can [m], at standard height; and it does so first where the capture point is so far
 beyond the foot on that side [m]. What is so many times as far aside as ahead is sideways."""
-SOONEST = 0.1
-"""No foot lands sooner [s]."""
+SOONEST, LATER = 0.1, 0.3
+"""No foot lands sooner, and none later than the second or its time because it has far to go [s]."""
+ROUNDS = 4
+"""So often it is looked whether a foot gets there in time."""
 BEYOND = 0.05
 """A foot is set down so far beyond the capture point [m], at standard height: its sole brakes."""
 
 
 @kernel
-def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, target, points, corners):
+def short_kernel(rate):
+    """Who walks on sets his feet down so short of the capture point [m], for each m/s: as he does with two steps a second."""
+    return 0.5 / (math.exp(0.5 * rate) - 1.0)
+
+
+@kernel
+def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, before, target, points, corners):
     """Write where a foot that lands in `time` [s] is set down (4,): where the capture point will be then, a little beyond, as far as legs reach, on its own side or well across, and where ground
-    carries it. Whether that is over an edge, as none is who may not go `over` one."""
+    carries it. before: so far before the other [m], at standard height, where it crosses over. Whether that is over an edge, as none is who may not go `over` one."""
     there, moves, press, goal, free = x.copy(), v.copy(), p.copy(), np.empty(2), np.zeros(2, np.bool_)
     free[side] = True
     middle_kernel(body, feet[1 - side], goal)
@@ -48,7 +57,7 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     px, pz = moves[0] / rate, moves[1] / rate  # from the mass centre to its capture point
     far = math.hypot(px, pz)
     more = BEYOND * body.size / max(far, 0.05) if pace == 0.0 else 0.0
-    back = 0.5 / (math.exp(0.5 * rate) - 1.0)  # who walks on sets his feet down this short of it, for each m/s
+    back = short_kernel(rate)
     px, pz = px * (1.0 + more) - back * wish[0], pz * (1.0 + more) - back * wish[1]
     ahead, left = s * px + c * pz, c * px - s * pz
     size = body.size
@@ -60,8 +69,10 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     ox, oz = feet[1 - side, 0] - there[0], feet[1 - side, 1] - there[1]
     own = 1.0 - 2.0 * side
     other = c * ox - s * oz
-    if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead):  # across the other, before it
-        ahead = max(ahead, s * ox + c * oz + CROSSES[1] * size + along)
+    bx, bz = feet[side, 0] - feet[1 - side, 0], feet[side, 1] - feet[1 - side, 1]
+    behind = own * (c * bx - s * bz) < 0.0 and s * bx + c * bz < 0.0  # has crossed there: it does not get before the other on that side
+    if own * (left - other) < -CROSSES[0] * size and abs(left) > SIDEWAYS * abs(ahead) and not behind:  # across the other, before it
+        ahead = max(ahead, s * ox + c * oz + before * size + along)
     elif own * (left - other) < (OWN + HALF_SOLE) * size:
         left = other + own * (OWN + HALF_SOLE) * size
     elif abs(left) < 0.3 * abs(ahead):  # straight on: a little to its side, as one walks
@@ -71,6 +82,26 @@ def aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, ove
     target[1] = there[1] - s * left + c * ahead - along * math.cos(yaw)
     target[2] = yaw
     return place_kernel(things, body, side, feet, heading, over, target)
+
+
+@kernel
+def step_kernel(things, body, side, feet, x, v, p, rate, time, swung, heading, wish, over, pace, target, points, corners):
+    """Write where a foot that has swung for `swung` [s] and would land in `time` [s] is set down, see `aim_kernel`, if it swings no faster than `pace` [m/s] in the mean: where it has too far
+    to go it lands a little later, and short of that. In how long it lands, and whether that is over an edge."""
+    latest, share, before = max(time, LATER), 1.0, CROSSES[1] if pace < PACES[-1] else NARROWLY
+    for _ in range(ROUNDS):
+        gone = aim_kernel(things, body, side, feet, x, v, p, rate, time, heading, wish, over, before, target, points, corners)
+        length = length_kernel(feet[side], target, feet[1 - side], 1.0 - 2.0 * side, heading, body.size)
+        needs = length / (pace * math.sqrt(body.size)) - swung
+        if needs <= time + 0.5 / RATE:
+            return time, gone
+        share = (time + swung) / (needs + swung)
+        if time >= latest:
+            break
+        time = min(needs, latest)
+    for i in range(2):
+        target[i] = feet[side, i] + share * (target[i] - feet[side, i])
+    return time, place_kernel(things, body, side, feet, heading, over, target)
 
 
 @kernel

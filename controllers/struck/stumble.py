@@ -8,6 +8,7 @@ from ..body import yaw
 from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
 from ..jump.motion import FADE, faded, ground_kernel
 from .capture import DROPS, Way
+from .passing import out_of_way, past_kernel
 from .swaying import RATE
 from .recorded_pushes import SPACED
 from .recovery import Recovery
@@ -24,8 +25,6 @@ LIFTS = 0.045, 0.05
 """A foot swings so high [m] and higher by this share of how far it goes."""
 CLEARS = 0.6
 """… and by this share of how far it steps up or down: past the edge of the tread."""
-ROUND = 0.26
-"""A foot that crosses over passes the other's ball so far before or behind it [m], at standard height."""
 CROSSED, CROSSING = 0.6, 0.12
 """Who crosses over turns pelvis and trunk by this towards where he goes [rad], in so long [s]."""
 PEELS = 0.35
@@ -107,7 +106,9 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
         up = 16.0 * share**2 * (1.0 - share) ** 2
         gone[:, 1] = np.maximum(gone[:, 1] + (LIFTS[0] * body.size + LIFTS[1] * far + CLEARS * abs(step[6] - float(levels[first, side]))) * up
                                 * (lift > 0.0 or begin[1] - low < 0.1 * body.size), low + body.sole)
-        gone[:, [0, 2]] += np.outer(up, _round(begin, end, feet[first, 1 - side], start.heading, body.size))
+        aside = np.empty(2)
+        most = past_kernel(begin[[0, 2]], end[[0, 2]], feet[first, 1 - side, [0, 2]], 1.0 - 2.0 * side, start.heading, body.size, aside)
+        gone[:, [0, 2]] += np.outer(out_of_way(np.clip(share**3 * (10.0 - 15.0 * share + 6.0 * share**2), 0.0, 1.0), most), aside)
         gone[:, 4] += PEELS * min(far / 0.3, 1.0) * 27.0 / 4.0 * share * (1.0 - share) ** 2 * (lift > 0.0)
         lower = np.sin(np.maximum(-gone[:, 4], 0.0)) * (body.toe[2] - body.heel[2])
         gone[:, 1] = np.maximum(gone[:, 1], low + body.sole + lower)
@@ -126,17 +127,6 @@ def _turned(feet: np.ndarray, standing: np.ndarray, heading: float) -> np.ndarra
     before = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.sin(heading), np.cos(heading)]
     across = np.where(apart < 0.0, CROSSED * -np.sign(before), 0.0)
     return gaussian_filter1d(np.concatenate([np.zeros(len(across)), across]), CROSSING * RATE, mode="nearest")[len(across):]
-
-
-def _round(begin: np.ndarray, end: np.ndarray, other: np.ndarray, heading: float, size: float) -> np.ndarray:
-    """How far (2,) x, z [m] a foot that crosses another (6,) swings out of its straight way half-way: before it, or behind it."""
-    ahead, left = np.array([np.sin(heading), np.cos(heading)]), np.array([np.cos(heading), -np.sin(heading)])
-    one, two = begin[[0, 2]] - other[[0, 2]], end[[0, 2]] - other[[0, 2]]
-    if (one @ left) * (two @ left) > 0.0 or abs((two - one) @ left) < 0.2 * size:
-        return np.zeros(2)
-    middle = 0.5 * (one + two) @ ahead
-    side = 1.0 if two @ ahead > one @ ahead else -1.0
-    return ahead * side * max(ROUND * size - side * middle, 0.0)
 
 
 def quintic(begin, rate, end, share):

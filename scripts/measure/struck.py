@@ -1,7 +1,7 @@
 """Figures of those who are struck: how hard a push walkers and runners take in with their next steps, how hard it takes to make people step, stumble and fall, whether momentum is
-kept, what slides, what goes through the floor; and what becomes of those who are struck in random rooms, beside walls, on platforms and on stairs.
+kept, what slides, what goes through the floor; how near legs come to each other and how fast feet go of those who are pushed to any side (--legs: nothing else); and what becomes of those who are struck in random rooms, beside walls, on platforms and on stairs.
 
-    python scripts/measure/struck.py [--rooms 40] [--seed 0] [--only-rooms]
+    python scripts/measure/struck.py [--rooms 40] [--seed 0] [--only-rooms] [--legs]
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import argparse
 
 import numpy as np
 
+from _pushed_legs import SPEEDS, pushes, told
 from _struck_rooms import report
 
 from gambol.controllers.body import centre_of_mass, contact_points, forward_kinematics
@@ -56,8 +57,13 @@ def main() -> None:
     parser.add_argument("--rooms", type=int, default=40, help="so many of each kind")
     parser.add_argument("--seed", type=int, default=0, help="of the rooms")
     parser.add_argument("--only-rooms", action="store_true", help="nothing of how hard it takes")
+    parser.add_argument("--legs", action="store_true", help="only how near legs come, and how fast feet go")
     given = parser.parse_args()
     body, somebody = Physique(), person()
+    if given.legs:
+        found = pushes(somebody)
+        print("\n".join(told(found, speed) for speed in SPEEDS))
+        return
     report(somebody, given.seed, given.rooms)
     if given.only_rooms:
         return

@@ -82,7 +82,7 @@ def test_a_foot_goes_to_the_capture_point(somebody):
         point = made.centres[n] + made.velocities[n] / somebody.parts["struck"].rate
         side = int(made.landings[0, 0])
         foot = contact_points(BODY.skeleton, *forward_kinematics(BODY.skeleton, made.roots[n], made.local[n]))[2 * side:2 * side + 2].mean(0)
-        assert np.hypot(*(point - foot)[[0, 2]]) < 0.22
+        assert np.hypot(*(point - foot)[[0, 2]]) < 0.26  # who crosses over sets it down before the other with room
         before = made.centres[0, [0, 2]]
         assert np.hypot(*(foot[[0, 2]] - before)) > 0.25  # it did go there
 

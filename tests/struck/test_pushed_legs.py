@@ -1,0 +1,65 @@
+"""Legs of who is pushed as he walks: a foot gets to the other's far side and back with room, on the way on which legs are not through each other."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent, Strike
+from gambol.controllers.jump import Physique
+from gambol.controllers.person import person
+from gambol.controllers.struck.passing import legs_apart, length_kernel, out_of_way, past_kernel
+
+DT, WISH = 1 / 60, np.array([1.4, 0.0, 0.0])
+BODY = Physique()
+
+
+@pytest.fixture(scope="module")
+def walks():
+    """Somebody, and eight moments of his stride."""
+    somebody = person()
+    state, moments = somebody.start(), []
+    for n in range(214):
+        if n >= 150 and (n - 150) % 8 == 0:
+            moments.append(state)
+        state, _ = somebody.step(state, Intent(WISH), DT)
+    return somebody, moments
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("gained", [0.85, 1.1])
+def test_no_leg_goes_through_the_other_of_who_is_pushed_aside(walks, side, gained):
+    somebody, moments = walks
+    for state in moments:
+        poses = []
+        for n in range(75):
+            state, pose = somebody.step(state, Intent(WISH, strike=None if n else Strike((side * gained * BODY.mass, 0.0))), DT)
+            poses.append(pose)
+        roots, turns = np.stack([pose.root for pose in poses]), np.stack([pose.rotations for pose in poses])
+        assert legs_apart(somebody.skeleton, roots, turns) > 0.04
+        ankles = forward_kinematics(somebody.skeleton, roots, turns)[0][:, [somebody.skeleton.index(name) for name in ("LeftFoot", "RightFoot")]]
+        assert np.linalg.norm(np.diff(ankles, axis=0), axis=-1).max() / DT < 13.0
+
+
+def way(begin, end, own, shares):
+    """A foot's way (K, 2) left, ahead [m] past a foot at 0 of a body that faces along z."""
+    out, begin, end = np.empty(2), np.array(begin), np.array(end)
+    most = past_kernel(begin, end, np.zeros(2), own, 0.0, 1.0, out)
+    return begin + np.outer(shares, end - begin) + np.outer(out_of_way(shares, most), out)
+
+
+@pytest.mark.parametrize("own", [1.0, -1.0])
+@pytest.mark.parametrize(("begin", "end", "before"), [((0.14, -0.67), (-0.42, 0.3), True), ((-0.42, -0.74), (0.11, 0.38), False), ((-0.3, 0.4), (0.2, -0.1), True),
+                                                      ((0.2, -0.3), (-0.3, -0.4), False)])
+def test_a_foot_crosses_before_the_other_or_behind_it_and_goes_back_as_it_came(own, begin, end, before):
+    """It passes the other's long line on the side on which its leg is, with room."""
+    line = way((own * begin[0], begin[1]), (own * end[0], end[1]), own, np.linspace(0.0, 1.0, 200)) * [own, 1.0]
+    passes = line[:-1, 0] * line[1:, 0] <= 0.0
+    assert (line[:-1, 1][passes] > 0.2).all() if before else (line[:-1, 1][passes] < -0.2).all()
+
+
+def test_who_walks_straight_on_goes_straight_and_a_way_round_is_longer():
+    shares = np.linspace(0.0, 1.0, 50)
+    line = way((0.2, -0.6), (0.2, 0.6), 1.0, shares)
+    assert np.allclose(line[:, 0], 0.2)
+    begin, end, other = np.array([-0.42, -0.74]), np.array([0.11, 0.38]), np.zeros(2)
+    assert length_kernel(begin, end, other, 1.0, 0.0, 1.0) > np.hypot(*(end - begin)) + 0.05
