@@ -102,6 +102,20 @@ def test_feet_across_a_slope_lie_on_it(locomotion, degrees):
         assert whole.sum() > 30 and np.median(off) < 4.0
 
 
+@pytest.mark.parametrize("degrees", (6, 12, 15))
+@pytest.mark.parametrize("facing", (0.0, 0.8, 0.5 * math.pi, math.pi))
+def test_who_stands_on_a_slope_has_both_heels_down(locomotion, degrees, facing):
+    """From where he is put, and where he has come to rest: he stands lower, and his knees are bent."""
+    around = (box((0.0, 0.0, 0.0), (9.0, 4.0, 9.0), slope=math.tan(math.radians(degrees))),)
+    for walks in (0.0, 0.8):
+        state = locomotion.start((0.0, 0.0, facing), floor_at(0.0, 0.0, around))
+        for k in range(270):
+            state, pose = locomotion.step(state, Intent(np.array([walks if k < 60 else 0.0, 0.0, 0.0]), around=around), 1 / FPS)
+        points = contact_points(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, pose.root.astype(float), pose.rotations.astype(float)))
+        high = [y - floor_at(x, z, around) for x, y, z in points]
+        assert max(high) < 0.025 and min(high) > 0.015 and state.contacts.all()
+
+
 def test_a_body_waits_for_feet_that_take_short_steps(locomotion):
     """On narrow treads it goes slower than asked, and no foot is dragged from one tread onto the next."""
     states, clear = walked(locomotion, flight(5, 0.17, 0.30), 0.8, 9.0)
