@@ -205,7 +205,7 @@ def test_an_interrupted_film_is_kept_and_named(short, tmp_path, monkeypatch, err
         assert len(list(film.decode(video=0))) == 4
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display unless told otherwise")
+@pytest.mark.skipif(sys.platform == "win32", reason="there a program that is ended from outside is not asked")
 def test_who_ends_it_from_outside_ends_what_it_began():
     code = """
 import atexit, time
@@ -224,6 +224,7 @@ cli.main()
     assert program.returncode == 128 + signal.SIGTERM
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems have a display unless told otherwise")
 def test_playing_without_a_display_says_what_to_do(short, monkeypatch):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
