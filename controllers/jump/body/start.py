@@ -31,8 +31,8 @@ FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
-TRAIL = (0.16, 0.30)
-"""How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height."""
+TRAIL = (0.16, 0.36)
+"""How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height: as the farthest recorded jump."""
 TURNED = 0.2, 0.92
 """Which share of its turn a body has made as it leaves the floor and as it touches down."""
 

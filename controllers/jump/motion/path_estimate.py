@@ -151,7 +151,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
     stretched = np.array([dear, 1.0, dear])
     lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
-    heights, crouch = upright, 0.0
+    heights, crouch, passing = upright, 0.0, start.velocity * FLAT
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
         height = max(min(heights.touch(trail * along, trail * across) - TILTED * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
@@ -168,10 +168,11 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         if not start.runs:
             # who waits needs no more than the muscles do, and pushes from as deep as it is
             crouch = upright.stand + floor - float(start.centre[1] if start.low is None else start.low) if start.ready else size * prior.crouch(features[0])
-            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet if len(feet) == 2 else feet[[0, 0]], angles[0], crouch)
+            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet if len(feet) == 2 else feet[[0, 0]], angles[0], crouch, passing)
         else:
             pushing = Running(physique, start, heights, balls, floor, gravity)
         found = pushing.take_off(leave, land, velocity, flight)
+        passing = found.passing
         before, lacks = lacks, np.array([
             *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]), body)]) - guess
         if np.abs(lacks).max() < SETTLED:

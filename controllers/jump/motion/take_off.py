@@ -9,7 +9,7 @@ be pulled by something. Limbs that turn shift that point; how far, `scripts/meas
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -106,7 +106,8 @@ def straightest(speed: float, body: BodyTables, astray: float) -> float:
 class Standing:
     """A body that pushes off both feet, or hops on one: `middle` (3,) [m] of the soles, `balls` (3,) of the feet; reach: how far from that middle
     the soles can press [m]. floor [m], gravity (3,) [m/s²]. crouch: how deep [m] people go down for it, whatever the muscles
-    need. feet: (2, 5) that push, one of them twice. angles: (11,) as they leave the floor, see `carriage`.
+    need. feet: (2, 5) that push, one of them twice. angles: (11,) as they leave the floor, see `carriage`. passing: (3,) [m/s] about how fast it falls ahead
+    as the push begins.
     """
 
     physique: Physique
@@ -120,6 +121,7 @@ class Standing:
     feet: np.ndarray
     angles: np.ndarray
     crouch: float = 0.0
+    passing: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     @cached_property
     def facing(self) -> np.ndarray:
@@ -135,7 +137,7 @@ class Standing:
         """
         size, g = self.physique.size, -float(self.gravity[1])
         rise = leave[1] - self.floor - self.heights.stand
-        deep = crouch_depth(self.physique, velocity, rise, self.gravity)
+        deep = crouch_depth(self.physique, velocity, rise, self.gravity, passing=self.passing)
         strong = deep == deep  # not a number where the muscles can't
         able = float(strength(self.physique).depth[-1])
         if self.start.springs:  # what the landing stored pushes, not muscles that shorten from rest; how hard it may is asked of the finished path

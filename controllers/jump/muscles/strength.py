@@ -28,6 +28,9 @@ FORWARD = 0.25
 """Which share of a forward speed's energy the springs have to hold. People leave the ground faster in a standing long
 jump than straight up: 3 to 4 m/s at 35 to 45 degrees against 2.5 to 2.9. The rest comes from arms that are
 thrown forward and from falling ahead of the feet, which a chain balanced over them has not."""
+STILL = np.zeros(3)
+"""Of who falls nowhere [m/s]."""
+STILL.setflags(write=False)
 STEP = 1.0 / 240.0
 """Of a thrust, by Runge's and Kutta's method [s]."""
 
@@ -63,14 +66,15 @@ def _strength(physique, reading, arm, gravity):
 
 
 def crouch_depth(physique: Physique, velocity, rise: float, gravity=GRAVITY, reading: Reading = "wedge",
-                 arm: Arm = "constant") -> float:
+                 arm: Arm = "constant", passing: np.ndarray = STILL) -> float:
     """How deep [m] `crouch` will end, told from the body's `strength` in a few microseconds.
 
-    velocity, rise, gravity, reading, arm: as in `crouch`. NaN where the body is too weak for that take-off.
+    velocity, rise, gravity, reading, arm: as in `crouch`. passing: (3,) [m/s] level, with which the body falls ahead as the push begins: no force
+    has to give it that. NaN where the body is too weak for that take-off.
     """
     velocity, gravity = upward(velocity, 1.0), upward(gravity, -1.0)
     able = strength(physique, reading, arm, -float(gravity[1]))
-    return depth_kernel(able, velocity, float(rise), gravity, float(physique.mass), 0.02 * physique.size)
+    return depth_kernel(able, velocity, velocity - passing, float(rise), gravity, float(physique.mass), 0.02 * physique.size)
 
 
 def strongest(physique: Physique, rise: float, gravity=GRAVITY, reading: Reading = "wedge", arm: Arm = "constant") -> float:
@@ -92,14 +96,14 @@ def upward(value, sign: float) -> np.ndarray:
 
 
 @kernel
-def depth_kernel(able, velocity, rise, gravity, mass, least):
-    """The first depth [m] of a body's `Strength` whose force and work are enough, NaN for none; see `crouch_depth`. least: [m] of
-    the push."""
+def depth_kernel(able, velocity, gained, rise, gravity, mass, least):
+    """The first depth [m] of a body's `Strength` whose force and work are enough, NaN for none; see `crouch_depth`. gained: (3,) [m/s] of the
+    velocity, in the push; least: [m] of the push."""
     kinetic, last = 0.5 * mass * squared_kernel(velocity), 0.0
     for n in range(len(able.depth)):
         way, square = max(able.depth[n] + rise, least), 0.0
         for i in range(3):
-            square += (velocity[i] * velocity[1] / (2.0 * way) - gravity[i]) ** 2
+            square += (gained[i] * gained[1] / (2.0 * way) - gravity[i]) ** 2
         spare = min(able.force[n] / (mass * math.sqrt(square)), able.work[n] / max(kinetic + able.spent[n], 1e-9)) - 1.0
         if spare >= 0.0:
             if n == 0:
