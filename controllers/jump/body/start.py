@@ -31,8 +31,9 @@ FOOT_FADE = 0.07
 """Half-life with which feet settle flat where they come to stand [s]."""
 MOST_LEAD = 0.60
 """How far ahead of the balls of its feet a body may leave the floor, as a share of the leg."""
-TRAIL = (0.16, 0.36)
-"""How far behind its feet [m] a body touches down for each m/s forward, and at most, at standard height: as the farthest recorded jump."""
+TRAIL = (0.16, 0.30, 0.36)
+"""How far behind its feet [m] a body touches down for each m/s forward, at most onto one foot or out of a run, and at most off both feet, as the farthest recorded
+jump; at standard height."""
 TURNED = 0.2, 0.92
 """Which share of its turn a body has made as it leaves the floor and as it touches down."""
 
@@ -160,7 +161,7 @@ def _measures(physique):
     leads = np.linspace(-0.2, MOST_LEAD, 9) * (body.thigh + body.shank)
     ball = feet[:, 2].mean()
     leaves = [_height(physique, carriage.TAKE_OFF, HEEL_UP, TAKE_OFF_REACH, feet, ball + lead) for lead in leads]
-    trails = np.linspace(-TRAIL[1], TRAIL[1], 9) * body.size
+    trails = np.linspace(-TRAIL[2], TRAIL[2], 9) * body.size
     touches = [_height(physique, carriage.TOUCH, TOES_DOWN, TOUCH_REACH, feet, -trail) for trail in trails]
     return Measures(_height(physique, carriage.STAND, 0.0, STAND_REACH, feet), leads, np.array(leaves), trails, np.array(touches),
                     np.array([carried(physique, carriage.TAKE_OFF), carried(physique, carriage.TOUCH)]))

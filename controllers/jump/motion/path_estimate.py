@@ -174,7 +174,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         found = pushing.take_off(leave, land, velocity, flight)
         passing = found.passing
         before, lacks = lacks, np.array([
-            *found.leave, min(TRAIL[1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]), body)]) - guess
+            *found.leave, min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]), body)]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation
