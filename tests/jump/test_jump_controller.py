@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import contact_height, contact_points, end_positions, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Unable
-from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.body import soles
+from gambol.controllers.jump.body.dynamics import Physique
 from gambol.controllers.jump.controller import Jump, Jumping
 from gambol.controllers.jump.reach.feasibility import Refused
 from gambol.controllers.navigation import gap
@@ -182,6 +182,19 @@ def test_stronger_bodies_and_lighter_places_reach_further(standing):
     weak, usual = farthest(Jump(Physique(strength=0.8))), farthest(Jump())
     moon = farthest(Jump(gravity=(0.0, -1.62, 0.0)))
     assert weak < usual < moon
+
+
+def test_an_adult_leaps_farther_ahead_than_back_and_aside(jump, standing):
+    """And ahead nearly as far as the farthest recorded jump, 2.01 m, his feet no farther ahead of him as he lands than in that (0.36 m)."""
+    reached = []
+    for way in (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0):
+        with pytest.raises(Refused) as refused:
+            jump.enter(standing, Intent(leap=Leap(4.0 * np.array(way))))
+        reached.append(float(refused.value.nearest @ way))
+    assert reached[0] > 1.85 and reached[0] > reached[1] + 0.1 and reached[0] > reached[2] + 0.1
+    made = jump.plan(standing, leap(1.85))
+    ahead = soles(made.feet, jump.physique.tables).mean(0) - made.moving(made.touch_down)[0]
+    assert 0.33 < ahead[2] < 0.37
 
 
 def test_it_bids_only_for_a_jump_that_can_start_and_holds_on_to_one(jump, standing, running):

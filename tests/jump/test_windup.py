@@ -144,3 +144,12 @@ def test_steps_are_bounded_and_the_history_is_whole():
 def test_bad_wishes_are_refused(wish):
     with pytest.raises(ValueError, match="must be"):
         crouch(ADULT, **{"velocity": 2.0, "rise": 0.1, **wish})
+
+
+def test_no_force_gives_what_a_body_that_falls_ahead_has_already():
+    wish = np.array([0.0, 1.9, 2.0])
+    depths = [crouch_depth(ADULT, wish, -0.05, passing=np.array([0.0, 0.0, passing])) for passing in (0.0, 0.4, 0.8)]
+    assert depths[0] > depths[1] + 0.01 > depths[2] + 0.02
+    # but the springs have to hold as much as before
+    fast = np.array([0.0, 2.7, 3.0])
+    assert np.isnan(crouch_depth(ADULT, fast, -0.05, passing=fast * [1.0, 0.0, 1.0]))
