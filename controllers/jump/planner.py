@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, standing, striding_feet, turns, vectors
-from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, MOMENT, SAME, Airborne, Path, Plan, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
-                     lifted, lowest, settling, sinking)
+from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, LIFT_ROWS, MOMENT, SAME, Airborne, Path, Plan, depths, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
+                     lifted, lifts, lowest, settling, sinking, spread)
 from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
@@ -39,6 +39,8 @@ BEYOND = 1.7
 """How far the legs reach beyond how a body just came down, at first: it turns about half as far back."""
 TAKES, TAKEN = 6, 2e-5
 """At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
+CLEARINGS = 3
+"""Feet that would go through the floor in the air are lifted so often."""
 COARSE = 3
 """Until then, only every third pose is made."""
 PLACED = 0.02
@@ -67,6 +69,7 @@ class _Draft(Airborne):
         self.sinks = max(self.off - way.dip, 0.0)  # nobody bows who has not begun to go down
         self.events = np.array([self.sinks, self.off, leave, leave + way.airtime])
         self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
+        self.lifts = np.zeros((LIFT_ROWS, 2, EACH))
         super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()))
 
     def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:
@@ -231,7 +234,18 @@ class _Draft(Airborne):
             self._leave(spin)
             if np.abs(meant - self.momentum).max() < TAKEN * self.physique.mass * self.physique.size**2:
                 break
-        # the legs reach for where this very body comes down, which changes a little how it turns
+        self._reach(wanted)
+        for _ in range(CLEARINGS):
+            deep, down = depths(self.physique, self.air_roots, self.air, self.planted, self.landing, self.start.slope, self.start.lands_on)
+            if not deep.any():
+                break
+            bent = vectors(self.air[:, self.legs].reshape(-1, 2, 4, 3, 3))[:, :, :EACH, 0]
+            self.lifts = lifts(self.flying, deep, down, bent, self.lifts, self.physique.size)
+            self._reach(wanted)
+        return spin
+
+    def _reach(self, wanted: np.ndarray) -> None:
+        """Fly with legs that reach for where this very body comes down, upright as wanted (3, 3): that changes a little how it turns."""
         landed, beyond, off = wanted, BEYOND, None
         flown = self._flight(landed, 1e-4, COARSE)
         for _ in range(ROUNDS):
@@ -243,7 +257,6 @@ class _Draft(Airborne):
                 beyond = float(np.clip(beyond * (before @ change) / max(change @ change, 1e-12), 0.8, 2.5))
             landed = landed @ turns(beyond * off)
             flown = self._flight(landed, 1e-9)
-        return spin
 
     def _leave(self, spin: np.ndarray) -> None:
         """Take off with a spin (3,): the last poses on the floor, and the momentum that they have."""
@@ -282,4 +295,7 @@ class _Draft(Airborne):
         # what is faster than the way to the next row is spent soon, and gained late, however long a flight takes: a cubic without a value at either end
         gone, left = (np.minimum(part / lasts, 1.0)[:, None, None] for part in (times, self.way.airtime - times))
         more = (rates[0] - slopes[0]) * gone * (1.0 - gone)**2 - (rates[1] - slopes[-1]) * left * (1.0 - left)**2
-        return turns(hermite(keys, values, slopes, times) + lasts * more)
+        bends = hermite(keys, values, slopes, times) + lasts * more
+        if self.lifts.any():
+            bends.reshape(-1, 2, 4, 3)[:, :, :EACH, 0] += spread(times, self.way.airtime, self.lifts)
+        return turns(bends)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap, yaw
+from ..body import Pose, Skeleton, centre_of_mass, contact_points, forward_kinematics, wrap, yaw
 from ..contract import CharacterState, Leap
 from ..navigation import floor_at, slope_at
 from .body import FLAT, Physique, Start, soles, vectors
@@ -24,6 +24,8 @@ HALF_TURN = 1e-3
 """So little short of half a turn [rad] is one."""
 FEET = "left", "right", "both"
 """On which feet one may land to hop on."""
+SINKS = 0.2
+"""But not while it comes down faster than this [m/s], at standard height: nobody pushes off a foot that is still in the air, whatever its contacts say."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 NEAR = 1e-6
@@ -154,7 +156,7 @@ def ready(physique: Physique, state: CharacterState) -> bool:
         low = start.feet[:, 1] - float(state.floor) < physique.tables.sole + UP * physique.size
         return speed < RUNNING and bool(low.any())
     towards = start.velocity * FLAT / max(speed, 1e-9)
-    return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH)
+    return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH) and _sinks(physique.skeleton, state)[start.single] < SINKS * math.sqrt(physique.size)
 
 
 def sets_feet(physique: Physique, state: CharacterState) -> bool:
@@ -181,6 +183,15 @@ def _feet(skeleton: Skeleton, positions: np.ndarray, turned: np.ndarray) -> np.n
         feet[side, 3] = np.arctan2(foot[0, 2], foot[2, 2])
         feet[side, 4] = np.arcsin(np.clip(-foot[1, 2], -1.0, 1.0))
     return feet
+
+
+def _sinks(skeleton: Skeleton, state: CharacterState) -> np.ndarray:
+    """How fast (2,) [m/s] the lower end of each foot, heel or toes, still comes down."""
+    if state.previous is None or not state.elapsed > 0.0:
+        return np.zeros(2)
+    low = [contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))[:, 1].reshape(2, 2).min(1)
+           for pose in (state.previous, state.pose)]
+    return (low[0] - low[1]) / state.elapsed
 
 
 def _single(state: CharacterState) -> int | None:

@@ -3,6 +3,8 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 """
 
 from .airborne import FADE, GROUND_RATE, HEEL, MOMENT, PLANT, SAME, Airborne
+from .clearing import ROWS as LIFT_ROWS
+from .clearing import depths, lifts, spread
 from .descent import sinking
 from .edges import over_nothing, steps_over
 from .fall import fall, struck
@@ -19,7 +21,7 @@ from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "MOMENT", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
-    "between_kernel", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "lifted", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
-    "settling", "sinking", "sole_places", "steps_over", "struck", "tumbled",
+    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "LIFT_ROWS", "MOMENT", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
+    "between_kernel", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "lifted", "lifts", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "settling", "sinking", "sole_places", "spread", "steps_over", "struck", "tumbled",
 ]

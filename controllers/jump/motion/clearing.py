@@ -1,0 +1,60 @@
+"""Feet that would go through the floor in the air: ankles bend that point down too far, and knees where heels are too low."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...body import sole_corners
+from ..body import Physique, hermite, monotone, place_kernel, raised, rise
+from ..prior import EACH
+from .swinging import FLEXED, LIFT
+
+ROWS = 13
+"""Of so many moments from take-off to touch-down it is told by how much more legs bend."""
+GRAZES = 0.002
+"""What is no deeper in the floor than this [m], at standard height, is left."""
+TOE = 0.16
+"""An ankle that is bent by 1 rad more lifts the toes by so much [m], at standard height."""
+FROM = 0.35
+"""The floor that was left counts where feet are no farther from where they stood than this [m], at standard height; elsewhere the lower of both."""
+
+
+def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.ndarray, landing: np.ndarray, slope: np.ndarray,
+           lands_on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How deep (N, 2) [m] each foot of flying poses (N, 3), (N, J, 3, 3) is in the floor that it left or on which it lands, 0 where in neither, and whether
+    its toes point down (N, 2). left, landing: (2, 5) the feet as they stood and will stand, on floors that rise by slope and lands_on (2,) [m/m]."""
+    body = physique.tables
+    positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
+    for root, pose, places, facing in zip(roots, local, positions, turned):
+        place_kernel(body, root, pose, places, facing)
+    corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)
+    floors = [feet[:, 1].mean() - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, [0, 2]].mean(0), way) for feet, way in ((left, slope), (landing, lands_on))]
+    away = np.linalg.norm(corners[..., [0, 2]] - left[:, [0, 2]].mean(0), axis=-1)
+    floor = np.where(away < FROM * body.size, floors[0], np.minimum(*floors))
+    deep = np.maximum((floor - corners[..., 1]).max(-1), 0.0)
+    return np.where(deep > GRAZES * body.size, deep, 0.0), turned[:, body.hip + 2, 1, 2] < 0.0
+
+
+def lifts(times: np.ndarray, deep: np.ndarray, down: np.ndarray, bent: np.ndarray, more: np.ndarray, size: float) -> np.ndarray:
+    """By how much more (ROWS, 2, EACH) [rad] legs bend from take-off to touch-down, at its ends not at all, where feet were so deep (N, 2) [m] in the floor at times
+    (N,) [s] although they bent by `more` (ROWS, 2, EACH) already. down: (N, 2) whether toes point down; bent: (N, 2, EACH) [rad] legs' joints."""
+    rows, found = np.linspace(0.0, times[-1], ROWS), more.copy()
+    near = np.abs(times[:, None] - rows) <= rows[1]
+    for n in range(1, ROWS - 1):
+        for side in range(2):
+            here = np.flatnonzero(near[:, n])
+            worst = here[int(deep[here, side].argmax())]
+            if not deep[worst, side]:
+                continue
+            room = bent[worst, side, 2] - FLEXED if down[worst, side] else 0.0
+            ankle = min(deep[worst, side] / (TOE * size), max(room, 0.0))
+            found[n, side, 2] -= ankle
+            found[n, side, 1] += max(deep[worst, side] - ankle * TOE * size, 0.0) / (LIFT * size)
+    return found
+
+
+def spread(times: np.ndarray, lasts: float, more: np.ndarray) -> np.ndarray:
+    """By how much more legs bend (N, 2, EACH) [rad] at times (N,) [s], as told of `ROWS` moments of a flight that lasts so long [s]."""
+    rows = np.linspace(0.0, lasts, ROWS)
+    flat = more.reshape(ROWS, -1)
+    return hermite(rows, flat, monotone(rows, flat), times).reshape(len(times), 2, EACH)
