@@ -129,7 +129,7 @@ class _Draft(Airborne):
         self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
         self.feet = standing(len(self.times), start.slope)
         self.feet[..., 5] += (start.haste < 2) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
-        self.feet[..., :5] = settling(start, self.planted, self.body, self.times)
+        self.feet[..., :5] = settling(start, self.planted, self.body, self.times, self.off, self.push.duration)
         risen = heels_up(start, self.planted, way.leave, self.push.duration, self.body) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()

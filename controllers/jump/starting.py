@@ -24,8 +24,9 @@ HALF_TURN = 1e-3
 """So little short of half a turn [rad] is one."""
 FEET = "left", "right", "both"
 """On which feet one may land to hop on."""
-SINKS = 0.2
-"""But not while it comes down faster than this [m/s], at standard height: nobody pushes off a foot that is still in the air, whatever its contacts say."""
+HIGH, SINKS = 0.012, 0.2
+"""But not while it is higher over the floor than the first [m] and comes down faster than the second [m/s], at standard height: nobody pushes off a foot that is still in
+the air, whatever its contacts say."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 NEAR = 1e-6
@@ -101,8 +102,10 @@ def start_of(physique: Physique, state: CharacterState, crouched: bool = False) 
         velocity = (centre - centre_of_mass(masses, *before)) / state.elapsed
         moved = feet - _feet(skeleton, *before)
         moved[:, 3:] = wrap(moved[:, 3:])
-        standing = np.any(np.asarray(state.contacts).reshape(2, 2), axis=1)
-        feet_rates = np.where(standing[:, None], 0.0, moved / state.elapsed)
+        heels, balls = np.asarray(state.contacts).reshape(2, 2).T
+        feet_rates = np.where((heels | balls)[:, None], 0.0, moved / state.elapsed)
+        rolls = heels & ~balls  # a foot comes down on over its heel
+        feet_rates[rolls, 1], feet_rates[rolls, 4] = np.minimum(moved[rolls, 1], 0.0) / state.elapsed, np.maximum(moved[rolls, 4], 0.0) / state.elapsed
         rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
     return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]), feet_rates, _single(state), crouched)
 
@@ -156,7 +159,7 @@ def ready(physique: Physique, state: CharacterState) -> bool:
         low = start.feet[:, 1] - float(state.floor) < physique.tables.sole + UP * physique.size
         return speed < RUNNING and bool(low.any())
     towards = start.velocity * FLAT / max(speed, 1e-9)
-    return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH) and _sinks(physique.skeleton, state)[start.single] < SINKS * math.sqrt(physique.size)
+    return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH) and not _comes_down(physique, state)[start.single]
 
 
 def sets_feet(physique: Physique, state: CharacterState) -> bool:
@@ -185,13 +188,13 @@ def _feet(skeleton: Skeleton, positions: np.ndarray, turned: np.ndarray) -> np.n
     return feet
 
 
-def _sinks(skeleton: Skeleton, state: CharacterState) -> np.ndarray:
-    """How fast (2,) [m/s] the lower end of each foot, heel or toes, still comes down."""
+def _comes_down(physique: Physique, state: CharacterState) -> np.ndarray:
+    """Whether each foot (2,), heel and toes, is still in the air and comes down."""
     if state.previous is None or not state.elapsed > 0.0:
-        return np.zeros(2)
-    low = [contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))[:, 1].reshape(2, 2).min(1)
-           for pose in (state.previous, state.pose)]
-    return (low[0] - low[1]) / state.elapsed
+        return np.zeros(2, bool)
+    before, now = (contact_points(physique.skeleton, *forward_kinematics(physique.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))[:, 1]
+                   .reshape(2, 2).min(1) for pose in (state.previous, state.pose))
+    return (now - float(state.floor) > physique.tables.sole + HIGH * physique.size) & (before - now > SINKS * math.sqrt(physique.size) * state.elapsed)
 
 
 def _single(state: CharacterState) -> int | None:

@@ -131,7 +131,7 @@ def test_what_stands_is_what_is_down(jump, strollers):
     for state in strollers:
         start = jump.start_of(state)
         planted = start.planted(0.0, body)
-        feet = settling(start, planted, body, times)
+        feet = settling(start, planted, body, times, 0.4, 0.2)
         hulls, counts = standing_soles(feet, body.sole, np.repeat(times < 0.3, 2).reshape(-1, 2), None, body)
         shapes = [h[:n] for h, n in zip(hulls, counts)]
         areas = [0.5 * abs(np.sum(c[:, 0] * np.roll(c[:, 1], -1) - c[:, 1] * np.roll(c[:, 0], -1))) for c in shapes]

@@ -15,8 +15,8 @@ GRAZES = 0.002
 """What is no deeper in the floor than this [m], at standard height, is left."""
 TOE = 0.16
 """An ankle that is bent by 1 rad more lifts the toes by so much [m], at standard height."""
-FROM = 0.35
-"""The floor that was left counts where feet are no farther from where they stood than this [m], at standard height; elsewhere the lower of both."""
+FROM = 0.2
+"""The floor that was left counts where a foot is no farther from where it stood than this [m], at standard height; elsewhere the lower of both."""
 
 
 def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.ndarray, landing: np.ndarray, slope: np.ndarray,
@@ -29,7 +29,7 @@ def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.nd
         place_kernel(body, root, pose, places, facing)
     corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)
     floors = [feet[:, 1].mean() - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, [0, 2]].mean(0), way) for feet, way in ((left, slope), (landing, lands_on))]
-    away = np.linalg.norm(corners[..., [0, 2]] - left[:, [0, 2]].mean(0), axis=-1)
+    away = np.linalg.norm(corners[..., [0, 2]] - left[:, None, [0, 2]], axis=-1)
     floor = np.where(away < FROM * body.size, floors[0], np.minimum(*floors))
     deep = np.maximum((floor - corners[..., 1]).max(-1), 0.0)
     return np.where(deep > GRAZES * body.size, deep, 0.0), turned[:, body.hip + 2, 1, 2] < 0.0

@@ -21,13 +21,17 @@ HEELS_RISE, RISES_FOR = (0.30, 0.90), 0.15
 SHORT_PUSH, NEARER, LEAST_UP = 0.13, 0.8, 0.2
 """It rises less in pushes that are shorter than the first [s]; and by no more than the second of what brings the ankle nearest to the hip, but by the third [rad] at
 least."""
+DOWN_BY = 0.4
+"""Half-life with which a runner's foot comes down, as a share of the time until its heel rises."""
 RUNNERS_HEEL, RUNS_FOR = (0.2, 1.15), 0.12
 """When in the push a runner's heel starts to rise, and how far [rad]: the leg ends behind the body; less far where there is less time for it [s]."""
 
 
-def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndarray) -> np.ndarray:
-    """The feet (N, 2, 5) at times (N,) [s], on their way from the start to where they are planted (2, 5): balls x, y, z [m], yaw, pitch [rad]."""
-    feet = planted + faded(start.feet - planted, start.feet_rates, FOOT_FADE, times)
+def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndarray, off: float, pushes: float) -> np.ndarray:
+    """The feet (N, 2, 5) at times (N,) [s], on their way from the start to where they are planted (2, 5): balls x, y, z [m], yaw, pitch [rad]. A push of so long [s]
+    begins at `off` [s]; a runner's foot is down by when its heel rises in that."""
+    lasts = min(FOOT_FADE, DOWN_BY * (off + RUNNERS_HEEL[0] * pushes)) if start.runs else FOOT_FADE
+    feet = planted + faded(start.feet - planted, start.feet_rates, lasts, times)
     heels = np.sin(np.maximum(-feet[..., 4], 0.0)) * (body.toe[2] - body.heel[2])  # lower than balls by this
     feet[..., 1] = np.maximum(feet[..., 1], planted[:, 1] + heels)
     return feet

@@ -77,7 +77,7 @@ def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, fl
     times, (guess, place) = half[::2], _guess(start, way, floor)
     share = np.clip((times - way.wind_up) / way.push.duration, 0.0, 1.0)
     centres = np.insert(place if before is None else before.place, 1, height[::2] + floor, axis=1)
-    feet = settling(start, planted, physique.tables, times)
+    feet = settling(start, planted, physique.tables, times, way.wind_up, way.push.duration)
     flat = np.ones(feet.shape[:2], bool)
     if start.single is not None:  # whose hips are under his mass; who crouches on two feet sits back, heels down
         flat = heels_down(centres, feet, physique.tables, FLEX * physique.flexibility - uphill(planted, start.slope))
