@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import LONGEST, CharacterState, Controller, Intent, Leap, OfSize, Status, seconds
+from .contract import HIGHEST, LONGEST, CharacterState, Controller, Intent, Leap, OfSize, Status, grounded, level, seconds
 from .navigation import checked, is_box, is_pillar, slope
 
 SAME = 1e-6
@@ -66,9 +66,10 @@ class Scaled(Controller):
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """Standing at x, z [m], heading, on a floor so high [m]. ValueError for more than one."""
-        if np.shape(ground) != (3,):
+        if np.ndim(ground) > 1:
             raise ValueError(f"characters come singly in another size: a ground is x, z, heading; got shape {np.shape(ground)}")
-        x, z, heading = (float(v) for v in ground)
+        level(floor, self._highest)
+        x, z, heading = grounded(ground, self._highest).tolist()
         return self._grown(self.controller.start((x / self.factor, z / self.factor, heading), floor / self.factor))
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
@@ -77,10 +78,15 @@ class Scaled(Controller):
             was = state.memory.factor if isinstance(state.memory, OfSize) else 1.0
             raise ValueError(f"this state is of a body with legs {was:.3g} times as long as the standard, not {self.factor:.3g} times: "
                              "step it with the controller that it is of")
+        level(state.floor, self._highest)
         own, asked = seconds(dt) / self.factor**0.5, self._asked(intent)
         new, count = self._shrunk(state), ceil(own / LONGEST - 1e-6)  # a small body's own time may be too long for one
-        for _ in range(count):
-            new, _ = self.controller.step(new, asked, own / count)
+        try:
+            for _ in range(count):
+                new, _ = self.controller.step(new, asked, own / count)
+        except (AttributeError, TypeError, ValueError):
+            checked(intent.around)  # what is wrong with it is told as it was given
+            raise
         new = self._grown(new)
         return new, new.pose
 
@@ -107,6 +113,11 @@ class Scaled(Controller):
 
     def _mine(self, state: CharacterState) -> bool:
         return isinstance(state.memory, OfSize) and abs(state.memory.factor / self.factor - 1.0) <= SAME
+
+    @property
+    def _highest(self) -> float:
+        """How high floors are at most [m], and how far away places, that are no farther in the size that it is made for."""
+        return HIGHEST * min(self.factor, 1.0)
 
     @property
     def _speeds(self) -> np.ndarray:

@@ -121,7 +121,7 @@ class Supervisor(Controller):
 
     def start(self, ground=(0.0, 0.0, 0.0), floor: float = 0.0) -> CharacterState:
         """A character at rest at ground x, z [m], heading [rad], on a floor `floor` [m] high. ValueError for more than one."""
-        if np.ndim(ground) != 1:
+        if np.ndim(ground) > 1:
             raise ValueError(f"{ALONE}; got a ground of shape {np.shape(ground)}")
         state = self.parts[self.first].start(ground, floor)
         return replace(state, memory=Duty(self.first, state.memory, "it starts here"))

@@ -1,6 +1,7 @@
 """Who imports the controllers gets one clear line for a mistake, reads what a value is in a line, and picks from a batch as from an array."""
 
 import pickle
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -37,6 +38,24 @@ def test_what_stands_about_names_the_field_that_is_unsound(walker, thing, says):
     for someone in (walker, person(walker)):
         with pytest.raises(ValueError, match=says):
             someone.step(someone.start(), Intent(around=(box(), thing)), DT)
+
+
+@pytest.mark.parametrize("height", [0.9, 1.741, 2.1])
+def test_bodies_of_every_size_are_told_of_what_they_were_given(walker, height):
+    """In its own numbers, by its own field: not in those of the size that gaits are recorded in."""
+    somebody = person(walker, Physique(height=height))
+    state = somebody.start()
+    for field, thing in (("size", Box((0.0, 0.1, 1.0), (1.0, 0.2, np.nan))), ("centre", Box((0.0, np.inf, 1.0), (1.0, 1.0, 1.0)))):
+        with pytest.raises(ValueError, match=f"the {field} of what stands about") as told:
+            somebody.step(state, Intent(np.array([0.5, 0.0, 0.0]), around=(thing,)), DT)
+        assert repr(getattr(thing, field)) in str(told.value) and "Shrunk" not in str(told.value)
+    for given in (1e6, 99e3 if height < 1.0 else -1e6):
+        for wrong in (lambda given=given: somebody.start(floor=given), lambda given=given: somebody.step(replace(state, floor=given), Intent(), DT)):
+            with pytest.raises(ValueError, match=r"a floor must be a finite height within ±[\d.e+]* m, got " + re.escape(repr(given))):
+                wrong()
+    for given in (None, "abc", (0.0, 0.0), (np.nan, 0.0, 0.0), (1e6, 0.0, 0.0)):
+        with pytest.raises(ValueError, match="a ground must be .* x, z, heading .*got " + re.escape(repr(given))):
+            somebody.start(given)
 
 
 @pytest.mark.parametrize("dt", [None, "soon", np.array([DT]), np.array([DT, DT])])

@@ -11,10 +11,21 @@ from gambol.controllers.person import person
 @pytest.mark.parametrize("fields, says", [
     ({"goal": (1, 2)}, "goal is a Goal"), ({"velocity": 1.0}, "a velocity is"), ({"velocity": None}, "a velocity is"), ({"velocity": [1, 0]}, "a velocity is"),
     ({"around": (1, 2)}, "what stands about has"), ({"around": ({},)}, "what stands about has"), ({"around": None}, "around is a sequence"),
+    ({"velocity": ("a", "b", "c")}, "a velocity is"), ({"velocity": np.array([None, 0, 0])}, "a velocity is"), ({"velocity": np.array([1j, 0, 0])}, "a velocity is"),
+    ({"velocity": [[1, 0], [0]]}, "a velocity is"), ({"look": np.zeros(2)}, "intent's look is"), ({"look": "there"}, "intent's look is"),
+    ({"halt": np.zeros(2)}, "intent's halt is .* x, z .*, heading"), ({"towards": np.zeros(3)}, "intent's towards is"), ({"towards": "x"}, "intent's towards is"),
+    ({"aside": np.zeros(7)}, "intent's aside is"), ({"aside": (None, 0, 0)}, "intent's aside is"),
     ({"leap": (0, 0, 1)}, "leap is a Leap"), ({"strike": 50}, "strike is a Strike")])
 def test_an_intent_names_the_field_that_is_of_another_kind(fields, says):
     with pytest.raises(ValueError, match=says):
         Intent(**fields)
+
+
+def test_wishes_that_are_not_finite_are_none_and_refused_nowhere():
+    somebody = person()
+    state, nan = somebody.start(), np.full(3, np.nan)
+    for intent in (Intent(nan), Intent(look=nan), Intent((1, 0, 0), halt=nan, towards=nan[:2]), Intent(np.array([np.inf, 0, 0], np.float32), aside=nan)):
+        assert np.isfinite(somebody.step(state, intent, 1 / 60)[1].rotations).all()
 
 
 @pytest.mark.parametrize("fields", [{"slack": np.nan}, {"slack": -1.0}, {"slack": "x"}, {"airtime": "x"}, {"heading": [1.0, 2.0]}])
@@ -33,6 +44,11 @@ def test_a_leap_names_the_field_that_is_no_number(fields):
 def test_what_is_no_number_is_named(wish, says):
     with pytest.raises(ValueError, match=says):
         wish()
+
+
+def test_a_body_is_a_physique():
+    with pytest.raises(ValueError, match="physique is a Physique, such as"):
+        person(physique={"height": 1.2})  # pyright: ignore[reportArgumentType]
 
 
 def test_what_a_person_is_given_is_one_persons_and_its_own():

@@ -46,12 +46,26 @@ def given(state: Any, intent: Any) -> None:
         raise ValueError("this state is of a body of another size: step it with the controller that it is of")
 
 
-def level(floor: Any) -> Any:
-    """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±1e5 m."""
-    sound = abs(floor) <= HIGHEST if isinstance(floor, float) else np.all(np.abs(np.asarray(floor, float)) <= HIGHEST)
+def level(floor: Any, most: float = HIGHEST) -> Any:
+    """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±`most` m."""
+    try:
+        sound = abs(floor) <= most if isinstance(floor, float) else np.all(np.abs(np.asarray(floor, float)) <= most)
+    except (TypeError, ValueError):
+        sound = False
     if not sound:
-        raise ValueError(f"a floor must be a finite height within ±{HIGHEST:g} m, got {floor!r}")
+        raise ValueError(f"a floor must be a finite height within ±{most:g} m, got {floor!r}")
     return floor
+
+
+def grounded(ground: Any, most: float = HIGHEST) -> np.ndarray:
+    """Grounds (..., 3) x, z [m], heading [rad] as numbers. ValueError unless they are so many, and within ±`most`."""
+    try:
+        found = np.asarray(ground, float)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.shape[-1:] != (3,) or not (np.abs(found) <= most).all():
+        raise ValueError(f"a ground must be (..., 3) x, z, heading within ±{most:g}; got {ground!r}")
+    return found
 
 
 class Controller(Protocol):

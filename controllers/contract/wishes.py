@@ -24,6 +24,15 @@ def _numbers(name: str, value: Any) -> np.ndarray:
         raise ValueError(f"{name}: needs numbers, got {value!r}") from None
 
 
+def _told(value: Any, count: int) -> bool:
+    """Whether a value is (..., count) real numbers, which may be NaN."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):  # rows of several lengths
+        return False
+    return array.dtype.kind in "fiu" and array.shape[-1:] == (count,)
+
+
 def _number(name: str, value: Any) -> float:
     """One number. ValueError for what is none, or several."""
     if _numbers(name, value).shape or value is None:
@@ -166,8 +175,11 @@ class Intent:
     strike: Strike | None = None
 
     def __post_init__(self):
-        if np.shape(self.velocity)[-1:] != (3,):
+        if not _told(self.velocity, 3):
             raise ValueError(f"a velocity is (..., 3) forward [m/s], turning [rad/s], left [m/s]; got {self.velocity!r}")
+        for name, count, words in _PLACES:
+            if (value := getattr(self, name)) is not None and not _told(value, count):
+                raise ValueError(f"an intent's {name} is {words}, or None; got {value!r}")
         for name, kind in _KINDS:
             if not isinstance(value := getattr(self, name), kind | None):
                 raise ValueError(f"an intent's {name} is a {kind.__name__}, or None; got {value!r}")
@@ -191,4 +203,6 @@ class Intent:
         return Intent(np.stack([v_f, omega, v_l], -1))
 
 
+_PLACES = (("look", 3, "(..., 3) x, y, z [m]"), ("halt", 3, "(..., 3) x, z [m], heading [rad]"), ("towards", 2, "(..., 2) heading [rad], speed [m/s]"),
+           ("aside", 3, "(3,) forward [m/s], turning [rad/s], left [m/s]"))
 _KINDS = (("leap", Leap), ("goal", Goal), ("sighting", Sighting), ("aim", Leap), ("strike", Strike))

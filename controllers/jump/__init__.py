@@ -2,7 +2,7 @@
 flight, landing, and take-offs from a run. A jump is planned whole, then played; see `planner`.
 """
 
-from .body import GRAVITY, Physique
+from .body import GRAVITY, Physique, mass_of
 from .controller import Jump, Jumping
 from .crouching import Crouching
 from .reach import BESIDE, MOMENTARY, SETS_FEET, Refused
@@ -10,6 +10,6 @@ from .starting import FRESH, RUNNING, start_of, stands, stayed
 from .warm_up import rehearse
 
 __all__ = [
-    "BESIDE", "Crouching", "FRESH", "GRAVITY", "MOMENTARY", "RUNNING", "SETS_FEET", "Jump", "Jumping", "Physique", "Refused", "rehearse", "stands", "start_of",
+    "BESIDE", "Crouching", "FRESH", "GRAVITY", "MOMENTARY", "RUNNING", "SETS_FEET", "Jump", "Jumping", "Physique", "Refused", "mass_of", "rehearse", "stands", "start_of",
     "stayed",
 ]

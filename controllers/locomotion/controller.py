@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from gambol import assets
 
 from ..body import Pose, Skeleton
-from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, given, level, seconds
+from ..contract import HIGHEST, CharacterState, Controller, Intent, Status, given, grounded, level, seconds
 from ..navigation.passing import walls_of
 from .control_space import ControlSpace
 from .entry import entered
@@ -98,9 +98,7 @@ class Locomotion(Controller):
         """A character at rest at ground (..., 3) x, z [m], heading [rad], on a floor (...) [m] high.
         ValueError unless finite."""
         level(floor)
-        ground = np.asarray(ground, float)
-        if ground.shape[-1:] != (3,) or not (np.abs(ground) <= HIGHEST).all():
-            raise ValueError(f"ground must be (..., 3) x, z, heading within ±{HIGHEST:g}; got {ground!r}")
+        ground = grounded(ground)
         memory = np.zeros(ground.shape[:-1], self._dtype)
         memory["ground"] = ground
         memory["weights"][..., self.library.rest] = 1.0

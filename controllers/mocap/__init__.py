@@ -3,7 +3,7 @@
 from .acclaim import AcclaimSkeleton, read_asf
 from .acclaim_motion import read_amc
 from .bvh import read_bvh, write_bvh
-from .calibration import Calibration, calibrate, zero_positions
+from .calibration import Calibration, calibrate, has_limbs, zero_positions
 from .captured import Captured, captured
 from .hinges import elbows, hinged
 from .joint_names import NoHuman, Roles, plain, roles
@@ -14,6 +14,6 @@ from .t_pose import complete, to_t_pose, upright
 from .units_and_axes import Detected, detect, load, read, standardise
 
 __all__ = [
-    "AcclaimSkeleton", "Calibration", "Captured", "Detected", "MotionFileError", "Moved", "NoHuman", "Rig", "Roles", "calibrate", "captured", "complete", "detect", "elbows", "hinged",
+    "AcclaimSkeleton", "Calibration", "Captured", "Detected", "MotionFileError", "Moved", "NoHuman", "Rig", "Roles", "calibrate", "captured", "complete", "detect", "elbows", "has_limbs", "hinged",
     "load", "plain", "read", "read_amc", "read_asf", "read_bvh", "retarget", "roles", "standardise", "to_t_pose", "upright", "write_bvh", "zero_positions",
 ]

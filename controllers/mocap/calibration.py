@@ -22,6 +22,8 @@ from .joint_names import Roles, roles
 LIMBS = {"UpLeg": "Leg", "Leg": "Foot", "Arm": "ForeArm", "ForeArm": "Hand"}
 """The bones of the limbs: from a joint to the next, by our names without the side."""
 SIDES = ("Left", "Right")
+SHORTEST = 0.01
+"""A bone of a limb that is no longer than this share of thigh and shank together is none."""
 _UPRIGHT = np.cos(np.radians(20.0))
 _STRAIGHT = 0.04  # m: a leg that comes within this of straight is taken to straighten in its stride
 _MOST_ROLL = np.radians(3.0)
@@ -58,8 +60,8 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     """The calibration of one source skeleton from some of its clips; the more walking, the better.
 
     skeleton: ours, the standard human by default. posed: whether the zero pose is a person
-    standing; found out by default. ValueError if there is no clip, if the skeleton is no human, or
-    if the clips' skeletons differ.
+    standing; found out by default. ValueError if there is no clip, if the skeleton is no human or a
+    bone of its limbs has no length, or if the clips' skeletons differ.
     """
     clips = list(clips)
     if not clips:
@@ -68,6 +70,7 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     source = clips[0].skeleton
     part = roles(source)
     zero = zero_positions(source)
+    has_limbs(part, zero, source.names)
     for clip in clips[1:]:
         length = _leg_length(zero_positions(clip.skeleton), part.limbs) if clip.skeleton.names == source.names else 0.0
         if abs(length / _leg_length(zero, part.limbs) - 1) > 0.02:
@@ -102,6 +105,15 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     corrections = corrections.copy()
     corrections[part.limbs["Hips"]] @= exp([0.0, 0.0, roll])
     return replace(draft, corrections=corrections, sink=sink)
+
+
+def has_limbs(part: Roles, places: np.ndarray, names: Sequence[str]) -> None:
+    """Nothing, if the bones of the limbs have lengths in a skeleton at rest, its joints at places (J, 3). ValueError, naming one that has none: it points nowhere."""
+    legs = _leg_length(places, part.limbs)
+    for side in SIDES:
+        for a, b in LIMBS.items():
+            if side + b in part.limbs and not _distance(places, part.limbs, side + a, side + b) > SHORTEST * legs:
+                raise ValueError(f"{names[part.limbs[side + a]]} has no length: {names[part.limbs[side + b]]} is where it is")
 
 
 def place_feet(skeleton: Skeleton, known: Calibration, positions: np.ndarray, orientations: np.ndarray

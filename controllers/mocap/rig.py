@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..body import STATURE, Skeleton, brief, exp, forward_kinematics, local_rotations, log, two_bone_turns
-from .calibration import SIDES
+from .calibration import SIDES, has_limbs
 from .joint_names import Roles, carriers, plain, roles
 from .t_pose import HUMAN, REST, complete, to_t_pose, upright
 from .units_and_axes import unit_of
@@ -89,6 +89,7 @@ class Rig:
         if known.trunk:
             at["Spine2"] = places[known.trunk[-1]]
         axes = upright(at)
+        has_limbs(known, places, names)
         legs = _length(at, str)
         unit = unit_of(legs) if metres is None else float(metres)
         standing = unit * places @ axes.T

@@ -5,12 +5,12 @@ from __future__ import annotations
 from os import PathLike
 from typing import Any
 
-from ..contract import Intent
 from ..jump import GRAVITY, Jump, Physique, rehearse as rehearse_jump
 from ..locomotion import Locomotion
 from ..scaled import Scaled
 from ..struck import Struck, rehearse as rehearse_strike
 from ..supervisor import Supervisor
+from . import preparing
 
 
 def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRAVITY) -> Supervisor:
@@ -20,6 +20,8 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
     a standard adult; another height walks as its legs are long. gravity: (3,) [m/s²] of the jumps.
     LibraryError if the library can't be used; ValueError for a physique or gravity that can't be.
     """
+    if not isinstance(physique, Physique | None):
+        raise ValueError(f"physique is a Physique, such as Physique(height=1.2), or None for a standard adult; got {physique!r}")
     walker = Locomotion.load(locomotion) if locomotion is None or isinstance(locomotion, str | PathLike) else locomotion
     physique = Physique() if physique is None else physique
     factor = physique.size
@@ -28,12 +30,18 @@ def person(locomotion: Any = None, physique: Physique | None = None, gravity=GRA
 
 
 def rehearse(someone: Any) -> None:
-    """One step and one jump of nobody, so that what they compile or load does not halt a game."""
-    someone.step(someone.start((0.0, 0.0, 0.0)), Intent(), 1.0 / 60.0)
+    """All that somebody can do, done by nobody: steps, also beside things, a jump, a blow and ways to goals past what stands about. No step after it compiles or
+    loads anything, so that none halts a game."""
+    walker = someone.parts.get("locomotion")
+    if walker is not None:
+        preparing.place(walker)
+        preparing.weight(walker)
+        preparing.things(walker)
     if "jump" in someone.parts:
         rehearse_jump(someone.parts["jump"])
     if "struck" in someone.parts:
         rehearse_strike(someone.parts["struck"])
+    preparing.goals()
 
 
 def built(someone: Any, physique: Physique, gravity=GRAVITY) -> Any:

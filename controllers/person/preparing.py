@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path as File
 from types import SimpleNamespace
 from typing import Any
@@ -40,6 +41,8 @@ KERNELS = 334
 BOX = SimpleNamespace(centre=(0.0, 1.0, 0.6), size=(2.0, 2.0, 0.2), heading=0.0)
 POST = SimpleNamespace(foot=(0.2, 0.0, 0.3), radius=0.1, height=2.0)
 """What stands about somebody for whom it is compiled."""
+LATE = "scipy.ndimage", "scipy.optimize", "scipy.sparse.csgraph"
+"""What rolls, leaps off a run and ways over several levels load, as a game starts without."""
 
 
 def begun(walker: Locomotion, library: File | None = None) -> tuple[subprocess.Popen, ...]:
@@ -153,10 +156,12 @@ def things(walker: Locomotion) -> None:
 
 
 def goals() -> None:
-    """Compile, or load, what plans a way to a goal."""
+    """Compile, or load, what plans a way to a goal, over several levels and by leaps, too."""
     from ..navigation import planning  # loads what a game starts without
 
     planning.rehearse()
+    for name in LATE:
+        import_module(name)
 
 
 def _some(walker: Locomotion) -> tuple[Any, ...]:

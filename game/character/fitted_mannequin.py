@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gambol.controllers.body import STATURE, Skeleton, between
-from gambol.controllers.mocap import roles, zero_positions
+from gambol.controllers.mocap import has_limbs, roles, zero_positions
 
 from ..render import Body, Mesh, mannequin, skin
 from .surface import smooth
@@ -51,7 +51,7 @@ class Build:
 def tailored(build: Build, skeleton: Skeleton | None = None, name: str = "Mannequin") -> Body:
     """The mannequin of a build, around the bones of any human skeleton (its zero pose may be any).
 
-    ValueError if the skeleton is no human, BuildError if it has no legs to measure.
+    ValueError if the skeleton is no human, or a bone of its limbs has no length.
     """
     lengths = _lengths(build, np.ones(len(_NAMES)) if skeleton is None else proportions(skeleton))
     body = _around(build, lengths)
@@ -62,6 +62,7 @@ def tailored(build: Build, skeleton: Skeleton | None = None, name: str = "Manneq
 def proportions(skeleton: Skeleton) -> np.ndarray:
     """How long (22,) the bones to our joints are in a skeleton over the standard's; its mean leg is 1."""
     part, at = roles(skeleton), zero_positions(skeleton)
+    has_limbs(part, at, skeleton.names)
     out, limbs = np.full(len(_NAMES), np.nan), part.limbs
 
     def apart(place, *joints):
@@ -81,8 +82,6 @@ def proportions(skeleton: Skeleton) -> np.ndarray:
     out[[_NAMES.index(n) for n in ("Spine", "Spine1", "Spine2")]] = ratio(["LeftArm", "RightArm"], ["LeftUpLeg", "RightUpLeg"])
     legs = [_NAMES.index(side + n) for side in _SIDES for n in ("Leg", "Foot")]
     whole = out[legs].mean()
-    if not whole > 0.0:
-        raise BuildError("the skeleton's legs have no length")
     out = np.where(np.isnan(out), whole, out) / whole
     for j, joint in enumerate(_NAMES):  # both sides alike, as the mannequin is
         if joint.startswith("Left"):

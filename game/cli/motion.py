@@ -97,13 +97,13 @@ def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb fi
 
     output_file(out, ".glb")
     bones, build = None, Build(height, weight, child, shoulders, hips)
-    from gambol.controllers.mocap import NoHuman, load
+    from gambol.controllers.mocap import load
 
     if skeleton is not None:
         bones = load(skeleton).skeleton
     try:
         body = tailored(build, bones, out.stem)
-    except NoHuman as error:
+    except ValueError as error:
         raise Mistake(f"--skeleton {skeleton}: {error}") from None
     write(out, [Actor(out.stem, body, joints_of(body))])
     say(f"{out}: {height:g} m, {len(body.levels[0].triangles)} triangles; `gambol play --character {out}` wears it")

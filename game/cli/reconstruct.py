@@ -12,7 +12,7 @@ import typer
 
 from . import live
 from .base import Mistake, app, learn, plainly, progress_bar, say
-from .live import FPS, SUFFIX, write_take
+from .live import SUFFIX, write_take
 from .play import watch
 
 
@@ -166,7 +166,9 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
     from gambol.controllers.contract import Intent
     from gambol.controllers.reconstruction.live import Recorded
 
-    clip = _performance(path)
+    from ..world import performance
+
+    clip = performance(path)
     controller = _controller(method, file, points)
     if turning and not getattr(controller.method, "hears_turns", False):
         raise Mistake(f"--turns goes with a method that hears them, --method trackers or turning; {method} has points alone")
@@ -188,19 +190,6 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
     for line in _figures(clip, poses, controller.controls):
         typer.echo(line)
     typer.echo(f"{'a frame':24} {1000 * spent / (len(clip) - 1):7.2f} ms")
-
-
-def _performance(path: Path) -> Any:
-    """A motion file at 60 frames a second on the standard human. MotionFileError, naming it, if it can't be used."""
-    from gambol.controllers.mocap import MotionFileError, hinged, load, retarget
-
-    clip = load(path)
-    if len(clip) < 4:
-        raise MotionFileError(f"{path}: {len(clip)} frames are too few; a performance needs 4")
-    try:
-        return hinged(retarget(clip)).resample(FPS)
-    except ValueError as error:
-        raise MotionFileError(f"{path}: {error}") from None
 
 
 def _figures(clip: Any, poses: list, controls: Any) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gambol.controllers.body import STATURE, centre_of_mass, hull, margin, sole_corners, standing_corners
 from gambol.controllers.jump import Physique
-from gambol.controllers.jump.body import bend_kernel
+from gambol.controllers.jump.body import MASS, bend_kernel
 from gambol.controllers.jump.motion import Plan
 from gambol.controllers.jump.muscles import POINTED, muscle, spring_force
 from gambol.controllers.navigation import floor_at
@@ -19,7 +19,7 @@ from ..world import Character, physique_of
 from .jump_sketches import CAN, CANNOT, LIFT, PALE
 
 GROUND, WEIGHT = (0.02, 0.42, 0.10), (0.10, 0.11, 0.13)
-NEWTON = 0.42 / (Physique.mass * 9.81)
+NEWTON = 0.42 / (MASS * 9.81)
 """How long forces are drawn [m/N]: an adult's weight on Earth is 0.42 m."""
 MOST_DRAWN = 4.0
 """No longer arrows of the ground's force are drawn, in weights."""

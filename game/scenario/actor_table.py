@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from gambol.controllers.body import STATURE
 from gambol.controllers.contract import HARDEST, Strike
-from gambol.controllers.jump import Jump as JumpController, Physique
+from gambol.controllers.jump import Jump as JumpController, Physique, mass_of
 
 from ..input import Script
 from ..scene import TINT, Prop
@@ -38,7 +38,7 @@ class BodyTable(Table):
 
     def physique(self) -> Physique:
         """The same for the controllers."""
-        mass = max(Physique.mass * (self.height / STATURE) ** 3, 5.0) if self.mass is None else self.mass
+        mass = mass_of(self.height) if self.mass is None else self.mass
         return Physique(mass, self.height, self.strength, self.flexibility, self.sex)
 
 

@@ -51,7 +51,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Colour = tuple[Share, Share, Share]
 Gravity = Annotated[float, Field(ge=0.2, le=50, allow_inf_nan=False)]  # m/s²
 Stature = Annotated[float, Field(ge=0.5, le=3, allow_inf_nan=False)]  # m, as far as `gambol.controllers.jump.Physique` goes
-Mass = Annotated[float, Field(ge=5, le=400, allow_inf_nan=False)]  # kg
+Mass = Annotated[float, Field(ge=1, le=400, allow_inf_nan=False)]  # kg
 Strength = Annotated[float, Field(ge=0.05, le=20, allow_inf_nan=False)]
 Flexibility = Annotated[float, Field(ge=0.3, le=2, allow_inf_nan=False)]
 Airtime = Annotated[float, Field(ge=0.05, le=10, allow_inf_nan=False)]  # s

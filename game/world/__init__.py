@@ -10,7 +10,7 @@ from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, la
 from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, TURNING, Learning, Methods, methods, taught, usual
 from .performers import walker_of
 from .primitive import nearest, posed
-from .recorded import Recorded
+from .recorded import Recorded, performance
 from .solid import stopped
 from .tracked_footage import Filmed
 from .watched import Watches, rig, switched, tracked_of, tracked_vertices, tracker_ready, tracking_of, watches_of
@@ -20,6 +20,6 @@ __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "SHIPPED", "STAGES", "TINTS", "TURNING", "Character", "Embodied", "Errors",
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
     "figures", "follower_of",
-    "ground_between", "jump_of", "lately", "methods", "nearest", "physique_of", "pose_between", "posed", "rig", "stopped", "switched", "taught",
+    "ground_between", "jump_of", "lately", "methods", "nearest", "performance", "physique_of", "pose_between", "posed", "rig", "stopped", "switched", "taught",
     "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "walker_of", "watches_of",
 ]

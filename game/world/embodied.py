@@ -37,6 +37,6 @@ def sized(controller: Any, factor: float) -> Any:
     if factor == 1.0:
         return controller
     if isinstance(controller, Jump | Struck):  # planned for whatever body it is
-        grown = replace(controller.physique, mass=max(controller.physique.mass * factor**3, 5.0), height=controller.physique.height * factor)
+        grown = replace(controller.physique, mass=controller.physique.mass * factor**3, height=controller.physique.height * factor)
         return type(controller)(grown, controller.gravity)
     return Scaled(controller, factor)

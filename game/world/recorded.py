@@ -15,6 +15,8 @@ from gambol.controllers.body import (HEIGHT_GATE, WALK_SPEEDS, Clip, Pose, Skele
 from gambol.controllers.contract import CharacterState, Controller, Intent, Status
 
 FPS = 60.0
+LEAST = 4
+"""A performance has so many frames at least, and lasts as long as they do."""
 SKELETON = human()
 
 
@@ -51,16 +53,7 @@ class Recorded(Controller):
     @staticmethod
     def load(path: str | Path, walker: Any) -> Recorded:
         """A .bvh or .amc file on the standard human, feet on the floor. MotionFileError, naming it, if it can't be used."""
-        from gambol.controllers.mocap import MotionFileError, hinged, load, retarget
-
-        clip = load(path)
-        if len(clip) < 4:
-            raise MotionFileError(f"{path}: {len(clip)} frames are too few; a performance needs 4")
-        try:
-            clip = hinged(retarget(clip))
-        except ValueError as error:
-            raise MotionFileError(f"{path}: {error}") from None
-        return Recorded(clip.resample(FPS), walker)
+        return Recorded(performance(path), walker)
 
     @property
     def kind(self) -> str:
@@ -105,3 +98,16 @@ class Recorded(Controller):
         ground = np.array([root[0], root[2], math.remainder(facing, math.tau)])
         return CharacterState(ground, self._rates[k].copy(), Pose(root, rotations), self._stands[k], playing, floor,
                               previous, 0.0 if previous is None else 1.0 / FPS)
+
+
+def performance(path: str | Path) -> Clip:
+    """A motion file at 60 frames a second on the standard human, feet on the floor. MotionFileError, naming it, if it can't be used."""
+    from gambol.controllers.mocap import MotionFileError, hinged, load, retarget
+
+    clip = load(path)
+    if len(clip) < LEAST or clip.duration * FPS < LEAST - 1.01:
+        raise MotionFileError(f"{path}: {len(clip)} frames in {clip.duration:.3g} s are too few; a performance needs {LEAST} in {(LEAST - 1) / FPS:g} s at least")
+    try:
+        return hinged(retarget(clip)).resample(FPS)
+    except ValueError as error:
+        raise MotionFileError(f"{path}: {error}") from None

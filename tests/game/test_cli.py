@@ -3,13 +3,15 @@
 import signal
 import subprocess
 import sys
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import av
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from gambol.controllers.body import Clip, human
+from gambol.controllers.mocap import write_bvh
 from gambol.game import hosts
 from gambol.game import cli
 from gambol.game.cli import film_jobs
@@ -276,3 +278,12 @@ def test_a_size_is_read_as_it_is_told():
 def test_a_build_is_refused_in_the_words_that_were_typed(name, tmp_path):
     done = CliRunner().invoke(cli.app, ["character", "-o", str(tmp_path / "a.glb"), f"--{name}", "nan"])
     assert done.exit_code == 2 and done.stderr.startswith(f"gambol: {name} nan: needs a number from")
+
+
+def test_a_mannequin_is_made_around_no_skeleton_whose_thigh_has_no_length(tmp_path):
+    body = human()
+    offsets = body.offsets.copy()
+    offsets[body.index("LeftLeg")] = 0.0
+    write_bvh(Clip("x", replace(body, offsets=offsets), 1 / 60, body.offsets[:1].repeat(4, 0), np.tile([0.0, 0.0, 0.0, 1.0], (4, 22, 1))), tmp_path / "legless.bvh")
+    done = CliRunner().invoke(cli.app, ["character", "-o", str(tmp_path / "a.glb"), "--skeleton", str(tmp_path / "legless.bvh")])
+    assert done.exit_code == 2 and "legless.bvh: LeftUpLeg has no length: LeftLeg is where it is" in done.stderr and len(done.stderr.splitlines()) == 1

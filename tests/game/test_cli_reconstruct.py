@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,8 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["{clip}", "-o", "o.fbx"], ".bvh or .glb"),
     (["none.bvh", "-o", "o.bvh"], "none.bvh"),
     (["{words}", "-o", "o.bvh"], "words.bvh"),
+    (["{legless}", "-o", "o.bvh"], "legless.bvh: LeftUpLeg has no length: LeftLeg is where it is"),
+    (["{instant}", "-o", "o.bvh"], "instant.bvh: 60 frames in 5.9e-06 s are too few; a performance needs 4 in 0.05 s at least"),
     (["{clip}", "--database", "{clip}", "-o", "o.bvh"], "is no motion database"),
     (["{clip}", "--database", "none.gambolmotion", "-o", "o.bvh"], "none.gambolmotion: can't be read"),
     (["{clip}", "--port", "9000", "-o", "o.bvh"], "--port goes with --stream"),
@@ -92,7 +95,12 @@ def test_mistakes_get_one_line(motion, tmp_path, monkeypatch, arguments, why):
     monkeypatch.chdir(tmp_path)
     words = tmp_path / "words.bvh"
     words.write_text("HIERARCHY of words")
-    known = {"clip": motion[1], "database": motion[0], "words": words}
+    offsets = motion[2].skeleton.offsets.copy()
+    offsets[motion[2].skeleton.index("LeftLeg")] = 0.0
+    legless, instant = tmp_path / "legless.bvh", tmp_path / "instant.bvh"
+    write_bvh(replace(motion[2], skeleton=replace(motion[2].skeleton, offsets=offsets)), legless)
+    write_bvh(replace(motion[2].slice(0, 60), frame_time=1e-7), instant)
+    known = {"clip": motion[1], "database": motion[0], "words": words, "legless": legless, "instant": instant}
     done = gambol("reconstruct", *(a.format(**known) for a in arguments))
     assert done.exit_code == 2
     assert why in done.output and len(done.output.strip().splitlines()) == 1

@@ -146,7 +146,7 @@ FAULTS = [
     ("jump_to = [-3, 6], for = 6", "jump_to = [-3, 6]", "actors[2].moves[0]: velocity needs `for`"),
     ("{ jump = 0.2 }", "{ hops = 0 }", "actors[0].moves[3].hops: input should be greater than or equal to 1, got 0"),
     ("{ jump = 0.2 }", "{ jump = 0.2, ahead = 1 }", "actors[0].moves[3]: `ahead` goes with hops"),
-    ("mass = 24", "mass = 0", "actors[1].body.mass: input should be greater than or equal to 5, got 0"),
+    ("mass = 24", "mass = 0", "actors[1].body.mass: input should be greater than or equal to 1, got 0"),
     ("height = 1.2", "height = nan", "actors[1].body.height:"),
     ("gravity = 1.62", "gravity = -9.81", "actors[2].gravity: input should be greater than or equal to 0.2, got -9.81"),
     ("duration = 16", 'duration = 16\nstage = "moon"', "stage: input should be 'course', got 'moon'"),

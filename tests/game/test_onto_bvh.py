@@ -98,7 +98,9 @@ def test_what_nothing_moves_on_is_told(walk, tmp_path):
     short = replace(walk, poses=walk.poses[:20], contacts=walk.contacts[:20])
     turned = file_of(tmp_path / "short.bvh", short, frames=exp(np.random.default_rng(3).normal(size=(22, 3)) * 1.5))
     strange = file_of(tmp_path / "strange.bvh", short, names=[f"bone{k}" for k in range(22)])
-    for path, said in ((turned, "zero pose is no person standing, and it moves for 0.67 s only"), (strange, "no foot or ankle")):
+    legless = file_of(tmp_path / "legless.bvh", replace(walk, skeleton=replace(walk.skeleton, offsets=np.where(
+        np.arange(22)[:, None] == walk.skeleton.index("LeftLeg"), 0.0, walk.skeleton.offsets))))
+    for path, said in ((legless, "LeftUpLeg has no length"), (turned, "zero pose is no person standing, and it moves for 0.67 s only"), (strange, "no foot or ankle")):
         with pytest.raises(MotionFileError, match=f"{path.name}: .*{said}"):
             rig_in(path)
 

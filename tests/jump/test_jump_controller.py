@@ -168,6 +168,21 @@ def test_no_body_is_like_that(values):
         Physique(**values)
 
 
+@pytest.mark.parametrize("height", [0.5, 1.2, 1.741, 3.0])
+def test_a_body_weighs_as_an_adult_of_its_height_unless_told(height):
+    body = Physique(height=height)
+    assert body.mass == 73.0 * (height / 1.741) ** 3 and type(body.mass) is float
+    assert body == Physique(None, height) == Physique(body.mass, height) and Physique().mass == 73.0
+    assert replace(Physique(), height=height).mass == 73.0, "a body that is replaced keeps its mass"
+    assert replace(Physique(), height=height, mass=None) == body
+
+
+@pytest.mark.parametrize("height", [0.5, 1.0])
+def test_small_bodies_of_their_own_weight_jump(height):
+    jump, size = Jump(Physique(height=height)), height / 1.741
+    assert jump.highest == pytest.approx(size * Jump().highest, rel=0.2)
+
+
 @pytest.mark.parametrize("gravity", [(0, 0, 0), (0, 9.81, 0), (1, -9.81, 0), (0, np.nan, 0), (0, -9.81)])
 def test_gravity_pulls_down(gravity):
     with pytest.raises(ValueError, match="gravity"):

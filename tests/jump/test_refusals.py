@@ -79,3 +79,25 @@ def test_who_walks_or_runs_is_not_told_that_he_is_weak(locomotion, jump, speed):
                 told.append(jump.refusal(moving, Intent(leap=Leap(there + [0.0, 0.0, 1.4], airtime))))
     assert any("no foot is under it" in why for why in told)
     assert not any("weak" in why for why in told), told
+
+
+@pytest.mark.parametrize("speed", [0.8, 1.3, 3.0])
+def test_the_nearest_place_to_one_that_can_be_leapt_to_is_that_one(locomotion, jump, speed):
+    """And who walks is told of one where the place itself is too far, though he can't leap where he stands."""
+    state, wish, reached, offered = locomotion.start(), Intent(np.array([speed, 0.0, 0.0])), [], []
+    for k in range(100):
+        before = state
+        state, _ = locomotion.step(state, wish, 1 / 60)
+        if k > 60 and k % 8 == 0:
+            moving = replace(state, previous=before.pose, elapsed=1 / 60)
+            start = jump.start_of(moving)
+            for far in (0.3, 0.6, 1.0, 1.5):
+                place = np.array([state.ground[0], 0.0, state.ground[1] + far])
+                nearest, refused = jump.nearest(start, place, 0.0), jump.refusal(moving, Intent(leap=Leap(place)))
+                if not refused:
+                    assert nearest is not None and np.array_equal(nearest, place)
+                reached.append(not refused)
+                offered.append(bool(refused) and nearest is not None and jump.attempt(start, nearest, 0.0, None, ())[0] is not None)
+    assert any(reached)
+    if speed < 1.0:
+        assert sum(offered) >= sum(not one for one in reached) - 2

@@ -129,6 +129,9 @@ def folder(recorded, tmp_path_factory):
             write_bvh(recorded[name][0], home / kind / f"{name}.bvh")
     text = (home / "walks" / "slow.bvh").read_text()
     (home / "walks" / "broken.bvh").write_text(text[:len(text) // 2])
+    legless = recorded["slow"][0].skeleton.offsets.copy()
+    legless[human().index("LeftLeg")] = 0.0
+    write_bvh(replace(recorded["slow"][0], skeleton=replace(human(), offsets=legless)), home / "walks" / "legless.bvh")
     (home / "walks" / "notes.txt").write_text("not a motion")
     (home / "recipe.toml").write_text(
         'provenance = "played by Gambol"\n[[source]]\nglob = "walks/*.bvh"\nfamilies = ["walk"]\nskip = ["spin*"]\n'
@@ -170,6 +173,7 @@ def test_a_broken_file_is_noted_and_not_fatal(built):
     _, notes, _ = built
     assert len([n for n in notes if "broken.bvh" in n]) == 1
     assert not any("notes.txt" in n for n in notes)
+    assert len([n for n in notes if "legless" in n and "LeftUpLeg has no length" in n]) == 1
 
 
 def test_what_is_missing_is_said(built):

@@ -181,6 +181,16 @@ def test_what_is_no_human_is_refused_with_its_names():
         roles(dog)
 
 
+@pytest.mark.parametrize(("bone", "end"), [("LeftUpLeg", "LeftLeg"), ("RightLeg", "RightFoot"), ("LeftForeArm", "LeftHand")])
+def test_a_bone_of_a_limb_without_a_length_is_refused_by_name(own, bone, end):
+    offsets = own.skeleton.offsets.copy()
+    offsets[own.skeleton.index(end)] = 0.0
+    for change in (lambda clip: clip, reframed):
+        legless = change(replace(own, skeleton=replace(own.skeleton, offsets=offsets)))
+        with pytest.raises(ValueError, match=f"{bone} has no length: {end} is where it is"):
+            retarget(legless)
+
+
 def test_a_calibration_of_something_else_is_refused(own):
     tall = replace(own, skeleton=own.skeleton.scaled(1.3))
     with pytest.raises(ValueError, match="another skeleton"):

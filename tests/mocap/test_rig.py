@@ -157,6 +157,7 @@ def test_what_no_rig_can_be_made_of_is_told():
                          (dict(turned=np.tile(2.0 * np.eye(3), (22, 1, 1))), "its turn is no rotation: take scales"),
                          (dict(turned=np.tile(np.diag([-1.0, 1.0, 1.0]), (22, 1, 1))), "mirrors"),
                          (dict(places=1e5 * T_POSE), "is no human's"), (dict(places=0.0 * T_POSE), "hips and head are in one place"),
+                         (dict(places=np.where(np.arange(22)[:, None] == HUMAN.index("LeftLeg"), T_POSE[HUMAN.index("LeftUpLeg")], T_POSE)), "LeftUpLeg has no length: LeftLeg is"),
                          (dict(places=T_POSE * [-1.0, 1.0, 1.0]), "left and right are exchanged"),
                          (dict(parents=np.arange(22)), "parents must come before")):
         given_ = dict(names=HUMAN.names, parents=HUMAN.parents, places=T_POSE) | change

@@ -177,6 +177,18 @@ def test_a_folder_becomes_a_database(folder, tmp_path):
     assert len(made.database) == 2 * len(plain) and not any(take.mirrored for take in plain.takes)
 
 
+def test_who_has_a_thigh_of_no_length_is_left_out(folder, tmp_path):
+    one = clip(4, 60)
+    offsets = one.skeleton.offsets.copy()
+    offsets[one.skeleton.index("LeftLeg")] = 0.0
+    write_bvh(replace(one, skeleton=replace(one.skeleton, offsets=offsets)), folder / "07" / "07_03.bvh")
+    write_bvh(replace(one, frame_time=1e-7), folder / "07" / "07_04.bvh")
+    made = build(folder, tmp_path / "a")
+    assert len(made.database.takes) == 4 and len(made.problems) == 4
+    assert any("07_03.bvh left out: LeftUpLeg has no length" in line for line in made.problems)
+    assert any("07_04.bvh: 60 frames in 5.9e-06 s are too few" in line for line in made.problems)
+
+
 def test_resampling_keeps_rotations(folder, tmp_path):
     """At 30 and at 60 frames a second every other frame is the same pose."""
     slow, fast = (build(folder, tmp_path / str(fps), fps=fps, mirrors=False).database for fps in (30, 60))

@@ -15,26 +15,31 @@ from ...compiled import kernel
 
 GRAVITY = np.array([0.0, -9.81, 0.0])
 """On Earth [m/s²]."""
+MASS = 73.0
+"""An adult's [kg], of standard height."""
 
 
 @dataclass(frozen=True)
 class Physique:
     """Whose body jumps: mass [kg], height [m], strength and flexibility as shares of an adult's, sex.
 
-    Strength counts per kilogram: 1 is an adult who jumps 0.4 m high.
+    mass: by default None, for as much as an adult of that height, see `mass_of`. It is a number from then on, which `dataclasses.replace` keeps, whatever the
+    height becomes: `replace(physique, height=1.2, mass=None)` is built as an adult again. Strength counts per kilogram: 1 is an adult who jumps 0.4 m high.
     ValueError for values that no body has.
     """
 
-    mass: float = 73.0
+    mass: float = None  # pyright: ignore[reportAssignmentType]  # a number once it is made
     height: float = STATURE
     strength: float = 1.0
     flexibility: float = 1.0
     sex: Literal["male", "female"] = "male"
 
     def __post_init__(self):
-        for name, low, high in (("mass", 5.0, 400.0), ("height", 0.5, 3.0), ("strength", 0.05, 20.0),
+        for name, low, high in (("height", 0.5, 3.0), ("mass", 1.0, 400.0), ("strength", 0.05, 20.0),
                                 ("flexibility", 0.3, 2.0)):
             value = getattr(self, name)
+            if name == "mass" and value is None:
+                value = mass_of(self.height)
             # typeshed's Real is only compared with its like, which it has no float for
             if (isinstance(value, bool) or not isinstance(value, Real)
                     or not low <= value <= high):  # pyright: ignore[reportOperatorIssue]
@@ -68,6 +73,11 @@ class Physique:
             skeleton.parents, offsets, masses.joints, masses.masses, masses.centres, masses.inertias, float(self.mass),
             hip, -offsets[hip[0] + 1, 1], -offsets[hip[0] + 2, 1], offsets[hip[0] + 3], heel_offset(skeleton),
             skeleton.end_offsets[skeleton.end_index["LeftToe"]], contact_height(skeleton), float(self.size))
+
+
+def mass_of(height: float) -> float:
+    """How heavy [kg] somebody so tall [m] is who is built as an adult: by the cube of the height."""
+    return MASS * (height / STATURE) ** 3
 
 
 class BodyTables(NamedTuple):

@@ -25,7 +25,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ...compiled import kernel
-from ..body import BodyTables, Physique, bend_kernel
+from ..body import MASS, BodyTables, Physique, bend_kernel
 
 Reading = Literal["wedge", "printed"]
 Arm = Literal["constant", "attached"]
@@ -66,7 +66,7 @@ def muscle(physique: Physique, reading: Reading = "wedge", arm: Arm = "constant"
     if arm not in ("constant", "attached"):
         raise ValueError(f"arm must be constant or attached, got {arm!r}")
     size = physique.size
-    return Muscle(STIFFNESS * physique.strength * physique.mass / Physique.mass / size, WIDTH * size, reading == "printed",
+    return Muscle(STIFFNESS * physique.strength * physique.mass / MASS / size, WIDTH * size, reading == "printed",
                   arm == "attached")
 
 

@@ -30,6 +30,8 @@ TRIES = 3
 """With so many plans at most: who was refused shall not wait for the reason."""
 CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
 """For so long [s] a run would carry a body that leaps without effort, on Earth, at standard height: the usual first."""
+WALKS = 0.3
+"""Who goes no faster than this [m/s] is carried nowhere."""
 
 
 class Found(NamedTuple):
@@ -138,21 +140,25 @@ class Reach(Arcs):
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                 around: Sequence[Any] = ()) -> np.ndarray | None:
-        """The place (3,) [m] that can be reached nearest to a refused one, by bisection on the way there from right above it, where it lies lower, or from one that takes
-        no effort: where it stands, or where a run would carry the body; to `GRID`, however far the refused one is. None if that can't be
-        reached either. It is looked for along arcs of the usual height alone: who would have to fly higher to get farther is offered a nearer one.
+        """The place (3,) [m] that can be reached nearest to another: that one, if it can be. It is sought by bisection on the way there from right above it, where
+        it lies lower, or from one that takes no effort: where it stands, or where a walk or run would carry the body; to `GRID`, however far the other is. None if
+        none of those can be reached, as in the midst of a stride. It is looked for along arcs of the usual height alone: who would have to fly higher to get
+        farther is offered a nearer one.
         Refused for what is no place, ValueError for what is no floor."""
-        return whole(self.nearby(start, meant(place, airtime), float(level(floor)), airtime, around))[0]
+        place, floor = meant(place, airtime), float(level(floor))
+        if self.attempt(start, place, floor, airtime, around)[0] is not None:
+            return place.copy()
+        return whole(self.nearby(start, place, floor, airtime, around))[0]
 
     def nearby(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
                around: Sequence[Any]) -> Pieces[tuple[np.ndarray | None, Found | None]]:
-        """What `nearest` gives, in pieces, and the plan to there."""
+        """What `nearest` gives of a place that can't be reached, in pieces, and the plan to there."""
         def reached(there: np.ndarray) -> Pieces[bool]:
             if len(around):
                 there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
             return not (yield from self.surveyed(start, there, floor, airtime, around, HEIGHTS[:1]))[1]
         found, deep = None, place[1] < floor and not len(around)  # who can't get as deep is told how deep he can get there
-        for there in ([place * FLAT + [0.0, floor, 0.0]] if deep else []) + list(self.easy(start, floor)):
+        for there in ([place * FLAT + [0.0, floor, 0.0]] if deep else []) + list(self.easy(start, floor)) + list(self.carried(start, floor)):
             if (yield from reached(there)):
                 found = there
                 break
@@ -178,8 +184,16 @@ class Reach(Arcs):
 
     def easy(self, start: Start, floor: float) -> np.ndarray:
         """The places (n, 3) to which it takes no effort to jump: where it stands, or where a run would carry the body."""
-        run = start.velocity * FLAT * np.sqrt(9.81 * self.physique.size / -self.gravity[1])
-        return self.middle(start, floor) + np.array([[0.0]] if start.single is None else CARRIED) * run
+        return self.middle(start, floor)[None] if start.single is None else self.middle(start, floor) + self._carries(start)
+
+    def carried(self, start: Start, floor: float) -> np.ndarray:
+        """The places (n, 3) to which a walk would carry the body, if no step off where it stands is easy: who pushes off both feet as he goes; none of others."""
+        walks = start.single is None and math.hypot(start.velocity[0], start.velocity[2]) > WALKS
+        return self.middle(start, floor) + self._carries(start) if walks else np.zeros((0, 3))
+
+    def _carries(self, start: Start) -> np.ndarray:
+        """By how much (n, 3) [m] the body would be carried by how fast it goes."""
+        return np.array(CARRIED) * start.velocity * FLAT * np.sqrt(9.81 * self.physique.size / -self.gravity[1])
 
 
 def _asked(start: Start, place: np.ndarray, floor: float, airtime: float | None, tries: int | None) -> tuple[Any, ...]:

@@ -18,6 +18,8 @@ from .database import FPS, Database, DatabaseError, Writer
 Progress = Callable[[int, int], None]
 """Called with how many files are done and how many there are."""
 
+LEAST = 4
+"""A take has so many frames at least, and lasts as long as they do."""
 JUMP = 0.6
 """No joint and no pelvis turns further than this [rad] in a sixtieth of a second."""
 EDGE = 3.0
@@ -87,8 +89,8 @@ def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: boo
 
 def _at_most(clip: Clip, fps: float, path: Path) -> Clip:
     """The clip at no more than fps [Hz]: what is thrown away later need not be retargeted."""
-    if len(clip) < 4:
-        raise MotionFileError(f"{path}: {len(clip)} frames are too few; a take needs 4")
+    if len(clip) < LEAST or clip.duration * fps < LEAST - 1.01:
+        raise MotionFileError(f"{path}: {len(clip)} frames in {clip.duration:.3g} s are too few; a take needs {LEAST} in {(LEAST - 1) / fps:.3g} s at least")
     return clip.resample(fps) if clip.frame_time < 0.99 / fps else clip
 
 
