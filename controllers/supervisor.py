@@ -95,6 +95,11 @@ class Supervisor(Controller):
         return " + ".join(one.kind for one in self.parts.values())
 
     @property
+    def size(self) -> float:
+        """How long its legs are, over those of the standard body."""
+        return self.parts[self.first].size
+
+    @property
     def library(self) -> Any:
         """The first controller's gaits."""
         return self.parts[self.first].library

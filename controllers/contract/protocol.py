@@ -57,12 +57,13 @@ def level(floor: Any) -> Any:
 class Controller(Protocol):
     """What the world asks of a controller. Whoever inherits from it has the null answers below, and gives what follows them.
 
-    skeleton: what its poses are of. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be
+    skeleton: what its poses are of. size: how long its legs are, over those of the standard body. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be
     tuned. body: what it is drawn in, a `gambol.game.render.Body`. None of each where it has none. parts: the controllers
     that it is made of, by name. What raises NotImplementedError has no null answer: whoever inherits gives it.
     """
 
     skeleton: Skeleton
+    size: float = 1.0
     library: Any = None
     settings: Any = None
     body: Any = None

@@ -120,7 +120,7 @@ def approach(walker: Controller, state: CharacterState, leap: Crossing, intent: 
 
     best: tuple[int, float, Plan | None] = (0, 0.0, None)
     for pace in PACES:
-        made = plan_in_time(state.ground, leap.ground, state.velocity, quickened(planes, pace), stops, float(state.floor), leaving=np.array([pace, 0.0, 0.0]))
+        made = plan_in_time(state.ground, leap.ground, state.velocity, quickened(planes, pace), stops, float(state.floor), leaving=np.array([pace, 0.0, 0.0]), size=walker.size)
         if made.reason:
             return 0.0, made
         moments = len(take_offs(walker, state, made, 0.0, leap, intent, dt, ENOUGH))
