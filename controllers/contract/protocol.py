@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Protocol
 
@@ -110,6 +110,10 @@ class Controller(Protocol):
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
         return None
+
+    def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str | None:
+        """What `refusal` gives. ask: is called once more for each part of it that takes as long as most answers do."""
+        return self.refusal(state, intent)
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not."""

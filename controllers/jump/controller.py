@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -18,7 +18,7 @@ from .crouching import Crouching, begun, crouched
 from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import SETS_FEET, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
+from .reach import SETS_FEET, SHARE, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
 from .starting import FEET, Jumping, landed, on_ground, ready, rebounding, sets_feet, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
@@ -34,6 +34,8 @@ SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
+MOVES = 18
+"""So much of what a leap costs to seek has time in a step of one who moves, in pieces, see `SHARE`."""
 DRAWN = 0.58
 """Who falls draws his arms in beside what he falls past, in so long [s]."""
 MOST_HITS = 3
@@ -114,9 +116,9 @@ class Jump(Reach, Controller):
 
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
         """The same, sought in pieces. onward: of the step before, where the same was asked. Refused until a plan is found, with why there is none as
-        far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
+        far as that is known. Who stands looks at one plan in each step; who moves is soon elsewhere, and looks at many at once."""
         seeking, steps = onward or Onward(None)
-        seeking, steps = seeking or Seeking(self._looked_for(state, intent, self._waits(state))), steps + 1
+        seeking, steps = seeking or self._seeking(state, intent), steps + 1
         found, onward = seeking.after(steps), Onward(seeking, steps)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
@@ -130,8 +132,12 @@ class Jump(Reach, Controller):
             raise Refused("", onward=onward)
         found = self.again(found.arc.how, self.start_of(state, leap, intent.around), found.place, float(level(state.floor)), leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
-            raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
+            raise Refused("", onward=Onward(self._seeking(state, intent)))
         return found.made
+
+    def _seeking(self, state: CharacterState, intent: Intent) -> Seeking[Found | tuple[str, np.ndarray | None, np.ndarray]]:
+        waits = self._waits(state)
+        return Seeking(self._looked_for(state, intent, waits), SHARE if waits else MOVES)
 
     def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.
@@ -170,13 +176,17 @@ class Jump(Reach, Controller):
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
         """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""
+        return self.pondered(state, intent, lambda: None)
+
+    def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str:
+        """The same. ask: is called once more for so much work as most leaps are no more than."""
         if intent.leap is None:
             return "nobody asked for a jump"
         try:
             start, place, floor, _ = self._meant(state, intent.leap, intent.around)
         except Refused as reason:
             return str(reason)
-        return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1] or SETS_FEET * self._sets_feet(state)
+        return self.attempt(start, place, floor, intent.leap.airtime, intent.around, ask=ask)[1] or SETS_FEET * self._sets_feet(state)
 
     def _meant(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> tuple[Start, np.ndarray, float, np.ndarray]:
         """From where a leap goes off, to which place (3,), off which floor [m], and where (3,) it stands. Refused where nobody can leap so from anywhere."""

@@ -4,7 +4,7 @@ as many steps however fast a machine is."""
 from __future__ import annotations
 
 import threading
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from typing import Any, Generic, NamedTuple, TypeVar
 
 T = TypeVar("T")
@@ -25,11 +25,36 @@ def whole(pieces: Pieces[T]) -> T:
             return end.value
 
 
+def weighed(pieces: Pieces[T]) -> Pieces[tuple[T, int]]:
+    """The same pieces, and of what comes of them what they cost together."""
+    cost = 0
+    while True:
+        try:
+            piece = next(pieces)
+        except StopIteration as end:
+            return end.value, cost
+        cost += piece if isinstance(piece, int) else 0
+        yield piece
+
+
+def counted(pieces: Pieces[T], dear: int, ask: Callable[[], None]) -> T:
+    """What comes of all pieces at once. ask: is called whenever they have cost so much more."""
+    spent = 0
+    while True:
+        try:
+            piece = next(pieces)
+        except StopIteration as end:
+            return end.value
+        before, spent = spent, spent + (piece if isinstance(piece, int) else 0)
+        for _ in range(spent // dear - before // dear):
+            ask()
+
+
 class Seeking(Generic[T]):
     """Work that is done a share in each step. What is known of it is a pure function of the steps: each share is worked out once, whoever asks first."""
 
-    def __init__(self, pieces: Pieces[T]):
-        self._pieces, self._held, self._ended = pieces, 0, False
+    def __init__(self, pieces: Pieces[T], share: int = SHARE):
+        self._pieces, self._held, self._ended, self._most = pieces, 0, False, share
         self._known: list[T | str] = []
         self._lock = threading.Lock()
 
@@ -59,7 +84,7 @@ class Seeking(Generic[T]):
             self._held = 0
             if isinstance(piece, str):
                 return piece
-            if spent and spent + piece > SHARE:
+            if spent and spent + piece > self._most:
                 self._held = piece
                 return next((known for known in reversed(self._known) if isinstance(known, str)), "")
             spent += piece

@@ -140,6 +140,10 @@ class Sized(Controller):
         """Why it could not leap from a state, "" if it could; None where it never leaps."""
         return self.walker.refusal(_own(state), self.asked(intent))
 
+    def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str | None:
+        """The same. ask: is called once more for each part of it that takes as long as most answers do."""
+        return self.walker.pondered(_own(state), self.asked(intent), ask)
+
     def asked(self, intent: Intent) -> Intent:
         """An intent of the smaller world in its own."""
         around = intent.around.own if isinstance(intent.around, SmallThings) else intent.around

@@ -44,7 +44,7 @@ def began(now: Going, state: CharacterState, intent: Intent, walker: Controller,
 
         def refusal(there: CharacterState, asked: Intent) -> str | None:
             counted()
-            return walker.refusal(there, asked)
+            return walker.pondered(there, asked, counted)
         known = now.crossings[1:] if now.leapt else now.crossings if now.back else ()  # who went back for a run-up makes it
         leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, known, now.stands, counted)
         failed = now.stands.count(named(leg.crossings[0])) if leg.crossings else 0
