@@ -18,7 +18,7 @@ from .crouching import Crouching, begun, crouched
 from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import SETS_FEET, SHARE, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
+from .reach import SETS_FEET, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
 from .starting import FEET, Jumping, landed, on_ground, ready, rebounding, sets_feet, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
@@ -34,8 +34,6 @@ SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
-MOVES = 18
-"""So much of what a leap costs to seek has time in a step of one who moves, in pieces, see `SHARE`."""
 DRAWN = 0.58
 """Who falls draws his arms in beside what he falls past, in so long [s]."""
 MOST_HITS = 3
@@ -116,9 +114,9 @@ class Jump(Reach, Controller):
 
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
         """The same, sought in pieces. onward: of the step before, where the same was asked. Refused until a plan is found, with why there is none as
-        far as that is known. Who stands looks at one plan in each step; who moves is soon elsewhere, and looks at many at once."""
+        far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
         seeking, steps = onward or Onward(None)
-        seeking, steps = seeking or self._seeking(state, intent), steps + 1
+        seeking, steps = seeking or Seeking(self._looked_for(state, intent, self._waits(state))), steps + 1
         found, onward = seeking.after(steps), Onward(seeking, steps)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
@@ -132,12 +130,8 @@ class Jump(Reach, Controller):
             raise Refused("", onward=onward)
         found = self.again(found.arc.how, self.start_of(state, leap, intent.around), found.place, float(level(state.floor)), leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
-            raise Refused("", onward=Onward(self._seeking(state, intent)))
+            raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
         return found.made
-
-    def _seeking(self, state: CharacterState, intent: Intent) -> Seeking[Found | tuple[str, np.ndarray | None, np.ndarray]]:
-        waits = self._waits(state)
-        return Seeking(self._looked_for(state, intent, waits), SHARE if waits else MOVES)
 
     def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.
@@ -150,11 +144,13 @@ class Jump(Reach, Controller):
         known = None if leap.how is None else self.again(leap.how, *asked)
         if known is not None:
             return known
-        found, reason = yield from self.seen(*asked, parted)
+        looked = self.seen(*asked, parted)
+        found, reason = (yield from looked) if parted else whole(looked)
         if found is not None:
             return found
         if leap.airtime is not None:
-            other, _ = yield from self.seen(start, place, floor, None, intent.around, parted)
+            looked = self.seen(start, place, floor, None, intent.around, parted)
+            other, _ = (yield from looked) if parted else whole(looked)
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
                 if leap.place is None and leap.airtime > self.longest:
                     return f"too high: this body gets {self.highest:.2f} m up at most, in {self.longest:.2f} s, and {leap.airtime:.2f} s were asked", None, here

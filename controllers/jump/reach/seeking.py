@@ -53,8 +53,8 @@ def counted(pieces: Pieces[T], dear: int, ask: Callable[[], None]) -> T:
 class Seeking(Generic[T]):
     """Work that is done a share in each step. What is known of it is a pure function of the steps: each share is worked out once, whoever asks first."""
 
-    def __init__(self, pieces: Pieces[T], share: int = SHARE):
-        self._pieces, self._held, self._ended, self._most = pieces, 0, False, share
+    def __init__(self, pieces: Pieces[T]):
+        self._pieces, self._held, self._ended = pieces, 0, False
         self._known: list[T | str] = []
         self._lock = threading.Lock()
 
@@ -84,7 +84,7 @@ class Seeking(Generic[T]):
             self._held = 0
             if isinstance(piece, str):
                 return piece
-            if spent and spent + piece > self._most:
+            if spent and spent + piece > SHARE:
                 self._held = piece
                 return next((known for known in reversed(self._known) if isinstance(known, str)), "")
             spent += piece
