@@ -15,7 +15,7 @@ import numpy as np
 
 from .body import Pose, Skeleton
 from .contract import HIGHEST, LONGEST, CharacterState, Controller, Intent, Leap, OfSize, Status, grounded, level, seconds
-from .navigation import checked, is_box, is_pillar, slope
+from .navigation import checked, shrunk, speeds
 
 SAME = 1e-6
 """Sizes that differ by no more than this share are one."""
@@ -40,6 +40,11 @@ class Scaled(Controller):
     def skeleton(self) -> Skeleton:
         """What it moves."""
         return self.controller.skeleton.scaled(self.factor)
+
+    @property
+    def size(self) -> float:
+        """How long its legs are, over those of the standard body."""
+        return self.factor
 
     @property
     def library(self) -> Any:
@@ -122,18 +127,13 @@ class Scaled(Controller):
     @property
     def _speeds(self) -> np.ndarray:
         """What v_f, ω and v_l grow by."""
-        return np.array([self.factor**0.5, self.factor**-0.5, self.factor**0.5])
+        return speeds(self.factor)
 
     def _asked(self, intent: Intent) -> Intent:
         look = None if intent.look is None else np.asarray(intent.look, float) / self.factor
         halt = None if intent.halt is None else np.asarray(intent.halt, float) / [self.factor, self.factor, 1.0]
         towards = None if intent.towards is None else np.asarray(intent.towards, float) / [1.0, self.factor**0.5]
-        try:
-            around = tuple(_ShrunkBox(thing, self.factor) if is_box(thing) else _ShrunkPillar(thing, self.factor)
-                           for thing in intent.around if is_box(thing) or is_pillar(thing))
-        except (AttributeError, TypeError, ValueError):
-            checked(intent.around)
-            raise
+        around = shrunk(intent.around, self.factor)
         return Intent(intent.velocity / self._speeds, None if intent.leap is None else Leap(None), around, aim=None if intent.aim is None else Leap(None), look=look, halt=halt, towards=towards)
 
     def _grown(self, state: CharacterState) -> CharacterState:
@@ -141,22 +141,6 @@ class Scaled(Controller):
 
     def _shrunk(self, state: CharacterState) -> CharacterState:
         return _resized(state, 1.0 / self.factor, state.velocity / self._speeds, state.memory.memory if isinstance(state.memory, OfSize) else state.memory)
-
-
-class _ShrunkBox:
-    """A box as a body sees it that is taken for another's size."""
-
-    def __init__(self, box: Any, factor: float):
-        self.centre, self.size = (np.asarray(one, float) / factor for one in (box.centre, box.size))
-        self.heading, self.slope = box.heading, slope(box)
-
-
-class _ShrunkPillar:
-    """A pillar likewise."""
-
-    def __init__(self, pillar: Any, factor: float):
-        self.foot = np.asarray(pillar.foot, float) / factor
-        self.radius, self.height = pillar.radius / factor, pillar.height / factor
 
 
 def _resized(state: CharacterState, factor: float, velocity: np.ndarray, memory: Any) -> CharacterState:

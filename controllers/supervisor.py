@@ -7,7 +7,7 @@ over without a jump is each controller's own `enter`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -93,6 +93,11 @@ class Supervisor(Controller):
     def kind(self) -> str:
         """What tells its motion from that of other controllers, beside the library."""
         return " + ".join(one.kind for one in self.parts.values())
+
+    @property
+    def size(self) -> float:
+        """How long its legs are, over those of the standard body."""
+        return self.parts[self.first].size
 
     @property
     def library(self) -> Any:
@@ -211,7 +216,11 @@ class Supervisor(Controller):
 
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why none of them could leap as intent.leap says, "" if one could; None where none ever leaps."""
-        found = [why for why in (part.refusal(self.active(state)[1], intent) for part in self.parts.values()) if why is not None]
+        return self.pondered(state, intent, lambda: None)
+
+    def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str | None:
+        """The same. ask: is called once more for each part of it that takes as long as most answers do."""
+        found = [why for why in (part.pondered(self.active(state)[1], intent, ask) for part in self.parts.values()) if why is not None]
         return None if not found else "" if "" in found else found[0]
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:

@@ -102,7 +102,7 @@ PLAN = {
         "navigation": "compiled body contract",
         "navigation.routes": "compiled",
         "navigation.levels": "contract navigation.planning navigation.routes",
-        "navigation.thinking": "contract navigation.levels navigation.planning navigation.routes",
+        "navigation.thinking": "body contract navigation.levels navigation.planning navigation.routes",
         "navigation.crowd": "compiled contract navigation.routes",
         "navigation.passing": "compiled body navigation.routes",
         "navigation.planning": "compiled files body navigation.routes",

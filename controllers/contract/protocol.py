@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Protocol
 
@@ -71,12 +71,13 @@ def grounded(ground: Any, most: float = HIGHEST) -> np.ndarray:
 class Controller(Protocol):
     """What the world asks of a controller. Whoever inherits from it has the null answers below, and gives what follows them.
 
-    skeleton: what its poses are of. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be
+    skeleton: what its poses are of. size: how long its legs are, over those of the standard body. library: its gaits, a `gambol.controllers.locomotion.Library`. settings: what may be
     tuned. body: what it is drawn in, a `gambol.game.render.Body`. None of each where it has none. parts: the controllers
     that it is made of, by name. What raises NotImplementedError has no null answer: whoever inherits gives it.
     """
 
     skeleton: Skeleton
+    size: float = 1.0
     library: Any = None
     settings: Any = None
     body: Any = None
@@ -123,6 +124,10 @@ class Controller(Protocol):
     def refusal(self, state: CharacterState, intent: Intent) -> str | None:
         """Why it could not leap from a state as intent.leap says, "" if it could; None of one that never leaps."""
         return None
+
+    def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str | None:
+        """What `refusal` gives. ask: is called once more for each part of it that takes as long as most answers do."""
+        return self.refusal(state, intent)
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -144,11 +144,13 @@ class Jump(Reach, Controller):
         known = None if leap.how is None else self.again(leap.how, *asked)
         if known is not None:
             return known
-        found, reason = yield from self.seen(*asked, parted)
+        looked = self.seen(*asked, parted)
+        found, reason = (yield from looked) if parted else whole(looked)
         if found is not None:
             return found
         if leap.airtime is not None:
-            other, _ = yield from self.seen(start, place, floor, None, intent.around, parted)
+            looked = self.seen(start, place, floor, None, intent.around, parted)
+            other, _ = (yield from looked) if parted else whole(looked)
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
                 if leap.place is None and leap.airtime > self.longest:
                     return f"too high: this body gets {self.highest:.2f} m up at most, in {self.longest:.2f} s, and {leap.airtime:.2f} s were asked", None, here
@@ -170,13 +172,17 @@ class Jump(Reach, Controller):
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
         """Why the jump that `intent.leap` asks for can't be made from a state; "" if it can: it is planned, and swept, too."""
+        return self.pondered(state, intent, lambda: None)
+
+    def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str:
+        """The same. ask: is called once more for so much work as most leaps are no more than."""
         if intent.leap is None:
             return "nobody asked for a jump"
         try:
             start, place, floor, _ = self._meant(state, intent.leap, intent.around)
         except Refused as reason:
             return str(reason)
-        return self.attempt(start, place, floor, intent.leap.airtime, intent.around)[1] or SETS_FEET * self._sets_feet(state)
+        return self.attempt(start, place, floor, intent.leap.airtime, intent.around, ask=ask)[1] or SETS_FEET * self._sets_feet(state)
 
     def _meant(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> tuple[Start, np.ndarray, float, np.ndarray]:
         """From where a leap goes off, to which place (3,), off which floor [m], and where (3,) it stands. Refused where nobody can leap so from anywhere."""

@@ -16,7 +16,7 @@ from ..contract import CharacterState, Controller, Goal, Intent, Leap, but
 from .goal import arrived, progress
 from .levels import SOON, levels_of, named, onto
 from .obstacles import changed, matters
-from .thinking import NEARER, Going, another, astray, began, landed, poised, ready, run_up, steps_of, within
+from .thinking import NEARER, Going, another, astray, began, in_size, landed, poised, ready, run_up, steps_of, within
 
 STILL = 0.01
 """Who moves no faster than this [m/s, rad/s] stands."""
@@ -44,6 +44,13 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
     walker: by whose limits plans are made, and with whose readiness, while he sets off, their time runs. walks: whether he walks now; who jumps
     doesn't, and goes on afterwards. dt: the step that is to be made [s].
     """
+    if walker.size != 1.0 and intent.goal is not None:
+        return in_size(_led, state, intent, walker, walks, dt)
+    return _led(state, intent, walker, walks, dt)
+
+
+def _led(state: CharacterState, intent: Intent, walker: Controller, walks: bool, dt: float) -> tuple[Going | None, Intent]:
+    """The same of somebody of the standard size."""
     goal = intent.goal
     now: Going | None = state.going
     if goal is None or not walks:
@@ -67,7 +74,7 @@ def going(state: CharacterState, intent: Intent, walker: Controller, walks: bool
     share, leap = 1.0, intent.leap
     if intent.aside is not None and bool(np.isfinite(intent.aside).all()):
         share, velocity = progress(velocity, velocity + intent.aside), velocity + intent.aside
-        now = _kept(now, state, share, dt)
+        now = _kept(now, state, share, dt, walker.size)
     if now.crossings and leap is None and not intent.held and _leaps(now, state):
         leap, now = Leap(onto(now.crossings[0], now.pace)), now.but(asked=now.asked + dt)
     now = now.but(time=now.time + share * dt * float(walker.readiness(state)), spent=now.spent + dt)
@@ -141,8 +148,8 @@ def _leaps(now: Going, state: CharacterState) -> bool:
     return now.off == 0 if now.pace else now.poised and ready(now, state)
 
 
-def _kept(now: Going, state: CharacterState, share: float, dt: float) -> Going:
-    """The same, as others let him go on by a share of what he wishes for."""
+def _kept(now: Going, state: CharacterState, share: float, dt: float, size: float) -> Going:
+    """The same, as others let somebody of a size go on by a share of what he wishes for."""
     left = float(np.hypot(*(now.plan.goal - state.ground)[:2]))
     if left < now.nearest - NEARER:
         return now.but(waits=0.0, nearest=left)
@@ -151,7 +158,7 @@ def _kept(now: Going, state: CharacterState, share: float, dt: float) -> Going:
         return now.but(waits=waits)
     from .planning import Plan
 
-    why = f"others have been in the way for {waits:.0f} s, {left:.2f} m before the {'leap' if now.crossings else 'goal'}"
+    why = f"others have been in the way for {waits * size**0.5:.0f} s, {left * size:.2f} m before the {'leap' if now.crossings else 'goal'}"
     return now.but(waits=waits, plan=Plan.none(state.ground, now.plan.goal, why), thinking=None)
 
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from gambol.controllers.contract import CharacterState
 from gambol.controllers.navigation import Going
-from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import Figure, Line, Overlays, Sketch
 from ..world import World
@@ -42,10 +41,10 @@ def led(figures: Sequence[Figure], after: World, overlays: Overlays, count: int 
 
 
 def _way(way: Going, floor: float) -> list[Sketch]:
-    tint, levels = CANNOT if way.status.reason else CAN, levels_of(way.around)
+    tint = CANNOT if way.status.reason else CAN
     drawn: list[Sketch] = []
     walked = way.plan.at(np.arange(math.ceil(way.time / LOOKS) * LOOKS, way.plan.seconds + LOOKS, LOOKS))[0]  # the last one is its end
-    heights = levels.floors(walked[:, :2], floor)
+    heights = way.floors(walked[:, :2], floor)
     if not way.plan.reason:
         for (x, z, turned), high in zip(walked[:-1], heights[:-1]):
             drawn.append(_mark(np.array([x, high, z]), turned, np.array([0.0, LONG]), tint, 0.025, (0.9, 0.2)))
@@ -59,7 +58,7 @@ def _way(way: Going, floor: float) -> list[Sketch]:
         last = leap.place
     if last is not None:
         straight = last + np.linspace(0.0, 1.0, 65)[:, None] * (place - last)
-        place[1] = levels.floors(straight[:, [0, 2]], float(last[1]))[-1]
+        place[1] = way.floors(straight[:, [0, 2]], float(last[1]))[-1]
         drawn += _onward(last, place, tint)
     drawn += [replace(sketch, layer="path") for sketch in ring(place, tint, PLACE)]
     if not (way.plan.reason or way.crossings):
@@ -89,7 +88,7 @@ def on_the_way(state: CharacterState) -> tuple[str, ...]:
         return (f"no way there: {way.plan.reason}",)
     if way.there:
         return ("at the goal",)
-    parts = cost_of(way.plan)
+    parts = cost_of(way.costed)
     shares = "   ".join(f"{name} {value:.1f}".replace(" ", "\u00a0") for name, value in zip(PARTS, parts) if value >= 0.05)
     leaps = len(way.crossings)
     where = "the goal" if not leaps else "a leap" if leaps == 1 else f"the first of {leaps} leaps"

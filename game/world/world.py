@@ -18,7 +18,6 @@ from gambol.controllers.body import Pose, forward_kinematics, wrap
 from gambol.controllers.contract import CharacterState, Intent, but
 from gambol.controllers.navigation import drift
 from gambol.controllers.navigation.crowd import Turns
-from gambol.controllers.navigation.levels import levels_of
 
 from ..scene import TINT, Figure, Prop
 from .centre_of_mass import CentreOfMass, centre_of
@@ -236,7 +235,7 @@ def figures(before: World, after: World, alpha: float, predict: float = 1.5) -> 
         ahead = drift(ground, new.intent.velocity, np.linspace(0.0, predict, 16)) if way is None else \
             np.vstack([ground, way.plan.at(np.linspace(min(way.time, way.plan.seconds), way.plan.seconds, 48))[0]])
         lift = float(new.state.floor) + FLOOR_LIFT
-        along = np.full(len(ahead), lift) if way is None else levels_of(way.around).floors(ahead[:, :2], float(new.state.floor)) + FLOOR_LIFT
+        along = np.full(len(ahead), lift) if way is None else way.floors(ahead[:, :2], float(new.state.floor)) + FLOOR_LIFT
         here = np.array([[ground[0], lift, ground[1]]])
         contacts = (old if alpha < 0.5 else new).state.contacts
         drawn.append(Figure(positions, orientations, new.tint, contacts,

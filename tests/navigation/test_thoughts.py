@@ -1,13 +1,14 @@
 """What is thought of beside the steps is used at the same step on every machine, and nothing is planned within a step."""
 
+import itertools
 import threading
 
 import numpy as np
 import pytest
 
-from gambol.controllers.contract import Goal, Intent
+from gambol.controllers.contract import Goal, Intent, Leap
 from gambol.controllers.locomotion import Locomotion
-from gambol.controllers.navigation.levels import Crossing
+from gambol.controllers.navigation.levels import Crossing, next_leg, run_up
 from gambol.controllers.navigation.planning import Plan, goal_planner
 from gambol.controllers.navigation.thinking import Going, Thought, poised, steps_of
 from gambol.controllers.person import person
@@ -124,6 +125,37 @@ def test_a_leap_that_was_thought_of_is_not_planned_again(monkeypatch):
             assert len(planned) == count and planned, "the step at which he leaps finds the plan made"
             return
     pytest.fail("he never leapt")
+
+
+def test_a_leap_that_takes_long_to_look_into_counts_more_and_as_much_when_it_is_known():
+    """All of them counted for one, so that a step waited for what a dozen plans take."""
+    someone = person()
+    wall = (Box((0.0, 0.6, 0.7), (3.0, 1.2, 0.2)),)
+    counts = []
+    for around, _ in itertools.product(((), wall), range(2)):
+        asked = []
+        why = someone.pondered(someone.start(), Intent(leap=Leap((0.0, 0.0, 1.0)), around=around), lambda asked=asked: asked.append(None))
+        counts.append(len(asked))
+        assert (why == "") == (not around) and why == someone.refusal(someone.start(), Intent(leap=Leap((0.0, 0.0, 1.0)), around=around))
+    assert counts[:2] == [0, 0] and counts[2] == counts[3] > 0
+
+
+def test_who_can_leap_from_a_stand_looks_for_no_run_up(monkeypatch):
+    """They were played ahead, for a second, by who stood near a gap and had no need of one."""
+    def never(*_):
+        raise AssertionError("a run-up is looked for")
+    monkeypatch.setattr(run_up, "goes_off", never)
+    someone = person()
+    near = Box((0.0, 0.3, 3.3), (2.0, 0.6, 2.0)), Box((0.0, 0.3, 0.0), (2.0, 0.6, 3.6))
+    leg = next_leg(someone, someone.start((0.0, 1.2, 0.0), 0.6), Goal((0.0, 3.5)), near)
+    assert leg.crossings and not leg.back
+
+
+def test_the_longest_run_up_that_will_do_is_the_only_one_played_ahead(monkeypatch):
+    asked = []
+    monkeypatch.setattr(run_up, "goes_off", lambda walker, far, up, back: bool(asked.append(back)) or back < 1.7)
+    begins = run_up.start_of(None, Crossing(np.array([0.0, 2.14, 0.0]), np.array([0.0, 0.6, 4.2]), 0.6), GAP)
+    assert asked == [1.9, 1.6] and begins == pytest.approx([0.0, 0.54])
 
 
 @pytest.mark.parametrize("why", ["", "too far"])

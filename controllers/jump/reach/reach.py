@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -17,7 +17,7 @@ from ..planner import plan
 from ..prior import Prior
 from .arcs import HEIGHTS, Arc, Arcs, How, following
 from .feasibility import STEEP, meant, stopped, wrong
-from .seeking import PLAN, Pieces, whole
+from .seeking import PLAN, Pieces, counted, weighed, whole
 from .sweep import Touch, touch
 
 GRID, FARTHEST = 0.02, 10.0
@@ -26,6 +26,8 @@ BACK = 1.0, 0.85, 0.6
 """A place that is offered instead of another is planned, too: if something would be touched there, less far on the way."""
 KEPT = 32
 """So many plans are known for a while: who asks whether a leap can be made makes it soon."""
+DEAR = 8
+"""What is found out about a leap counts once more for each so much that it costs, in pieces."""
 TRIES = 3
 """With so many plans at most: who was refused shall not wait for the reason."""
 CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
@@ -50,29 +52,32 @@ class Reach(Arcs):
 
     def __init__(self, physique: Physique, gravity: np.ndarray, prior: Prior):
         super().__init__(physique, gravity, prior)
-        self._lately: tuple[tuple[Any, Sequence[Any], tuple[Found | None, str]], ...] = ()
+        self._lately: tuple[tuple[Any, Sequence[Any], tuple[tuple[Found | None, str], int]], ...] = ()
 
     def attempt(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
-                around: Sequence[Any], tries: int | None = None) -> tuple[Plan | None, str]:
+                around: Sequence[Any], tries: int | None = None, ask: Callable[[], None] = lambda: None) -> tuple[Plan | None, str]:
         """A plan that touches nothing, or None and why there is none. Where something is in the way of its limbs, they are drawn up, or
-        it jumps higher. tries: so many plans at most. What was asked just now is not planned again."""
-        found, why = whole(self.seen(start, place, floor, airtime, around, False, tries))
+        it jumps higher. tries: so many plans at most. What was asked just now is not planned again.
+        ask: is called once more for each `DEAR` that it costs, or cost."""
+        found, why = counted(self.seen(start, place, floor, airtime, around, False, tries), DEAR, ask)
         return found and found.made, why
 
     def seen(self, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any],
              parted: bool, tries: int | None = None) -> Pieces[tuple[Found | None, str]]:
-        """What `planned` gives, in its pieces or all at once: then what was asked just now is not planned again."""
+        """What `planned` gives, in its pieces. Not parted, what was asked just now is not planned again, and costs at once what it cost."""
         if parted:
             return (yield from self.planned(start, place, floor, airtime, around, tries))
         asked = _asked(start, place, floor, airtime, tries)
-        found = self._known(asked, around)
-        if found is None:
-            found = whole(self.planned(start, place, floor, airtime, around, tries))
-            self._lately = (*self._lately[1 - KEPT:], (asked, around, found))
-        return found
+        known = self._known(asked, around)
+        if known is None:
+            known = yield from weighed(self.planned(start, place, floor, airtime, around, tries))
+            self._lately = (*self._lately[1 - KEPT:], (asked, around, known))
+        else:
+            yield known[1]
+        return known[0]
 
-    def _known(self, asked: tuple[Any, ...], around: Sequence[Any]) -> tuple[Found | None, str] | None:
-        """What came of the same question, if that was asked just now."""
+    def _known(self, asked: tuple[Any, ...], around: Sequence[Any]) -> tuple[tuple[Found | None, str], int] | None:
+        """What came of the same question, if that was asked just now, and what it cost."""
         return next((found for known, things, found in self._lately if known == asked and (things is around or list(things) == list(around))), None)
 
     def planned(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
@@ -101,8 +106,9 @@ class Reach(Arcs):
     def again(self, how: How, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any]) -> Found | None:
         """The plan along an arc that was found from elsewhere; None where there is none."""
         known = self._known(_asked(start, place, floor, airtime, None), around)
-        if known is not None and known[0] is not None and known[0].arc.how == how:
-            return known[0]
+        found = None if known is None else known[0][0]
+        if found is not None and found.arc.how == how:
+            return found
         start = self.onto(start, place, around)
         if self.footing(start, place, floor, around):
             return None

@@ -4,7 +4,7 @@ as many steps however fast a machine is."""
 from __future__ import annotations
 
 import threading
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from typing import Any, Generic, NamedTuple, TypeVar
 
 T = TypeVar("T")
@@ -23,6 +23,31 @@ def whole(pieces: Pieces[T]) -> T:
             next(pieces)
         except StopIteration as end:
             return end.value
+
+
+def weighed(pieces: Pieces[T]) -> Pieces[tuple[T, int]]:
+    """The same pieces, and of what comes of them what they cost together."""
+    cost = 0
+    while True:
+        try:
+            piece = next(pieces)
+        except StopIteration as end:
+            return end.value, cost
+        cost += piece if isinstance(piece, int) else 0
+        yield piece
+
+
+def counted(pieces: Pieces[T], dear: int, ask: Callable[[], None]) -> T:
+    """What comes of all pieces at once. ask: is called whenever they have cost so much more."""
+    spent = 0
+    while True:
+        try:
+            piece = next(pieces)
+        except StopIteration as end:
+            return end.value
+        before, spent = spent, spent + (piece if isinstance(piece, int) else 0)
+        for _ in range(spent // dear - before // dear):
+            ask()
 
 
 class Seeking(Generic[T]):

@@ -48,7 +48,7 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     is asked for leaps, by default his own. known: the leaps that are left of a way that he is on: they are not sought again where they lead on from here.
     stands: leaps, as `named`, that did not go off from a walk, once for each time. ask: is called for what takes long, so often as it counts for leaps.
     """
-    refusal, tried = walker.refusal if refusal is None else refusal, set[tuple[float, ...]]()
+    refusal, tried, told = walker.refusal if refusal is None else refusal, set[tuple[float, ...]](), dict[bytes, str | None]()
     shapes, walks = dict[int, np.ndarray](), 0
     levels, here = levels_of(around), np.asarray(state.ground, float)[:2]
     start = levels.under(here, float(state.floor))
@@ -60,15 +60,22 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
         return Leg(goal.floor, goal.heading, stops)
 
     def from_stand(leap: Crossing) -> str | None:
-        return refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+        if (which := leap.ground.tobytes() + leap.place.tobytes()) not in told:
+            told[which] = refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+        return told[which]
 
-    def able(leap: Crossing) -> str | None:
-        why, asks = from_stand(leap), tuple(np.round(leap.asks, 1))
-        if why is None or not why.startswith(TOO_FAR):
-            return why
+    def pays(leap: Crossing) -> None:
+        """What it takes to find its run-up counts once for all that go as far."""
+        asks = tuple(np.round(leap.asks, 1))
         for _ in range(TRIES if asks not in tried else 0):
             ask()
         tried.add(asks)
+
+    def able(leap: Crossing) -> str | None:
+        why = from_stand(leap)
+        if why is None or not why.startswith(TOO_FAR):
+            return why
+        pays(leap)
         return "" if farther(walker, leap, around) else why
 
     def walk(region: int, begins: np.ndarray, ends: np.ndarray) -> float:
@@ -87,8 +94,11 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
     def to(crossings: tuple[Crossing, ...]) -> Leg:
         """The walk to the first of them; back, where he is too near for the run-up without which it is too far."""
         first = crossings[0]
-        if near(first, here) and stands.count(named(first)) < RUN_UPS and (begins := start_of(walker, first, around)) is not None and from_stand(first):
-            return Leg(begins, float(first.ground[2]), stops, crossings, back=True)
+        if near(first, here) and stands.count(named(first)) < RUN_UPS and from_stand(first):
+            pays(first)
+            begins = start_of(walker, first, around)
+            if begins is not None:
+                return Leg(begins, float(first.ground[2]), stops, crossings, back=True)
         return Leg(first.ground[:2], float(first.ground[2]), stops, crossings)
 
     if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:

@@ -75,14 +75,15 @@ def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for:
     """Where (2,) who can leap only from a walk begins to walk to it; None where there is no room, or he could leap from nowhere. but_for: (2,) not there."""
     levels = levels_of(around)
     far, up = leap.asks
-    for back in measured(walker, FINE * math.ceil(far / FINE - 1e-6), HIGH * math.ceil(up / HIGH - 1e-6)):
+    for back in BACKS:
         begins = leap.ground[:2] - back * _ahead(leap)
         if but_for is not None and math.dist(begins, but_for) < ELSEWHERE:
             continue
         places = np.concatenate([leap.ground[:2] - np.linspace(0.0, back, 7)[:, None] * _ahead(leap), begins + CLEAR * ROUND])
         which, heights = levels.ground(places, leap.height + STEP)
         walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights) & (abs(heights - leap.height) <= STEP)
-        if walked.all() and np.all(abs(heights[:7] - leap.height) <= LEVEL) and not levels.shut(begins[None], heights[6:7], CLEAR)[0]:
+        if walked.all() and np.all(abs(heights[:7] - leap.height) <= LEVEL) and not levels.shut(begins[None], heights[6:7], CLEAR)[0] \
+                and goes_off(walker, FINE * math.ceil(far / FINE - 1e-6), HIGH * math.ceil(up / HIGH - 1e-6), back):
             return begins
     return None
 
@@ -97,17 +98,13 @@ def farther(walker: Controller, leap: Crossing, around: Sequence[Any]) -> bool:
     return _room(leap, around) and start_of(walker, leap, around) is not None
 
 
-@lru_cache(maxsize=64)
-def measured(walker: Controller, far: float, up: float) -> tuple[float, ...]:
-    """How long [m] the run-ups are from a stand, on a level floor, after which a leap so far and so high up [m] goes off, played ahead."""
-    planes = walker.limits(SHARE)
-    leap, found = Crossing(np.zeros(3), np.array([0.0, up, far]), 0.0), []
+@lru_cache(maxsize=256)
+def goes_off(walker: Controller, far: float, up: float, back: float) -> bool:
+    """Whether a leap so far and so high up [m] goes off after a run-up so long [m] from a stand, on a level floor, played ahead."""
+    planes, leap = walker.limits(SHARE), Crossing(np.zeros(3), np.array([0.0, up, far]), 0.0)
     if planes is None or _top(planes) < PACES[0]:
-        return ()
-    for back in BACKS:
-        if approach(walker, walker.start((0.0, -back, 0.0)), leap, Intent(), planes, (), 1 / 60, ENOUGH)[0]:
-            found.append(back)
-    return tuple(found)
+        return False
+    return approach(walker, walker.start((0.0, -back, 0.0)), leap, Intent(), planes, (), 1 / 60, ENOUGH)[0] > 0.0
 
 
 def approach(walker: Controller, state: CharacterState, leap: Crossing, intent: Intent, planes: np.ndarray, stops: Sequence[Any], dt: float,
@@ -120,7 +117,7 @@ def approach(walker: Controller, state: CharacterState, leap: Crossing, intent: 
 
     best: tuple[int, float, Plan | None] = (0, 0.0, None)
     for pace in PACES:
-        made = plan_in_time(state.ground, leap.ground, state.velocity, quickened(planes, pace), stops, float(state.floor), leaving=np.array([pace, 0.0, 0.0]))
+        made = plan_in_time(state.ground, leap.ground, state.velocity, quickened(planes, pace), stops, float(state.floor), leaving=np.array([pace, 0.0, 0.0]), size=walker.size)
         if made.reason:
             return 0.0, made
         moments = len(take_offs(walker, state, made, 0.0, leap, intent, dt, ENOUGH))

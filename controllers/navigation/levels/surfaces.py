@@ -138,11 +138,13 @@ class Levels:
             onto, there = self.ground(without, here + STEP)
             open_ = own & ~self.shut(without, np.maximum(there, here))
             step = open_ & (here - there <= STEP)
-            for wide in np.arange(2.0 * BESIDE, CREVICE + BESIDE, BESIDE):  # nearest first
-                over = without + wide * out.normals
-                beyond, high = self.ground(over, here + STEP)
-                across = open_ & ~step & (abs(here - high) <= STEP) & ~self.shut(over, np.maximum(here, high))
-                onto, step = np.where(across, beyond, onto), step | across
+            widths = np.arange(2.0 * BESIDE, CREVICE + BESIDE, BESIDE)
+            over = (without + widths[:, None, None] * out.normals).reshape(-1, 2)
+            beyond, high = self.ground(over, np.tile(here + STEP, len(widths)))
+            lands = (abs(np.tile(here, len(widths)) - high) <= STEP) & ~self.shut(over, np.maximum(np.tile(here, len(widths)), high))
+            for there, could in zip(beyond.reshape(len(widths), -1), lands.reshape(len(widths), -1)):  # nearest first
+                across = open_ & ~step & could
+                onto, step = np.where(across, there, onto), step | across
             found.append((out, np.where(step, onto, -1), open_ & ~step))
         return found
 

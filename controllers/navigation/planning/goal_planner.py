@@ -53,21 +53,21 @@ FASTEST = 20.0
 
 def plan(ground: ArrayLike, goal: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
          limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0,
-         leaving: ArrayLike = (0.0, 0.0, 0.0), aside: tuple[float, float] = DEPTH) -> Plan:
+         leaving: ArrayLike = (0.0, 0.0, 0.0), aside: tuple[float, float] = DEPTH, size: float = 1.0) -> Plan:
     """The walk from ground (3,) x, z [m], heading [rad] to goal (3,) that costs least: Mombaur 2010.
 
     velocity: (3,) v_f, ω, v_l at the start [m/s, rad/s, m/s]. limits: (H, 4) half-spaces n·(v_f, ω, v_l) + d ≤ 0 that velocities
     keep to, as `ControlSpace.half_spaces` gives them. around: boxes and pillars, of which those count that stop somebody on a
     floor `floor` [m] high. clearance: how far from them the middle of the body stays [m]; as near as he is, where he starts nearer.
     leaving: (3,) how he moves on as he is there; by default he stands. aside: the clearances where he faces something and where he has it behind him [m]: with
-    these he side-steps through narrow passages. A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
+    these he side-steps through narrow passages. size: by how much larger all is in words, where somebody of another size is planned for in a smaller world. A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
     """
-    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor, leaving, aside)[0]
+    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor, leaving, aside, size)[0]
 
 
 def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
           limits: np.ndarray = FREE, around: Sequence[Any] = (), clearance: float = SHOULDER, floor: float = 0.0,
-          leaving: ArrayLike = (0.0, 0.0, 0.0), aside: tuple[float, float] = DEPTH) -> list[Plan]:
+          leaving: ArrayLike = (0.0, 0.0, 0.0), aside: tuple[float, float] = DEPTH, size: float = 1.0) -> list[Plan]:
     """Plans to many goals (G, 3) in one search, each as of `plan`. ground, velocity, leaving: (3,), or (G, 3) for each."""
     goals = _numbers("goal", goals)
     if goals.ndim != 2 or goals.shape[1] != 3:
@@ -94,10 +94,10 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
         if max(np.abs(velocities[number]).max(), np.abs(onward[number]).max()) < 1e-9 and np.hypot(*(goal - start)[:2]) < 1e-6 and abs(goal[2] - start[2]) < 1e-6:
             found[number] = Plan(np.repeat(goal[None], 4, 0), 0.0, 0.0, goal)
             continue
-        if why := _refused(start, goal, shapes, clearance):
+        if why := _refused(start, goal, shapes, clearance, size):
             found[number] = Plan.none(start, goal, why)
             continue
-        found[number] = Plan.none(start, goal, f"no way leads there that is {girth[1:].sum():.2f} m wide")
+        found[number] = Plan.none(start, goal, f"no way leads there that is {girth[1:].sum() * size:.2f} m wide")
         for routes, near, taken in ways_of(start, goal, shapes, girth, MARGIN):
             if routes:
                 same.setdefault(near.tobytes() + taken.tobytes(), (near, taken, []))[2].append((number, routes))
@@ -128,16 +128,16 @@ def _numbers(name: str, value: Any) -> np.ndarray:
     return value
 
 
-def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float) -> str:
+def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float, size: float) -> str:
     """Why nobody can walk from start to goal, whatever the way; "" where a way may be."""
     far_off = float(np.hypot(*(goal - start)[:2]))
     if far_off > FARTHEST:
-        return f"the goal is {far_off:.0f} m away; {FARTHEST:g} m can be planned at once: give a goal on the way there first"
+        return f"the goal is {far_off * size:.0f} m away; {FARTHEST * size:g} m can be planned at once: give a goal on the way there first"
     out = np.empty(3)
     for shape in shapes:
         there = distance(goal[0], goal[1], shape, out)
         if there < clearance:
-            return f"the goal is {there:.2f} m from something, {clearance:.2f} m are needed" if there > 0.0 else "the goal lies in something"
+            return f"the goal is {there * size:.2f} m from something, {clearance * size:.2f} m are needed" if there > 0.0 else "the goal lies in something"
         if distance(start[0], start[1], shape, out) <= 0.0:
             return "the walk starts within something"
     return ""

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...contract import CharacterState, Goal, Status, but
 from ..goal import wish
-from ..levels import Crossing
+from ..levels import Crossing, levels_of
 from .thought import Thought, steps_of
 
 if TYPE_CHECKING:  # who never goes to a goal loads no planner
@@ -95,6 +95,15 @@ class Going:
         if self.plan.reason and self.planned == self.goal and self.thinking is None:
             return Status("failed", self.plan.reason)
         return Status("done" if self.there else "running")
+
+    @property
+    def costed(self) -> Plan:
+        """The plan as it costs."""
+        return self.plan
+
+    def floors(self, way: np.ndarray, floor: float) -> np.ndarray:
+        """How high (P,) [m] he stands at one place (P, 2) of his way after the other, from a floor so high [m]."""
+        return levels_of(self.around).floors(way, floor)
 
     def wished(self, ground: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """The velocity (3,) that he wishes for at a ground frame (3,), as he moves (3,)."""

@@ -44,7 +44,7 @@ def began(now: Going, state: CharacterState, intent: Intent, walker: Controller,
 
         def refusal(there: CharacterState, asked: Intent) -> str | None:
             counted()
-            return walker.refusal(there, asked)
+            return walker.pondered(there, asked, counted)
         known = now.crossings[1:] if now.leapt else now.crossings if now.back else ()  # who went back for a run-up makes it
         leg = next_leg(walker, state, goal, intent.around, now.barred, refusal, known, now.stands, counted)
         failed = now.stands.count(named(leg.crossings[0])) if leg.crossings else 0
@@ -64,7 +64,7 @@ def began(now: Going, state: CharacterState, intent: Intent, walker: Controller,
         if leg.reason:
             made = Plan.none(then.ground, end, leg.reason)
         elif not pace:
-            made = plan_in_time(then.ground, end, then.velocity, planes, leg.around, float(then.floor), within, now.planned != goal)
+            made = plan_in_time(then.ground, end, then.velocity, planes, leg.around, float(then.floor), within, now.planned != goal, size=walker.size)
         assert made is not None
         return {"plan": made, "planned": goal, "heading": heading, "around": intent.around, "stops": leg.around, "time": 0.0, "stood": 0.0,
                 "left": _left(then, made), "held": 0, "waits": 0.0, "nearest": math.inf, "plans": now.plans + 1, "crossings": leg.crossings,
@@ -102,11 +102,11 @@ def another(now: Going, state: CharacterState, intent: Intent, walker: Controlle
         planes = quickened(planes, now.pace)
         goal = np.array([*now.plan.goal[:2], now.heading])
         if held >= HELD_UP:
-            made = Plan.none(state.ground, goal, f"held up {left:.2f} m before the {'leap' if now.crossings else 'goal'}")
+            made = Plan.none(state.ground, goal, f"held up {left * walker.size:.2f} m before the {'leap' if now.crossings else 'goal'}")
         else:
             then = foreseen(now, state, intent, walker, steps, dt, None)
             within = None if now.goal.within is None or now.crossings else max(now.goal.within - now.spent - steps * dt, 0.1)
-            made = plan_in_time(then.ground, goal, then.velocity, planes, now.stops, float(then.floor), within, leaving=np.array([now.pace, 0.0, 0.0]))
+            made = plan_in_time(then.ground, goal, then.velocity, planes, now.stops, float(then.floor), within, leaving=np.array([now.pace, 0.0, 0.0]), size=walker.size)
         return {"plan": made, "time": 0.0, "stood": 0.0, "asked": 0.0, "left": left, "held": held, "plans": now.plans + 1, "off": None, "poised": False}
     return _thinking(act, dt)
 
