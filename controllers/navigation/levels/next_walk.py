@@ -23,6 +23,9 @@ NARROW = LANDING - 0.02
 """Walks between leaps, which end so near to edges, keep at least so far from them as their lengths are looked at [m]; ..."""
 WALKS = 20
 """... so many of them take as long as to ask about a leap."""
+HIGH, SHORT = 0.35, 0.03
+"""Nobody comes to stand just where a leap is to go off: of one that leads up by more than the first [m] it is asked from so far [m] before that, lest it can be made from
+there alone."""
 RUN_UPS = 2
 """A leap that did not go off at so many run-ups is left."""
 
@@ -61,7 +64,9 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
 
     def from_stand(leap: Crossing) -> str | None:
         if (which := leap.ground.tobytes() + leap.place.tobytes()) not in told:
-            told[which] = refusal(walker.start(leap.ground, leap.height), Intent(leap=Leap(leap.place), around=around))
+            x, z, heading = leap.ground
+            ground = (x - SHORT * np.sin(heading), z - SHORT * np.cos(heading), heading) if leap.asks[1] > HIGH else leap.ground
+            told[which] = refusal(walker.start(ground, leap.height), Intent(leap=Leap(leap.place), around=around))
         return told[which]
 
     def pays(leap: Crossing) -> None:
