@@ -16,7 +16,8 @@ GRAZES = 0.002
 TOE = 0.16
 """An ankle that is bent by 1 rad more lifts the toes by so much [m], at standard height."""
 FROM = 0.2
-"""The floor that was left counts where a foot is no farther from where it stood than this [m], at standard height; elsewhere the lower of both."""
+"""The floor that was left counts in the first half of a flight where a foot is no farther from where it stood than this [m], at standard height; else the lower of both:
+who leaps down comes down beside it."""
 
 
 def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.ndarray, landing: np.ndarray, slope: np.ndarray,
@@ -30,7 +31,8 @@ def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.nd
     corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)
     floors = [feet[:, 1].mean() - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, [0, 2]].mean(0), way) for feet, way in ((left, slope), (landing, lands_on))]
     away = np.linalg.norm(corners[..., [0, 2]] - left[:, None, [0, 2]], axis=-1)
-    floor = np.where(away < FROM * body.size, floors[0], np.minimum(*floors))
+    early = np.arange(len(roots))[:, None, None] < 0.5 * len(roots)
+    floor = np.where((away < FROM * body.size) & early, floors[0], np.minimum(*floors))
     deep = np.maximum((floor - corners[..., 1]).max(-1), 0.0)
     return np.where(deep > GRAZES * body.size, deep, 0.0), turned[:, body.hip + 2, 1, 2] < 0.0
 
