@@ -17,7 +17,7 @@ import numpy as np
 from .body import Pose, Skeleton
 from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, given, seconds
 from .navigation import changed, checked, going, matters
-from .navigation.passing import drawn_in
+from .navigation.passing import drawn_on
 
 
 MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
@@ -157,9 +157,10 @@ class Supervisor(Controller):
         after, pose = self.parts[duty.active].step(own, intent, dt)
         if duty.active != self.first and not (np.isfinite(pose.rotations).all() and np.isfinite(pose.root).all()):
             raise ValueError(f"the controller {duty.active!r} gave a pose that is not finite")
-        if duty.active == self.first and len(intent.around):
-            pose = drawn_in(self.skeleton, pose, after.ground, intent.around)
-        duty = but(duty, memory=after.memory, strike=kept)
+        arms = None  # who else acts begins with them as they are
+        if duty.active == self.first and (len(intent.around) or duty.arms is not None):
+            pose, arms = drawn_on(self.skeleton, pose, after.ground, intent.around, duty.arms, dt)
+        duty = but(duty, memory=after.memory, strike=kept, arms=arms)
         return but(after, pose=pose, memory=duty, previous=before, elapsed=dt, going=way), pose
 
     def _struck(self, duty: Duty, own: CharacterState, intent: Intent) -> tuple[Duty, CharacterState, Intent, Strike | None]:

@@ -123,7 +123,8 @@ class Duty:
     chosen, in words.
 
     refused: why what was asked last can't be done, or goes wrong; empty if it can. asked: what was refused and from where, so that it
-    is not tried again until something changes. strike: what struck it in the air, where nobody answers that, until it stands again.
+    is not tried again until something changes. strike: what struck it in the air, where nobody answers that, until it stands again. arms: how
+    far they are drawn in, a `gambol.controllers.navigation.passing.Arms`; None where they are free.
     """
 
     __repr__ = brief
@@ -134,6 +135,7 @@ class Duty:
     refused: str = ""
     asked: Any = None
     strike: Strike | None = None
+    arms: Any = None
 
 
 @dataclass(frozen=True, eq=False)

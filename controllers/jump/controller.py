@@ -19,7 +19,7 @@ from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, landed, on_ground, ready, rebounding, sets_feet, start_of, stayed, turning
+from .starting import FEET, Jumping, landed, on_ground, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -152,6 +152,8 @@ class Jump(Reach, Controller):
             looked = self.seen(start, place, floor, None, intent.around, parted)
             other, _ = (yield from looked) if parted else whole(looked)
             if other is not None and abs(other.made.path.airtime - leap.airtime) > 0.01:
+                if len(intent.around) and whole(self.seen(start, place, floor, leap.airtime, (), False))[0] is not None:  # the body could
+                    return f"{reason}; it could be made in {other.made.path.airtime:.2f} s", None, here
                 if leap.place is None and leap.airtime > self.longest:
                     return f"too high: this body gets {self.highest:.2f} m up at most, in {self.longest:.2f} s, and {leap.airtime:.2f} s were asked", None, here
                 return (f"{leap.airtime:.2f} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
@@ -251,6 +253,9 @@ class Jump(Reach, Controller):
         centre, (vx, _, vz) = made.moving(time)
         turned = made.path.heading + float(made.path.turned(time))
         ground = np.array([*centre[[0, 2]], turned]) + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
+        if landed and made.path.lands is None and not made.rolls:  # from under the mass centre to where the ground frame of one who stands so is
+            share = min((time - made.touch_down) / RISEN, 1.0)
+            ground[:2] += share**2 * (3.0 - 2.0 * share) * (standing(self.physique, made) - centre[[0, 2]])
         heading = float(ground[2])
         c, s = np.cos(heading), np.sin(heading)
         velocity = np.array([s * vx + c * vz, 0.0, c * vx - s * vz])

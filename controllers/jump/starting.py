@@ -40,6 +40,8 @@ STANDS = 0.01
 """Who is slower than this [m/s, rad/s], and stands on both feet, has set them."""
 UNEVEN = 0.02
 """Ground is no slope where the floor under a foot lies by more than this beside it [m]."""
+BEHIND = 0.055
+"""The ground frame of who stands is so far behind the middle of his soles [m], at standard height."""
 SPRINGS = 0.05
 """So long after the lowest point of a landing [s] another leap may still go off from there."""
 
@@ -141,6 +143,12 @@ def rebounding(start: Start, made: Plan, time: float) -> Start:
     low = min(float(start.centre[1]), float(made.centres[n:, 1].min()))
     return replace(start, heading=made.path.heading + made.path.turn, velocity=made.moving(time)[1], acceleration=gains, ready=True, low=low,
                    single=made.path.lands, springs=made.path.hops)
+
+
+def standing(physique: Physique, made: Plan) -> np.ndarray:
+    """Where (2,) x, z [m] the ground frame is of one who stands on both feet as a plan lands."""
+    heading = made.path.heading + made.path.turn
+    return soles(made.feet, physique.tables).mean(0)[[0, 2]] - BEHIND * physique.size * np.array([np.sin(heading), np.cos(heading)])
 
 
 def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterState:

@@ -10,7 +10,8 @@ import math
 import numpy as np
 
 from ..compiled import kernel
-from ..navigation.passing import NEAR, STEP, out_kernel, slow_kernel
+from ..navigation.passing import HEAD, NEAR, STEP, out_kernel, slow_kernel
+from ..navigation.routes import distance
 from .memory import put
 
 LAG, BRAKE = 0.1, 6.0
@@ -22,10 +23,14 @@ GIVES = 0.01
 LEAPT = 1.3
 """What is no higher over the floor than this [m] may be leapt onto: it does not hold up who wants to leap."""
 
+ARMS, HANDS = 0.6, 0.5
+"""Who stands has no room for his arms where something is so near to his middle [m] that is higher over the floor than the second [m]."""
+
 
 def held_up(memory: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
     """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap only towards those that nobody leaps onto.
-    floors: (N,) [m]."""
+    Note who stands and has no room for his arms. floors: (N,) [m]."""
+    memory["cramped"] = 0
     if len(walls):
         hold_kernel(memory, floors, walls)
 
@@ -45,10 +50,13 @@ def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: n
 @kernel
 def hold_kernel(memory, floors, walls):
     """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands."""
-    velocity, rate = np.empty(2), np.empty(2)
+    velocity, rate, out = np.empty(2), np.empty(2), np.empty(3)
     for n in range(memory.shape[0]):
         m = memory[n]
         if m.settled:
+            for k in range(walls.shape[0]):
+                if walls[k, 7] > floors[n] + HANDS and walls[k, 6] < floors[n] + HEAD and distance(m.ground[0], m.ground[1], walls[k, :6], out) < ARMS:
+                    m.cramped = 1
             continue
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]

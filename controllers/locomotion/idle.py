@@ -35,6 +35,8 @@ LOOKS_AHEAD = 0.4
 """A difference of 1 m/s between two moments counts as this many metres."""
 AFTER, COMES, GOES = 1.0, 0.8, 0.25
 """Somebody who stands begins to idle after this time [s], within this half-life [s], and stops within this one [s]."""
+CRAMPED = 0.3
+"""So much of it is shown where arms have no room."""
 ENDS = 5
 """So many coefficients before the end of a stretch it must be left."""
 FADE = 0.35
@@ -136,7 +138,7 @@ def idle_kernel(m, idle, liveliness, dt):
     if idle.coefficients.shape[0] <= ENDS:
         return
     m.rested = m.rested + dt if m.settled else 0.0
-    shows = liveliness if m.rested > AFTER and not m.alert else 0.0
+    shows = liveliness * (CRAMPED if m.cramped else 1.0) if m.rested > AFTER and not m.alert else 0.0
     m.presence, m.presence_rate = spring_kernel(m.presence, m.presence_rate, shows, COMES if shows > m.presence else GOES, dt)
     before = int(m.moment)
     m.moment += dt * PER_SECOND

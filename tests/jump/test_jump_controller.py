@@ -286,3 +286,16 @@ def test_feet_that_still_come_down_are_not_said_to_stand(person, turn):
                 high = max(high, float(((points[:, 1] - contact_height(person.skeleton)) * both).max()))
             before = points, state.contacts
     assert jumps >= 15 and slid.max() < 0.03 and high < 0.03
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.4), (0.0, 0.0, 1.3), (0.8, 0.0, 0.0), (0.0, 0.0, -0.6)])
+def test_the_ground_of_who_lands_leads_on_into_that_of_who_stands(person, place):
+    """`ground` is what a game follows: the walk that takes over has it where the jump left it."""
+    state, grounds = person.start(), []
+    for n in range(400):
+        state, _ = person.step(state, Intent(leap=Leap(place) if n == 30 else None), 1 / 60)
+        grounds.append((state.active, *state.ground))
+    active, ground = [name for name, *_ in grounds], np.array([where for _, *where in grounds])
+    over = next(n for n in range(1, 400) if active[n - 1] == "jump" != active[n])
+    assert np.hypot(*(ground[over] - ground[over - 1])[:2]) < 0.012
+    assert np.linalg.norm(ground[-1, :2] - np.array(place)[[0, 2]]) < 0.08

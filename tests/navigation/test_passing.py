@@ -98,3 +98,32 @@ def test_no_farther_than_to_the_trunk(locomotion):
         turn = np.einsum("jik,jil->jkl", state.pose.rotations, pose.rotations)
         assert np.arccos(np.clip((np.trace(turn, axis1=1, axis2=2) - 1.0) / 2.0, -1.0, 1.0)).max() < 0.36
         assert np.abs(np.einsum("jik,jil->jkl", pose.rotations, pose.rotations) - np.eye(3)).max() < 1e-5
+
+
+@pytest.mark.parametrize("velocity, most", [((1.3, 0.0, 0.0), 60.0), ((0.0, 2.5, 0.0), 160.0)])
+def test_no_arm_jumps_where_a_wall_comes_and_goes(locomotion, velocity, most):
+    """Wherever arms are as he walks, or turns on the spot."""
+    someone, wall = Supervisor({"locomotion": locomotion}), Box((-BESIDE - 0.05, 1.0, 0.0), (0.2, 2.0, 40.0))
+    state, places = someone.start(), []
+    for n in range(400):
+        around = (wall,) if n > 90 and n // 11 % 2 else ()
+        state, pose = someone.step(state, Intent(np.array(velocity), around=around), 1 / 60)
+        places.append(arms(locomotion.skeleton, pose))
+    free = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, velocity, (), 400 / 60)])
+    assert np.abs(np.array(places) - free).max() > 0.03
+    assert np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1)[90:].max() * 3600.0 < most
+
+
+def test_arms_stay_calm_before_a_wall(locomotion):
+    """Recorded idling lifts hands, for which there is no room; it goes on where there is."""
+    someone = Supervisor({"locomotion": locomotion})
+    lifted = []
+    for around in ((Box((0.0, 1.0, 0.37), (8.0, 2.0, 0.2)),), ()):
+        state, places = someone.start(), []
+        for _ in range(60 * 50):
+            state, pose = someone.step(state, Intent(np.zeros(3), around=around), 1 / 60)
+            places.append(arms(locomotion.skeleton, pose))
+        places = np.array(places)[60:]
+        lifted.append(np.ptp(places[..., 1], axis=0).max())
+        assert np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).max() * 3600.0 < 60.0
+    assert 0.005 < lifted[0] < 0.5 * lifted[1]

@@ -1,20 +1,21 @@
 """Arms drawn in, as people do who pass closely by something: without it hands swing farther than a walker's clearance.
 
 What stands there is convex, so that all of it lies behind the plane through its place nearest to the body. An arm that comes to
-that plane turns about its shoulder by what is missing. As that follows from the pose and the place alone, nothing is remembered, and arms
-move as smoothly as the body does.
+that plane turns about its shoulder by what is missing. As that follows from the pose and the place alone, arms move as smoothly as the body
+does; where things come, go or move in a step, so that arms would jump, what they jump by is remembered and fades: inertialisation.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from ...body import Pose, Skeleton, relative_kernel
+from ...body import Pose, Skeleton, exp, log, relative_kernel, settle
 from ...compiled import kernel
 from ..obstacles import is_box, is_pillar, ramp, span
 from ..routes import distance
@@ -32,6 +33,43 @@ FAR = 0.75
 """What is farther from the body's middle [m] no arm touches."""
 LOW = 0.15
 """Arms that clear the top or underside of something by so much [m] are not drawn in at all."""
+
+FAST, HALFLIFE = 4.0, 0.08
+"""Arms that would have to come in or go out faster than this [rad/s] do so with this half-life [s]."""
+GONE = 1e-4
+"""Less than this is nothing [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arms:
+    """How far arms are drawn in. wanted: (2, 3) by how much [rad] upper arms turn for what stands there, rotation vectors in the chest's frame. left, rate: (2, 3) by how much
+    more they are turned than that [rad], and how fast that changes [rad/s]."""
+
+    wanted: np.ndarray
+    left: np.ndarray
+    rate: np.ndarray
+
+
+FREE = Arms(*np.zeros((3, 2, 3)))
+
+
+def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any], arms: Arms | None, dt: float) -> tuple[Pose, Arms | None]:
+    """The pose as of `drawn_in`, without a jump where things came, went or moved in the step of dt seconds that led to it. arms: what this gave a step before; None of who was
+    free."""
+    near = drawn_in(skeleton, pose, ground, around)
+    if arms is None and near is pose:
+        return pose, None
+    arms, upper = arms or FREE, [chain[0] for chain in _chains(skeleton.names)]
+    own = np.asarray(pose.rotations, float)[upper]
+    wanted = log(near.rotations[upper] @ np.swapaxes(own, -1, -2)) if near is not pose else FREE.wanted
+    change = wanted - arms.wanted
+    sudden = np.linalg.norm(change, axis=-1, keepdims=True) > FAST * dt
+    left, rate = settle(arms.left - sudden * change, arms.rate, HALFLIFE, dt)
+    if np.abs(left).max() < GONE:
+        return near, None if near is pose else Arms(wanted, FREE.left, FREE.rate)
+    rotations = np.array(pose.rotations)
+    rotations[upper] = exp(wanted + left) @ own
+    return Pose(pose.root, rotations), Arms(wanted, left, rate)
 
 
 def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any]) -> Pose:
