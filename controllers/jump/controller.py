@@ -253,8 +253,8 @@ class Jump(Reach, Controller):
         centre, (vx, _, vz) = made.moving(time)
         turned = made.path.heading + float(made.path.turned(time))
         ground = np.array([*centre[[0, 2]], turned]) + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
-        if landed and made.path.lands is None and not made.rolls:  # from under the mass centre to where the ground frame of one who stands so is
-            share = min((time - made.touch_down) / RISEN, 1.0)
+        if time > made.take_off and made.path.lands is None and not made.rolls:  # from under the mass centre to where the ground frame of one who stands so is
+            share = min((time - made.take_off) / (made.touch_down + RISEN - made.take_off), 1.0)
             ground[:2] += share**2 * (3.0 - 2.0 * share) * (standing(self.physique, made) - centre[[0, 2]])
         heading = float(ground[2])
         c, s = np.cos(heading), np.sin(heading)

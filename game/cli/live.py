@@ -281,11 +281,17 @@ def _missing(source: Any, there: Any) -> list[str]:
 
 def _amiss(source: Any) -> list[str]:
     """What is wrong with what is heard, or why nothing is: a line for each."""
+    from gambol.controllers.reconstruction import NAMES
+
     lines = [_twice(source)] if source.rivals else []
     if _live(source) and not source.heard and source.local:
         lines.append("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
-    if source.unknown:
-        lines.append(f"on no point: {', '.join(source.unknown)}; --map says where they are")
+    left = [name for name in source.unknown if name in NAMES]
+    if left:
+        every = ",".join([*(name.partition("+")[0] for name in source.controls.names), *left])
+        lines.append(f"heard, but left out: {', '.join(left)}; --points {every} takes them in, or lines in --map")
+    if len(left) < len(source.unknown):
+        lines.append(f"on no point: {', '.join(name for name in source.unknown if name not in left)}; --map says where they are")
     return lines
 
 

@@ -168,6 +168,15 @@ def test_whoever_is_calibrated_is_waited_for(clock, worn):
         live.stand(Late(1e9), STATURE, worn, say=said.append, wait=40.0)
 
 
+def test_points_that_are_heard_but_not_followed_are_told_how_to_be(clock, worn):
+    said, late = [], Late(112.0)
+    late.unknown = ["LHR-1", "root"]
+    live.stand(late, STATURE, worn, say=said.append, wait=40.0)
+    every = ",".join([*late.controls.names, "root"])
+    assert f"heard, but left out: root; --points {every} takes them in, or lines in --map" in said
+    assert "on no point: LHR-1; --map says where they are" in said
+
+
 def test_who_was_never_heard_is_told_after_a_take(clock, worn, monkeypatch):
     said = []
     monkeypatch.setattr(live, "say", said.append)

@@ -105,7 +105,7 @@ def test_the_nearest_place_to_one_that_can_be_leapt_to_is_that_one(locomotion, j
 
 def test_who_is_held_down_by_a_wall_is_not_told_that_his_body_can_not(jump, standing):
     wall = Box((standing.ground[0], 1.2, standing.ground[1] + 0.57), (6.0, 2.4, 0.3))
-    leap = Leap(airtime=0.52)
+    leap = Leap(None, airtime=0.52)
     assert jump.plan(standing, Intent(leap=leap)).path.airtime == pytest.approx(0.52, abs=0.01)
     with pytest.raises(Refused, match=r"would hit something.*could be made in 0\.\d\d s"):
         jump.plan(standing, Intent(leap=leap, around=(wall,)))

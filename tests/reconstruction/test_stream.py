@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 from pythonosc.osc_message_builder import OscMessageBuilder
+from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body.rotations import yaw
 from gambol.controllers.reconstruction.control_points import SETS, parse
@@ -84,6 +85,18 @@ def test_all_that_programs_send_is_understood():
         send(message("/tracking/trackers/head/position", 0.0, 1.6, 0.0), tracker("lwrist", (1, 1, 1)))
         assert np.allclose(stream.at(0.1), [[0, 1.6, 0], [-1, 2, 3], [-1, 1, 1]])
         assert stream.broken == 0
+
+
+def test_a_tracker_called_like_a_joint_is_on_it_and_not_where_a_head_set_is():
+    """Whichever of them is heard, the point that is told of is the one that is followed, in front of the eyes."""
+    with Stream(usual_map(("head", "root")), 0, "127.0.0.1") as stream:
+        point, turn = stream.controls.offsets[0], Rotation.from_euler("yx", (90.0, 20.0), degrees=True)
+        assert np.linalg.norm(point) > 0.1
+        x, y, z, w = turn.as_quat()  # as Unity has it: X the other way round
+        stream.take(0.0, "127.0.0.1", message("/VMC/Ext/Tra/Pos", "head", -0.3, 1.5, 0.2, x, -y, -z, w).dgram)
+        assert np.allclose(stream.told(0.0)[0], turn.apply(point) + [0.3, 1.5, 0.2], atol=1e-6)
+        stream.take(0.1, "127.0.0.1", tracker("any", (-0.3, 1.5, 0.2), "Hmd").dgram)
+        assert np.allclose(stream.told(0.1, evenly=False)[0], [0.3, 1.5, 0.2])
 
 
 def test_the_newest_place_counts_and_silence_is_loss(stream, send):

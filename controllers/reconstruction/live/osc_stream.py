@@ -42,7 +42,7 @@ class Trackers:
     """Points from trackers whose packets somebody takes. A `sources.Source`, but for when packets come.
 
     points: what each tracker is on, a point as `controls.parse` has it by serial number, "hmd" for any head-set.
-    A tracker that is called like one of these points is on it, too. stale: [s] see STALE. placement: into the world; `placing`
+    A tracker that is called like the joint of one of these points, as "head" is, is on that joint. stale: [s] see STALE. placement: into the world; `placing`
     finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
     many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to. rivals: addresses of two programs on it that lately sent the same tracker in turns, if there are.
     turns: (n, 3, 3) how the joints below the trackers are turned, as of when the points were told last; NaN where not known; the
@@ -54,6 +54,7 @@ class Trackers:
         self.controls = controls_of(points)
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
+        self._on_joints = set(named) - set(points)
         self.stale, self.placement, self.heard, self.broken, self.foreign = stale, Placement(), {}, 0, 0
         self.worn: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
         self._lines = [Timeline() for _ in points]
@@ -86,6 +87,8 @@ class Trackers:
             if number is None:
                 continue
             self._watch(time, sender, number)
+            if serial in self._on_joints and kind != "Hmd" and np.isfinite(turn).all():  # the point may be beside the joint that the tracker is on
+                place = place + Rotation.from_quat(turn).as_matrix() @ self.controls.offsets[number]
             if np.isnan(place).any():
                 self._lines[number].turned(time, turn)
             else:
