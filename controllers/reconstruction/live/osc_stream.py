@@ -88,7 +88,7 @@ class Trackers:
                 continue
             self._watch(time, sender, number)
             if serial in self._on_joints and kind != "Hmd" and np.isfinite(turn).all():  # the point may be beside the joint that the tracker is on
-                place = place + Rotation.from_quat(turn).as_matrix() @ self.controls.offsets[number]
+                place = place + matrices(turn[None])[0] @ self.controls.offsets[number]
             if np.isnan(place).any():
                 self._lines[number].turned(time, turn)
             else:
