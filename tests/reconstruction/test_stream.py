@@ -94,7 +94,7 @@ def test_a_tracker_called_like_a_joint_is_on_it_and_not_where_a_head_set_is():
         assert np.linalg.norm(point) > 0.1
         x, y, z, w = turn.as_quat()  # as Unity has it: X the other way round
         stream.take(0.0, "127.0.0.1", message("/VMC/Ext/Tra/Pos", "head", -0.3, 1.5, 0.2, x, -y, -z, w).dgram)
-        assert np.allclose(stream.told(0.0)[0], turn.apply(point) + [0.3, 1.5, 0.2], atol=1e-6)
+        assert np.allclose(stream.told(0.0)[0], turn.as_matrix() @ point + [0.3, 1.5, 0.2], atol=1e-6)
         stream.take(0.1, "127.0.0.1", tracker("any", (-0.3, 1.5, 0.2), "Hmd").dgram)
         assert np.allclose(stream.told(0.1, evenly=False)[0], [0.3, 1.5, 0.2])
 
