@@ -22,6 +22,8 @@ from .surroundings import NOTHING, point_kernel, tread_kernel
 
 LONGEST = 6.0
 """Nobody takes longer to come to rest [s]."""
+STILL, ENOUGH = 0.03, 0.4
+"""Who stands on both feet and has not moved faster than this [m/s] for so long [s] is at rest wherever he is: what stands about may keep feet from where they rest."""
 REACTS, SWINGS, AGAIN, CLOSES = 0.22, 0.31, 0.27, 0.42
 """A standing body lifts a foot so long after it was struck [s] (recorded: 0.20 … 0.27), which swings so long; that of each further step; and that which is set down beside the other at last."""
 HASTE = 0.6, 0.35, 0.65
@@ -83,7 +85,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
     x, v, p, goal, point = centre.copy(), velocity.copy(), centre.copy(), np.empty(2), np.empty(2)
     points, corners, target, other = np.empty((8, 2)), np.empty((9, 2)), np.empty(4), np.empty(2)
     swing, lands, lifts, taken, caught, fate, closing = -1, 0.0, -1.0, 0, 0, SWAYS, False
-    landed, last, dt, calm, side, gone, closed = 0.0, 0, 1.0 / RATE, 0.0, -1, False, False
+    landed, last, dt, calm, still, side, gone, closed = 0.0, 0, 1.0 / RATE, 0.0, 0.0, -1, False, False
     stance = 0 if math.hypot(feet[0, 0] - x[0], feet[0, 1] - x[1]) < math.hypot(feet[1, 0] - x[0], feet[1, 1] - x[1]) else 1
     haste = max(1.0 - HASTE[1] * max(math.hypot(velocity[0], velocity[1]) - HASTE[0], 0.0), HASTE[2])
     first, wishes, ends = not (free[0] or free[1]), wish[0] != 0.0 or wish[1] != 0.0, math.inf
@@ -150,10 +152,13 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                     lands, closing, fate, lifts = now + long, False, STEPS, -1.0
             elif inside >= 0.0:
                 lifts = -1.0
+                still = still + dt if moves < STILL else 0.0
+                if still > ENOUGH and now > SHOWN:
+                    return n + 1, taken, fate, caught
                 if home_kernel(things, body, 1 - stance, feet, heading, target) > HOME * body.size and not closed:
                     middle_kernel(body, feet[stance], goal)
                     near = math.hypot(point[0] - goal[0], point[1] - goal[1])
-                    if moves < SLOW and near < 0.05 * body.size and now > landed + 0.1:
+                    if (moves < SLOW and near < 0.05 * body.size or still > 0.5 * ENOUGH) and now > landed + 0.1:
                         swing, closing = 1 - stance, True
                         lands = now + CLOSES
                         home_kernel(things, body, swing, feet, heading, target)

@@ -37,7 +37,7 @@ UNDER_WAY = 0.7
 LAST, BENDS = 0.3, 1.25
 """So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
 STANDS, STILL = 5.0, 0.1
-"""Who has stood for so long [s], no faster than this [m/s], on his way along a path will hardly get on."""
+"""Who has stood for so long [s], no faster than this [m/s], on his way along a path will hardly get on: it is told, and who ran up to a jump gives it up."""
 AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
 
@@ -89,6 +89,8 @@ class Making:
             return True
         if move.jump is not None and not move.runs:
             return self.asked * dt > PATIENCE and (now is None or now.landed)
+        if move.jump is not None and self.stood >= math.ceil(STANDS / dt):
+            return True
         way = way_of(move, state)
         if way is not None:
             return self.steps > 0 and way.kind != "running"

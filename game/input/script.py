@@ -52,7 +52,8 @@ class Script:
             script = script._next(state)
         if not script.done:
             now, intent = script.now.step(script.moves[script.index], state, dt)
-            script = replace(script, now=now, refused=(*script.refused, script.stands) if now.stuck(dt) else script.refused)
+            told = now.stuck(dt) and not script.leaps  # else it is told as the jump is given up
+            script = replace(script, now=now, refused=(*script.refused, script.stands) if told else script.refused)
         return script, but(intent, strike=reduce(both, hits)) if hits else intent
 
     @property

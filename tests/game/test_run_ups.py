@@ -289,3 +289,11 @@ def test_the_key_pressed_late_by_who_brakes_before_a_box_takes_him_straight_up_o
         assert deepest(who, states, (box(6.8, 0.33, 8.0),)) < 0.02
         assert leapt and not any(isinstance(s.memory.memory, Jumping) and s.memory.memory.fault for s in leapt)
         assert max(abs(float(s.ground[2])) for s in states) < 0.1
+
+
+def test_a_run_up_to_what_can_not_be_leapt_is_given_up_and_told_why(library):
+    """Who stood before it on his way along a path stood there for ever, and what he was told spoke of a walk."""
+    things = (box(4.5, 0.7),)
+    _, script = led(person(library), things, (Move(np.inf, points=((0.0, 4.0),), speed=2.6, jump=Jump((0.0, 0.7, 5.2))), Move(0.2)), 9.5)
+    assert script.index >= 1 and len(script.refused) == 1
+    assert script.refused[0].startswith("no jump to (0, 0.7, 5.2): ") and "way to" not in script.refused[0]
