@@ -253,6 +253,7 @@ class Jump(Reach, Controller):
         centre, (vx, _, vz) = made.moving(time)
         turned = made.path.heading + float(made.path.turned(time))
         ground = np.array([*centre[[0, 2]], turned]) + jumping.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
+        under = ground.copy()
         if time > made.take_off and made.path.lands is None and not made.rolls:  # from under the mass centre to where the ground frame of one who stands so is
             share = min((time - made.take_off) / (made.touch_down + RISEN - made.take_off), 1.0)
             ground[:2] += share**2 * (3.0 - 2.0 * share) * (standing(self.physique, made) - centre[[0, 2]])
@@ -264,7 +265,7 @@ class Jump(Reach, Controller):
         if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
             after = self._hit(after, intent.around, dt)
         if jumping.fault:  # a leap's sweep saw to its arms
-            pose = self._drawn_in(pose, after.ground, intent.around, time)
+            pose = self._drawn_in(pose, under, intent.around, time)
             after = replace(after, pose=pose)
         return after, pose
 

@@ -6,6 +6,8 @@ follow from where the feet are, and in the air the turning of the whole body fol
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, standing, striding_feet, turns, vectors
@@ -22,6 +24,8 @@ SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
 ARMS = 14.0
 """Arms are swung no faster than this [rad/s] before take-off, as recorded ones in leaps off one foot."""
+SPRINGING = 8.0
+"""And no faster than this [rad/s] by who springs off from a landing."""
 CLEARED, SOON = 12, 0.12
 """At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
@@ -75,9 +79,13 @@ class _Draft(Airborne):
     def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:
         """Keys (K, LEGS) of the carriage until touch-down, arms swung less far until take-off where they have less time than recorded ones."""
         off = 2 * BETWEEN
+        if start.low is not None:  # straight through: no time is left to swing them back first
+            share = self.due[:off + 1, None] / self.due[off]
+            keys[:off + 1, 3:] = keys[0, 3:] + share**2 * (3.0 - 2.0 * share) * (keys[off, 3:] - keys[0, 3:])
         swung = keys[:off + 1, 3:].reshape(off + 1, 2, 4)[..., :3]
         fastest = float((np.linalg.norm(np.diff(swung, axis=0), axis=-1) / np.maximum(np.diff(self.due[:off + 1]), 1e-9)[:, None]).max())
-        share = min(ARMS / max(fastest, 1e-9), 1.0) if start.runs else 1.0
+        most = SPRINGING if start.low is not None else ARMS if start.runs else math.inf
+        share = min(most / max(fastest, 1e-9), 1.0)
         keys[:off, 3:] = keys[off, 3:] + share * (keys[:off, 3:] - keys[off, 3:])
         return keys
 

@@ -71,6 +71,17 @@ def test_the_force_goes_on_and_neither_pulls_nor_strikes(jump, ahead_thrice):
     assert force[around].min() > 0.5 and force[around].max() < 3.2 and np.abs(np.diff(force[around])).max() < 0.8
 
 
+def test_arms_swing_through_without_a_snap(jump, ahead_thrice):
+    """They were first to go back, within two hundredths of a second: hands were thrown at 300 to 560 m/s²."""
+    _, states, plans = ahead_thrice
+    hands = [jump.skeleton.index(name) for name in ("LeftHand", "RightHand")]
+    places = np.array([forward_kinematics(jump.skeleton, s.pose.root.astype(float), s.pose.rotations.astype(float))[0][hands] for s in states])
+    pushes = [n for n, s in enumerate(states) if isinstance(s.memory.memory, Jumping) and s.memory.memory.plan in plans[1:] and s.memory.memory.time < s.memory.memory.plan.take_off]
+    thrown = np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1) * FPS**2
+    assert thrown[np.array(pushes) - 1].max() < 220.0
+    assert np.ptp(places[pushes][..., 1], axis=0).max() > 0.3, "they still swing"
+
+
 def test_it_bounces_on_the_spot_as_long_as_it_is_asked_again_and_not_because_the_wish_is_held(person, rest):
     leap = Leap(None, 0.42)
     states, plans = bounced(person, rest, [leap] * 3, 0.05)
