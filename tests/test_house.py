@@ -120,7 +120,7 @@ PLAN = {
         "tracking.pose": "compiled body tracking.twists tracking.cameras tracking.silhouettes",
         "tracking.rivals": "tracking.twists",
         "tracking.segmentation": "compiled tracking.silhouettes",
-        "locomotion": "compiled files body contract mocap navigation navigation.passing",
+        "locomotion": "compiled files body contract mocap navigation navigation.passing navigation.routes",
         "scaled": "body contract navigation",
         "jump.motion": "compiled body jump.body navigation jump.muscles jump.prior",
         "jump.reach": "body contract navigation jump.body jump.motion jump.muscles jump.prior",
