@@ -15,7 +15,7 @@ import numpy as np
 from ..body import Pose, Skeleton, damp, settle
 from ..contract import but
 from .control_points import ControlPoints
-from .following import APART, LEAP, Beginning, Doubts, Gate, difference, joints_of, led, moved, spread, unbroken
+from .following import APART, KEPT, LATELY, LEAP, NOISY, Beginning, Doubts, Gate, away, difference, joints_of, kept, led, moved, spread, unbroken
 from .pose_vector import SKELETON, decode
 
 ALONE = 0.05
@@ -32,6 +32,8 @@ GLIDE = 8.0
 """… and from so far away that even so it would be faster than this [m/s], slower."""
 SWIFTEST = 2.0 * math.log(2.0) / math.e
 """The greatest speed of what settles from rest: so many of its distances a half-life."""
+HALVED = 0.01
+"""What carries points too far is shortened by half in so long [s], no faster."""
 
 
 class Reconstructor(Protocol):
@@ -55,7 +57,7 @@ class Following:
     frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it.
     went: (1 + J, 3) by what the newest frame truly went on. offset, rate: (1 + J, 3) what is added to root and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
-    point was followed. fault: what went wrong.
+    point was followed. loose: (n,) [m] how far points may be from where they are seen, as they lately were; None where anything may be. fault: what went wrong.
     """
 
     memory: Any
@@ -74,6 +76,7 @@ class Following:
     fault: str = ""
     pace: np.ndarray | None = None
     went: np.ndarray | None = None
+    loose: np.ndarray | None = None
 
     @property
     def step(self) -> np.ndarray:
@@ -119,7 +122,23 @@ class Follower:
         if due:
             following = self.doubted(but(following, seen=seen))
         offset, rate = settle(following.offset, following.rate, following.fade, dt)
-        return but(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate)
+        return self.held(but(following, ahead=ahead if ahead > 1e-9 else 0.0, offset=offset, rate=rate), dt)
+
+    def held(self, following: Following, dt: float) -> Following:
+        """With an offset that carries no point far from where it is surely seen, dt [s] later: what goes on as its points do did not leap, however suddenly they went."""
+        gate, joints = following.gate, self.controls.joints
+        there, turns = joints_of(following.pose, self.body)
+        missed = gate.raw - self.controls.on(there, turns)
+        far = away(self.body, following.pose, following.offset, joints, there[joints] + missed)
+        loose = far if following.loose is None else following.loose * 0.5 ** (dt / (LATELY * following.fade))
+        loose = np.maximum(loose, np.where(gate.sure, np.linalg.norm(missed, axis=-1), np.nan_to_num(far)))
+        following = but(following, loose=loose)
+        most = KEPT + NOISY * gate.rough + loose
+        sure = np.flatnonzero(gate.sure & (far > most))
+        if not len(sure):
+            return following
+        left = kept(self.body, following.pose, following.offset, joints[gate.trusted], joints[sure], (there[joints] + missed)[sure], most[sure], 0.5 ** (dt / HALVED))[:, None]
+        return but(following, offset=following.offset * left, rate=following.rate * left)
 
     def shown(self, following: Following) -> Pose:
         """The pose of the present: between the last frames, with what fades."""
@@ -184,14 +203,14 @@ class Follower:
         doubts = but(doubts, evidence=np.zeros_like(doubts.evidence))
         order = np.arange(len(self.controls))
         order[[i, j]] = j, i
-        return but(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order])
+        return but(following, doubts=doubts, memory=other, gate=following.gate.exchanged(i, j), seen=following.seen[order], loose=None)
 
     def anew(self, following: Following, points: np.ndarray, past: tuple[np.ndarray, np.ndarray], turns: np.ndarray) -> Following:
         """Begun anew, after frames and tracks of a past, from points at odds with the body. It comes there smoothly, unless nobody could."""
         begun = self.frame(self.begun(*past, points, self.dt), points, turns)
         ahead = moved(moved(following.pose, following.step), following.offset)
         far = np.linalg.norm(ahead.root - begun.pose.root) > self.far
-        after = but(following, memory=begun.memory, gate=but(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, went=begun.went, lost=0.0)
+        after = but(following, memory=begun.memory, gate=but(begun.gate, order=following.gate.order), pose=begun.pose, before=begun.before, pace=begun.pace, went=begun.went, lost=0.0, loose=None)
         zero = np.zeros_like(following.offset)
         return but(after, offset=zero, rate=zero) if far else self.fading(after, ahead)
 

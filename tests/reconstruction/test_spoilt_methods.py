@@ -105,3 +105,15 @@ def test_leaps_upon_leaps_carry_no_body_away(follower, clip, points):
     shaking = Reconstruction(Shaking(follower.method, 0.1, 1), follower.controls, starts=follower.starts)
     positions = bodies(SKELETON, played(shaking, shaking.begin(points[0]), points[1:]))
     assert position_error(positions, clip.kinematics()[0][1:]).max() < 0.6
+
+
+@pytest.mark.parametrize(("angle", "rate", "high"), [(1.5, 9.0, 0.0), (1.0, 12.0, 0.0), (2.0, 6.0, 0.2)])
+def test_who_dances_is_shown_near_his_own_points(follower, clip, points, angle, rate, high):
+    """Who turns about and back, faster than a method's body goes on evenly, makes no leaps: he is shown hardly farther from his points than the method has him."""
+    time = np.arange(len(points)) * DT
+    turn, hips = exp(angle * np.sin(rate * time)[:, None] * [0.0, 1.0, 0.0]), clip.root[:, None]
+    danced = np.einsum("tij,tnj->tni", turn, points - hips) + hips + (high * np.sin(rate * time) ** 2)[:, None, None] * [0.0, 1.0, 0.0]
+    states = played(follower, follower.begin(danced[0], (danced[1] - danced[0]) / DT), danced[1:])
+    shown, known = (np.array([np.linalg.norm(follower.follower.points(pose) - now, axis=-1) for pose, now in zip(poses, danced[1:])])
+                    for poses in ([state.pose for state in states], [state.memory.pose for state in states]))
+    assert shown.max() < known.max() + 0.05 and shown.mean() < 0.03

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...body import Pose, Skeleton
@@ -18,6 +20,12 @@ TAKEN = 0.01
 LIMBS = tuple(np.array([SKELETON.index(side + name) for name in names])
               for side in ("Left", "Right") for names in (("Shoulder", "Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "Toe")))
 """A limb on which nothing is followed leaps by itself: a hand that is seen does not go astray because of a foot that is not."""
+KEPT, NOISY = 0.03, 2.0
+"""What fades carries points that are surely seen no farther from there than they lately were, but for so much [m], and for so many times as far as noise takes them."""
+LATELY = 2.0
+"""Lately: half as far counts after so many half-lives of what fades."""
+TRIES = 4
+"""So often what carries too far is shortened, as long as that helps: joints turn, and half of it need not be half as far."""
 
 
 def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.ndarray, went: np.ndarray | None, followed: np.ndarray, allowed: float, swerved: float
@@ -49,6 +57,33 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
         leapt[limb + 1] = far > allowed
         step[limb + 1] += (TAKEN / far if far > allowed else 1.0) * (goes[limb + 1] - step[limb + 1])
     return step, leapt, none
+
+
+def kept(body: Skeleton, pose: Pose, offset: np.ndarray, followed: np.ndarray, joints: np.ndarray, seen: np.ndarray, most: np.ndarray, least: float) -> np.ndarray:
+    """What is left of each row (1 + J,), 0 … 1, of an offset, `least` at least, so that some of the joints that are followed, (n,) of a pose, are no farther from where they are seen (n, 3) [m] than
+    that (n,) [m], if it can be. Limbs on which nothing is followed fade by themselves; all else is shortened alike, as a body that is carried somewhere turns there and bends, and
+    nothing of that is right without the rest.
+    """
+    told, rows = set(followed.tolist()), np.ones(len(offset), bool)
+    for limb in LIMBS:
+        rows[limb + 1] = not told.isdisjoint(limb.tolist())
+    share, tried, worst = 1.0, 1.0, math.inf
+    for _ in range(TRIES):
+        over = (away(body, pose, np.where(rows[:, None], tried, 1.0) * offset, joints, seen) / most).max()
+        if over >= worst:
+            break
+        share, worst = tried, over
+        if over <= 1.0 or share <= least:
+            break
+        tried = max(share / over, least)
+    return np.where(rows, share, 1.0)
+
+
+def away(body: Skeleton, pose: Pose, offset: np.ndarray, joints: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """How far (n,) [m] joints (n,) of a pose that is moved by (1 + J, 3) are from where they are seen, (n, 3) [m]."""
+    there = np.zeros((len(body), 3))
+    there[joints] = seen
+    return _apart(body, there, pose, offset)[joints]
 
 
 def _apart(body: Skeleton, there: np.ndarray, pose: Pose, by: np.ndarray) -> np.ndarray:

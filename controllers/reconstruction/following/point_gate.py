@@ -16,7 +16,7 @@ from itertools import combinations
 import numpy as np
 
 from ...contract import but
-from .gate_kernels import NEAR, ROUGHLY, SUDDEN, admit_kernel, confusable_kernel, leapt_kernel, sound_kernel, swerves_kernel, told_kernel
+from .gate_kernels import NEAR, ROUGHLY, SUDDEN, THERE, admit_kernel, confusable_kernel, leapt_kernel, sound_kernel, swerves_kernel, told_kernel
 
 EVERY, SELDOM = 4, 2
 """In each so-manieth frame one pair is asked about, for which something speaks; where nothing does, so many times more seldom."""
@@ -136,6 +136,11 @@ class Gate:
     def seen(self) -> np.ndarray:
         """Which (n,) were seen in the last frame."""
         return np.isfinite(self.raw).all(-1) & (self.gone == 0.0)
+
+    @property
+    def sure(self) -> np.ndarray:
+        """Which (n,) are followed where they were seen in the last frame."""
+        return self.trusted & (self.gone == 0.0) & (np.abs(self.offset).max(-1) <= THERE)
 
     def at_odds(self, dt: float) -> bool:
         """Whether all that is seen, two points or more, has moved like a body for two frames of dt [s], but not like this one:
