@@ -15,7 +15,7 @@ import numpy as np
 from ..body import Pose, Skeleton, damp, settle
 from ..contract import but
 from .control_points import ControlPoints
-from .following import APART, KEPT, LATELY, LEAP, NOISY, Beginning, Doubts, Gate, away, difference, joints_of, kept, led, moved, spread, unbroken
+from .following import APART, KEPT, LATELY, LEAP, NOISY, Beginning, Doubts, Gate, difference, joints_of, kept, led, missed, moved, spread, unbroken
 from .pose_vector import SKELETON, decode
 
 ALONE = 0.05
@@ -34,6 +34,7 @@ SWIFTEST = 2.0 * math.log(2.0) / math.e
 """The greatest speed of what settles from rest: so many of its distances a half-life."""
 HALVED = 0.01
 """What carries points too far is shortened by half in so long [s], no faster."""
+_NOTHING = np.zeros((1 + len(SKELETON), 3))
 
 
 class Reconstructor(Protocol):
@@ -57,7 +58,7 @@ class Following:
     frame and the one before; the newest is `ahead` [s] of the present. pace: (1 + J, 3) by what frames lately moved on, noise left out, None where they are not noisy: the last two tell it.
     went: (1 + J, 3) by what the newest frame truly went on. offset, rate: (1 + J, 3) what is added to root and joints until it has settled, with the half-life fade [s]. level: how high [m] height 0 lies in the world, the floor where it began; points
     are told from there as long as they are followed, whatever floor carries the body by and by. lost: [s] since a
-    point was followed. loose: (n,) [m] how far points may be from where they are seen, as they lately were; None where anything may be. fault: what went wrong.
+    point was followed. loose: how far [m] points may be from where they are seen, as they lately were; None where anything may be. fault: what went wrong.
     """
 
     memory: Any
@@ -76,7 +77,7 @@ class Following:
     fault: str = ""
     pace: np.ndarray | None = None
     went: np.ndarray | None = None
-    loose: np.ndarray | None = None
+    loose: float | None = None
 
     @property
     def step(self) -> np.ndarray:
@@ -126,18 +127,18 @@ class Follower:
 
     def held(self, following: Following, dt: float) -> Following:
         """With an offset that carries no point far from where it is surely seen, dt [s] later: what goes on as its points do did not leap, however suddenly they went."""
-        gate, joints = following.gate, self.controls.joints
-        there, turns = joints_of(following.pose, self.body)
-        missed = gate.raw - self.controls.on(there, turns)
-        far = away(self.body, following.pose, following.offset, joints, there[joints] + missed)
-        loose = far if following.loose is None else following.loose * 0.5 ** (dt / (LATELY * following.fade))
-        loose = np.maximum(loose, np.where(gate.sure, np.linalg.norm(missed, axis=-1), np.nan_to_num(far)))
+        gate, body, pose = following.gate, self.body, following.pose
+        own, far = (missed(body, pose, by, self.controls, gate.raw) for by in (_NOTHING, following.offset))
+        sure = gate.sure
+        new = far[np.where(gate.trusted, ~sure, (gate.gone == 0.0) & (gate.steady == 0.0))]
+        loose = following.loose * 0.5 ** (dt / (LATELY * following.fade)) if following.loose is not None else np.fmax.reduce(far, initial=0.0)
+        loose = float(max(loose, np.fmax.reduce(new, initial=0.0), own[sure].max(initial=0.0)))
         following = but(following, loose=loose)
         most = KEPT + NOISY * gate.rough + loose
-        sure = np.flatnonzero(gate.sure & (far > most))
-        if not len(sure):
+        if not (far[sure] > most[sure]).any():
             return following
-        left = kept(self.body, following.pose, following.offset, joints[gate.trusted], joints[sure], (there[joints] + missed)[sure], most[sure], 0.5 ** (dt / HALVED))[:, None]
+        seen = np.where(sure[:, None], gate.raw, np.nan)
+        left = kept(body, pose, following.offset, self.controls, seen, most, self.controls.joints[gate.trusted], 0.5 ** (dt / HALVED))
         return but(following, offset=following.offset * left, rate=following.rate * left)
 
     def shown(self, following: Following) -> Pose:

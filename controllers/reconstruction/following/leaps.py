@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from ...body import Pose, Skeleton
+from ..control_points import ControlPoints
 from ..pose_vector import SKELETON
 from .hand_over import joints_of
-from .pose_kernels import apart_kernel
+from .pose_kernels import apart_kernel, missed_kernel
 
 LEAP = 0.03
 """A joint that is farther than this [m] from where its motion leads has leapt …"""
@@ -59,31 +60,33 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     return step, leapt, none
 
 
-def kept(body: Skeleton, pose: Pose, offset: np.ndarray, followed: np.ndarray, joints: np.ndarray, seen: np.ndarray, most: np.ndarray, least: float) -> np.ndarray:
-    """What is left of each row (1 + J,), 0 … 1, of an offset, `least` at least, so that some of the joints that are followed, (n,) of a pose, are no farther from where they are seen (n, 3) [m] than
-    that (n,) [m], if it can be. Limbs on which nothing is followed fade by themselves; all else is shortened alike, as a body that is carried somewhere turns there and bends, and
-    nothing of that is right without the rest.
+def kept(body: Skeleton, pose: Pose, offset: np.ndarray, controls: ControlPoints, seen: np.ndarray, most: np.ndarray, followed: np.ndarray, least: float) -> np.ndarray:
+    """What is left, `least` to 1, of each row (1 + J, 1) of an offset so that points of a pose are no farther from where they are seen (n, 3) [m], NaN where not, than that (n,) [m],
+    if it can be.
+
+    followed: joints whose points are followed. Limbs on which there are none fade by themselves; all else is shortened alike: as a body that is carried somewhere turns
+    there and bends, nothing of that is right without the rest.
     """
     told, rows = set(followed.tolist()), np.ones(len(offset), bool)
     for limb in LIMBS:
         rows[limb + 1] = not told.isdisjoint(limb.tolist())
     share, tried, worst = 1.0, 1.0, math.inf
     for _ in range(TRIES):
-        over = (away(body, pose, np.where(rows[:, None], tried, 1.0) * offset, joints, seen) / most).max()
+        over = np.fmax.reduce(missed(body, pose, np.where(rows, tried, 1.0)[:, None] * offset, controls, seen) / most)
         if over >= worst:
             break
         share, worst = tried, over
         if over <= 1.0 or share <= least:
             break
         tried = max(share / over, least)
-    return np.where(rows, share, 1.0)
+    return np.where(rows, share, 1.0)[:, None]
 
 
-def away(body: Skeleton, pose: Pose, offset: np.ndarray, joints: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """How far (n,) [m] joints (n,) of a pose that is moved by (1 + J, 3) are from where they are seen, (n, 3) [m]."""
-    there = np.zeros((len(body), 3))
-    there[joints] = seen
-    return _apart(body, there, pose, offset)[joints]
+def missed(body: Skeleton, pose: Pose, by: np.ndarray, controls: ControlPoints, seen: np.ndarray) -> np.ndarray:
+    """How far (n,) [m] the points of a pose that is moved by (1 + J, 3) are from where they are seen (n, 3) [m]."""
+    out = np.empty(len(seen))
+    missed_kernel(body.parents, body.offsets, pose.root, pose.rotations, by, controls.joints, controls.offsets, seen, out)
+    return out
 
 
 def _apart(body: Skeleton, there: np.ndarray, pose: Pose, by: np.ndarray) -> np.ndarray:

@@ -64,11 +64,10 @@ def moved_kernel(root, rotations, by, place, turned):
 
 
 @kernel
-def apart_kernel(parents, offsets, root, rotations, by, there, out):
-    """Fills out (J,) [m]: how far from there (J, 3) [m] the joints are of a pose that is moved by (1 + J, 3)."""
+def placed_kernel(parents, offsets, root, rotations, by, positions, orientations):
+    """Fills positions (J, 3) [m] and orientations (J, 3, 3): of the joints of a pose that is moved by (1 + J, 3)."""
     place, turned = np.empty(3), np.empty_like(rotations)
     moved_kernel(root, rotations, by, place, turned)
-    positions, orientations = np.empty_like(there), np.empty_like(rotations)
     for j in range(len(parents)):
         p = parents[j]
         if p < 0:
@@ -78,7 +77,28 @@ def apart_kernel(parents, offsets, root, rotations, by, there, out):
             for i in range(3):
                 positions[j, i] = (positions[p, i] + orientations[p, i, 0] * offsets[j, 0] + orientations[p, i, 1] * offsets[j, 1]
                                    + orientations[p, i, 2] * offsets[j, 2])
+
+
+@kernel
+def apart_kernel(parents, offsets, root, rotations, by, there, out):
+    """Fills out (J,) [m]: how far from there (J, 3) [m] the joints are of a pose that is moved by (1 + J, 3)."""
+    positions, orientations = np.empty_like(there), np.empty_like(rotations)
+    placed_kernel(parents, offsets, root, rotations, by, positions, orientations)
+    for j in range(len(parents)):
         out[j] = math.sqrt((there[j, 0] - positions[j, 0]) ** 2 + (there[j, 1] - positions[j, 1]) ** 2 + (there[j, 2] - positions[j, 2]) ** 2)
+
+
+@kernel
+def missed_kernel(parents, offsets, root, rotations, by, joints, beside, seen, out):
+    """Fills out (n,) [m]: how far from where they are seen (n, 3) [m] points are, beside (n, 3) [m] joints (n,) of a pose that is moved by (1 + J, 3)."""
+    positions, orientations = np.empty((len(parents), 3)), np.empty_like(rotations)
+    placed_kernel(parents, offsets, root, rotations, by, positions, orientations)
+    for n in range(len(joints)):
+        j, square = joints[n], 0.0
+        for i in range(3):
+            there = positions[j, i] + orientations[j, i, 0] * beside[n, 0] + orientations[j, i, 1] * beside[n, 1] + orientations[j, i, 2] * beside[n, 2]
+            square += (seen[n, i] - there) ** 2
+        out[n] = math.sqrt(square)
 
 
 @kernel
