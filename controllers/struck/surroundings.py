@@ -43,12 +43,13 @@ def about(around: Sequence[Any], place: np.ndarray) -> np.ndarray:
 
 @kernel
 def aside_kernel(things, x, z, low, high, out):
-    """How far a place is, along the floor, from the nearest thing that stands at heights from `low` to `high` [m]; less than nothing inside. The way (2,) out of it is written. Ramps are
-    walked on."""
+    """How far a place is, along the floor, from the nearest thing that stands at heights from `low` to `high` [m]; less than nothing inside. The way (2,) out of it is written. A ramp
+    is as high as where it is nearest to a place beside it, and stands in nobody's way who is over it."""
     nearest = math.inf
     out[0], out[1] = 0.0, 0.0
     for k in range(len(things)):
-        if things[k, 6] >= high or things[k, 7] <= low or things[k, 8] != 0.0:
+        rises = things[k, 8] != 0.0
+        if not rises and (things[k, 6] >= high or things[k, 7] <= low):
             continue
         dx, dz = x - things[k, 0], z - things[k, 1]
         if things[k, 3] < 0.0:
@@ -58,6 +59,10 @@ def aside_kernel(things, x, z, low, high, out):
             c, s = things[k, 4], things[k, 5]
             left, ahead = c * dx - s * dz, s * dx + c * dz
             a, b = abs(left) - things[k, 2], abs(ahead) - things[k, 3]
+            if rises:
+                rise = things[k, 8] * min(max(ahead, -things[k, 3]), things[k, 3])
+                if max(a, b) <= 0.0 or things[k, 6] + rise >= high or things[k, 7] + rise <= low:
+                    continue
             sa, sb = math.copysign(1.0, left), math.copysign(1.0, ahead)
             if a > 0.0 and b > 0.0:
                 gap = math.hypot(a, b)
