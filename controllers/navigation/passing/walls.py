@@ -22,6 +22,8 @@ NEAR = 0.18
 """How near to its middle a body of usual size lets walls come [m]."""
 EDGE = 0.04
 """Right before something is so far from it [m]."""
+CRACK = 0.1
+"""Ramps that make up hills leave cracks of this width between them at most [m]: they are the floor before each other across one."""
 PASSES = 3
 """So often all walls are gone through: where two meet, what one takes away another may bring back."""
 TRACED, MET = 48, 0.005
@@ -69,16 +71,17 @@ def wall_kernel(walls, k, x, z, floor, bound, out, least=STEP):
     if rises and (far <= 0.0 or high <= floor + least or low >= floor + HEAD):
         return math.inf
     before = 0.0
-    px, pz = x - (far - EDGE) * out[0], z - (far - EDGE) * out[1]
-    for i in range(walls.shape[0]):
-        if walls[i, 5] > 0.0:
-            continue
-        c, s = math.cos(walls[i, 4]), math.sin(walls[i, 4])
-        dx, dz = px - walls[i, 0], pz - walls[i, 1]
-        along = s * dx + c * dz
-        top = walls[i, 7] + walls[i, 8] * along
-        if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= (high + EDGE if rises or walls[i, 8] != 0.0 else high - EDGE):
-            before = top
+    for part in range(2 if rises else 1):
+        px, pz = x - (far - EDGE - part * CRACK) * out[0], z - (far - EDGE - part * CRACK) * out[1]
+        for i in range(walls.shape[0]):
+            if walls[i, 5] > 0.0:
+                continue
+            c, s = math.cos(walls[i, 4]), math.sin(walls[i, 4])
+            dx, dz = px - walls[i, 0], pz - walls[i, 1]
+            along = s * dx + c * dz
+            top = walls[i, 7] + walls[i, 8] * along
+            if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= (high + EDGE if rises or walls[i, 8] != 0.0 else high - EDGE):
+                before = top
     return far if high > before + STEP else math.inf
 
 
