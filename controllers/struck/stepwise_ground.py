@@ -96,7 +96,7 @@ def rests_kernel(things, corner, caps, place, thick, aside, out):
             continue
         lies = top + math.sqrt(thick * thick - far * far) * math.sqrt(1.0 + things[k, 8] ** 2)
         beside = thick - (far if far > 0.0 else max(a, b))
-        if aside and things[k, 8] == 0.0 and beside < lies - place[1]:
+        if aside and beside < lies - place[1]:
             if beside > most:
                 most = beside
                 across = math.copysign(beside, left) if a > b else 0.0
