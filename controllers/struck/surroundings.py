@@ -78,6 +78,20 @@ def aside_kernel(things, x, z, low, high, out):
 
 
 @kernel
+def filled_kernel(things, x, z, low, high):
+    """Whether a ramp fills a place it lies over at heights from `low` to `high` [m]: nobody stands inside one."""
+    for k in range(len(things)):
+        if things[k, 8] == 0.0:
+            continue
+        dx, dz = x - things[k, 0], z - things[k, 1]
+        left, ahead = things[k, 4] * dx - things[k, 5] * dz, things[k, 5] * dx + things[k, 4] * dz
+        rise = things[k, 8] * ahead
+        if abs(left) <= things[k, 2] and abs(ahead) <= things[k, 3] and things[k, 6] + rise < high and things[k, 7] + rise > low:
+            return True
+    return False
+
+
+@kernel
 def tread_kernel(things, x, z, below, floor):
     """How high the ground lies at a place [m]: the highest top no higher than `below`, or the world's floor; `floor` where nothing stands about."""
     if len(things) == 0:
@@ -99,7 +113,9 @@ def tread_kernel(things, x, z, below, floor):
 def abyss_kernel(things, x, z, level):
     """Whether the ground ends at a place: it is deeper than a step below `level` [m], and nothing stands there."""
     out = np.empty(2)
-    return tread_kernel(things, x, z, level + STEP, level) < level - STEP and aside_kernel(things, x, z, level - 0.1, level + 0.1, out) > 0.0
+    if tread_kernel(things, x, z, level + STEP, level) >= level - STEP or filled_kernel(things, x, z, level - 0.1, level + 0.1):
+        return False
+    return aside_kernel(things, x, z, level - 0.1, level + 0.1, out) > 0.0
 
 
 @kernel
@@ -145,7 +161,8 @@ def stands_kernel(things, body, x, z, yaw, level):
             over += 1
         if higher > 0.05 * body.size or over > 1:
             return math.nan
-        if aside_kernel(things, px, pz, height + 0.06 * body.size, height + 0.3 * body.size, out) < 0.055 * body.size:
+        low, high = height + 0.06 * body.size, height + 0.3 * body.size
+        if aside_kernel(things, px, pz, low, high, out) < 0.055 * body.size or filled_kernel(things, px, pz, low, high):
             return math.nan
     return height
 
