@@ -17,7 +17,7 @@ from gambol.controllers.navigation.passing.walls import wall_kernel
 from gambol.controllers.person import person
 from gambol.game.scene import Box
 
-FPS, WIDE = 60, 2.0
+FPS, WIDE, CELL = 60, 2.0, 0.25
 LEGS = tuple(side + part for side in ("Left", "Right") for part in ("UpLeg", "Leg", "Foot"))
 ARMS = tuple(side + part for side in ("Left", "Right") for part in ("ForeArm", "Hand"))
 RAMPS = ((1.2, 3.0), (1.0, 1.6), (1.6, 4.0))
@@ -35,6 +35,21 @@ def locomotion():
 def ramp(high, length, heading=0.0, place=(0.0, 0.0)):
     """A ramp that rises from the floor along its heading, its middle at a place x, z [m]."""
     return Box((place[0], 0.0, place[1]), (WIDE, high, length), heading, slope=high / length)
+
+
+def hill(x, z):
+    """How high hills are [m]."""
+    return 1.5 + 0.6 * np.sin(0.5 * x) * np.cos(0.4 * z)
+
+
+def hills(x, z):
+    """Hills about a place x, z, as ramps of a cell each, turned to where they rise: there are cracks between them."""
+    made = []
+    for a in x + CELL * np.arange(-6, 7):
+        for b in z + CELL * np.arange(-6, 7):
+            rise = np.array([0.3 * np.cos(0.5 * a) * np.cos(0.4 * b), -0.24 * np.sin(0.5 * a) * np.sin(0.4 * b)])
+            made.append(Box((a, 0.5 * hill(a, b), b), (CELL, hill(a, b), CELL), float(np.arctan2(*rise)), slope=float(np.hypot(*rise))))
+    return tuple(made)
 
 
 def at(thing, across, along):
@@ -164,13 +179,33 @@ def test_arms_come_in_beside_what_is_high_of_it_only(locomotion):
     assert not drawn(0.0, 1.2, 1.28) and not drawn(0.5, -2.2)
 
 
-@pytest.mark.parametrize("hard", (0.8, 1.5))
-@pytest.mark.parametrize(("start", "way"), (((0.1, 2.1, math.pi), (0.0, -1.0)), ((1.7, 1.0, -0.5 * math.pi), (-1.0, 0.0))), ids=("its tall end", "its high side"))
-def test_who_is_pushed_at_it_stays_out(start, way, hard):
+@pytest.mark.parametrize("heading", (0.3, 1.6, -1.0))
+def test_hills_of_many_small_ramps_hold_up_nobody(locomotion, heading):
+    """Each is the floor before the next, across the cracks between them, too: a runner keeps his speed."""
+    state, speed, cell, around = locomotion.start((0.0, 0.0, heading), hill(0.0, 0.0)), [], None, ()
+    for _ in range(5 * FPS):
+        before = state.ground[:2]
+        if cell != (cell := tuple(np.round(before / CELL))):
+            around = hills(*(CELL * np.array(cell)))
+        state, _ = locomotion.step(state, Intent(np.array([2.5, 0.0, 0.0]), around=around), 1 / FPS)
+        speed.append(np.linalg.norm(state.ground[:2] - before) * FPS)
+    assert min(speed[2 * FPS:]) > 2.4
+
+
+PUSHES = {"its tall end": ((0.1, 2.1, math.pi), -1.0, (0.8, 1.5)), "its high side": ((1.7, 1.0, -0.5 * math.pi), None, (0.8, 1.5)),
+          "its low end": ((0.0, -2.0, 0.0), 1.0, (1.5,)), "it, over its edge": ((0.0, 0.7, 0.0), 1.0, (0.8,))}
+
+
+@pytest.mark.parametrize("name", PUSHES)
+def test_who_is_pushed_at_it_stays_out(name):
+    """Of it, or on top of it, and gets up there."""
+    (x, z, heading), ahead, pushes = PUSHES[name]
     who, body, thing = person(), Physique(), ramp(1.2, 3.0)
-    state, states = who.start(start), []
-    for n in range(150):
-        state, _ = who.step(state, Intent(around=(thing,), strike=Strike(tuple(hard * body.mass * np.array(way))) if n == 5 else None), 1 / FPS)
-        states.append(state)
-    joints = forward_kinematics(body.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))[0]
-    assert -gap(joints.reshape(-1, 3), thing).min() < 0.15
+    way = np.array([-1.0, 0.0]) if ahead is None else np.array([0.0, ahead])
+    for hard in pushes:
+        state, states = who.start((x, z, heading), 0.6 + 0.4 * z if name.endswith("edge") else 0.0), []
+        for n in range(240):
+            state, _ = who.step(state, Intent(around=(thing,), strike=Strike(tuple(hard * body.mass * way)) if n == 5 else None), 1 / FPS)
+            states.append(state)
+        joints = forward_kinematics(body.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))[0]
+        assert -gap(joints.reshape(-1, 3), thing).min() < 0.1
