@@ -79,8 +79,8 @@ def _clear(m, tops, floor, stands, line, x, z):
 
 @kernel
 def _is_wall(m, tops, floor, stands, k):
-    """Whether top k is too high to step on for feet that stand so high over the floor [m], and neither above them, below their body nor far away. A ramp is as high as where it is
-    nearest to the body."""
+    """Whether top k is too high to step on for feet that stand so high over the floor [m], and neither above them, below their body nor far away.
+    A ramp is as high as where it is nearest to the body."""
     across, along = _within(tops, k, m.ground[0], m.ground[1])
     rise = tops[k, 7] * min(max(along, -tops[k, 5]), tops[k, 5])
     if tops[k, 6] + rise - floor <= stands + STEP or tops[k, 8] + rise - floor > stands + PASSED:

@@ -43,8 +43,8 @@ def about(around: Sequence[Any], place: np.ndarray) -> np.ndarray:
 
 @kernel
 def aside_kernel(things, x, z, low, high, out):
-    """How far a place is, along the floor, from the nearest thing that stands at heights from `low` to `high` [m]; less than nothing inside. The way (2,) out of it is written. A ramp
-    is as high as where it is nearest to a place beside it, and stands in nobody's way who is over it."""
+    """How far a place is, along the floor, from the nearest thing that stands at heights from `low` to `high` [m]; less than nothing inside. The way (2,) out of it is written.
+    A ramp is as high as where it is nearest to a place beside it, and stands in nobody's way who is over it."""
     nearest = math.inf
     out[0], out[1] = 0.0, 0.0
     for k in range(len(things)):

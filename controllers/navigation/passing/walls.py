@@ -48,8 +48,8 @@ def walls_of(around: Sequence[Any]) -> np.ndarray:
 
 @kernel
 def rise_kernel(walls, k, x, z, far, out):
-    """How much higher [m] one of `walls_of` reaches than in its middle where it is nearest to a place, or there, where that is over it: a ramp does. far, out: of the place, as
-    `distance` has them."""
+    """How much higher [m] one of `walls_of` reaches than in its middle where it is nearest to a place, or there, where that is over it: a ramp does.
+    far, out: of the place, as `distance` has them."""
     if walls[k, 8] == 0.0:
         return 0.0
     beside = max(far, 0.0)
