@@ -79,17 +79,19 @@ def _clear(m, tops, floor, stands, line, x, z):
 
 @kernel
 def _is_wall(m, tops, floor, stands, k):
-    """Whether top k is too high to step on for feet that stand so high over the floor [m], and neither above them, below their body nor far away."""
-    if tops[k, 7] != 0.0 or tops[k, 6] - floor <= stands + STEP or tops[k, 8] - floor > stands + PASSED:
-        return False
+    """Whether top k is too high to step on for feet that stand so high over the floor [m], and neither above them, below their body nor far away.
+    A ramp is as high as where it is nearest to the body."""
     across, along = _within(tops, k, m.ground[0], m.ground[1])
-    return 0.0 < max(abs(across) - tops[k, 4], abs(along) - tops[k, 5]) <= FAR and not _stepped_onto(tops, k, across, along)
+    rise = tops[k, 7] * min(max(along, -tops[k, 5]), tops[k, 5])
+    if tops[k, 6] + rise - floor <= stands + STEP or tops[k, 8] + rise - floor > stands + PASSED:
+        return False
+    return 0.0 < max(abs(across) - tops[k, 4], abs(along) - tops[k, 5]) <= FAR and not _stepped_onto(tops, k, across, along, tops[k, 6] + rise)
 
 
 @kernel
-def _stepped_onto(tops, k, across, along):
+def _stepped_onto(tops, k, across, along, top):
     """Whether somebody whose middle is across and along in top k's frame [m] has something right before it, on the straight way to him, that is no more than
-    a step lower, as on stairs."""
+    a step lower than it is there [m], as on stairs; or as high, where it is a ramp that goes on from there."""
     u, w = min(max(across, -tops[k, 4]), tops[k, 4]), min(max(along, -tops[k, 5]), tops[k, 5])
     far = math.hypot(across - u, along - w)
     u, w = u + EDGE / far * (across - u), w + EDGE / far * (along - w)
@@ -98,6 +100,6 @@ def _stepped_onto(tops, k, across, along):
     for i in range(tops.shape[0]):
         u, w = _within(tops, i, x, z)
         high = tops[i, 6] + tops[i, 7] * w
-        if abs(u) <= tops[i, 4] and abs(w) <= tops[i, 5] and tops[k, 6] - STEP <= high < tops[k, 6]:
+        if abs(u) <= tops[i, 4] and abs(w) <= tops[i, 5] and top - STEP <= high < (top + EDGE if tops[k, 7] != 0.0 else top):
             return True
     return False

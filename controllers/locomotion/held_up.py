@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from ..compiled import kernel
-from ..navigation.passing import HEAD, NEAR, STEP, out_kernel, slow_kernel
+from ..navigation.passing import HEAD, NEAR, STEP, out_kernel, rise_kernel, slow_kernel
 from ..navigation.routes import distance
 from .memory import put
 
@@ -55,7 +55,9 @@ def hold_kernel(memory, floors, walls):
         m = memory[n]
         if m.settled:
             for k in range(walls.shape[0]):
-                if walls[k, 7] > floors[n] + HANDS and walls[k, 6] < floors[n] + HEAD and distance(m.ground[0], m.ground[1], walls[k, :6], out) < ARMS:
+                far = distance(m.ground[0], m.ground[1], walls[k, :6], out)
+                over = floors[n] - rise_kernel(walls, k, m.ground[0], m.ground[1], far, out)
+                if far < ARMS and walls[k, 7] > over + HANDS and walls[k, 6] < over + HEAD:
                     m.cramped = 1
             continue
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])

@@ -96,12 +96,13 @@ def rests_kernel(things, corner, caps, place, thick, aside, out):
             continue
         lies = top + math.sqrt(thick * thick - far * far) * math.sqrt(1.0 + things[k, 8] ** 2)
         beside = thick - (far if far > 0.0 else max(a, b))
-        if aside and things[k, 8] == 0.0 and beside < lies - place[1]:
+        across, along = (math.copysign(beside, left), 0.0) if a > b else (0.0, math.copysign(beside, ahead))
+        x, z = c * across + s * along, c * along - s * across
+        if aside and beside < lies - place[1] and not (  # hills are made of many ramps: there the ground goes on
+                things[k, 8] != 0.0 and tread_kernel(things, place[0] + x, place[2] + z, top + STEP, 0.0) > top - STEP):
             if beside > most:
                 most = beside
-                across = math.copysign(beside, left) if a > b else 0.0
-                along = 0.0 if a > b else math.copysign(beside, ahead)
-                out[0], out[1] = c * across + s * along, c * along - s * across
+                out[0], out[1] = x, z
         else:
             height = max(height, lies)
     return height

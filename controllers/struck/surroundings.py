@@ -43,12 +43,13 @@ def about(around: Sequence[Any], place: np.ndarray) -> np.ndarray:
 
 @kernel
 def aside_kernel(things, x, z, low, high, out):
-    """How far a place is, along the floor, from the nearest thing that stands at heights from `low` to `high` [m]; less than nothing inside. The way (2,) out of it is written. Ramps are
-    walked on."""
+    """How far a place is, along the floor, from the nearest thing that stands at heights from `low` to `high` [m]; less than nothing inside. The way (2,) out of it is written.
+    A ramp is as high as where it is nearest to a place beside it, and stands in nobody's way who is over it."""
     nearest = math.inf
     out[0], out[1] = 0.0, 0.0
     for k in range(len(things)):
-        if things[k, 6] >= high or things[k, 7] <= low or things[k, 8] != 0.0:
+        rises = things[k, 8] != 0.0
+        if not rises and (things[k, 6] >= high or things[k, 7] <= low):
             continue
         dx, dz = x - things[k, 0], z - things[k, 1]
         if things[k, 3] < 0.0:
@@ -58,6 +59,10 @@ def aside_kernel(things, x, z, low, high, out):
             c, s = things[k, 4], things[k, 5]
             left, ahead = c * dx - s * dz, s * dx + c * dz
             a, b = abs(left) - things[k, 2], abs(ahead) - things[k, 3]
+            if rises:
+                rise = things[k, 8] * min(max(ahead, -things[k, 3]), things[k, 3])
+                if max(a, b) <= 0.0 or things[k, 6] + rise >= high or things[k, 7] + rise <= low:
+                    continue
             sa, sb = math.copysign(1.0, left), math.copysign(1.0, ahead)
             if a > 0.0 and b > 0.0:
                 gap = math.hypot(a, b)
@@ -70,6 +75,20 @@ def aside_kernel(things, x, z, low, high, out):
         if gap < nearest:
             nearest, out[0], out[1] = gap, ox, oz
     return nearest
+
+
+@kernel
+def filled_kernel(things, x, z, low, high):
+    """Whether a ramp fills a place it lies over at heights from `low` to `high` [m]: nobody stands inside one."""
+    for k in range(len(things)):
+        if things[k, 8] == 0.0:
+            continue
+        dx, dz = x - things[k, 0], z - things[k, 1]
+        left, ahead = things[k, 4] * dx - things[k, 5] * dz, things[k, 5] * dx + things[k, 4] * dz
+        rise = things[k, 8] * ahead
+        if abs(left) <= things[k, 2] and abs(ahead) <= things[k, 3] and things[k, 6] + rise < high and things[k, 7] + rise > low:
+            return True
+    return False
 
 
 @kernel
@@ -94,7 +113,9 @@ def tread_kernel(things, x, z, below, floor):
 def abyss_kernel(things, x, z, level):
     """Whether the ground ends at a place: it is deeper than a step below `level` [m], and nothing stands there."""
     out = np.empty(2)
-    return tread_kernel(things, x, z, level + STEP, level) < level - STEP and aside_kernel(things, x, z, level - 0.1, level + 0.1, out) > 0.0
+    if tread_kernel(things, x, z, level + STEP, level) >= level - STEP or filled_kernel(things, x, z, level - 0.1, level + 0.1):
+        return False
+    return aside_kernel(things, x, z, level - 0.1, level + 0.1, out) > 0.0
 
 
 @kernel
@@ -140,7 +161,8 @@ def stands_kernel(things, body, x, z, yaw, level):
             over += 1
         if higher > 0.05 * body.size or over > 1:
             return math.nan
-        if aside_kernel(things, px, pz, height + 0.06 * body.size, height + 0.3 * body.size, out) < 0.055 * body.size:
+        low, high = height + 0.06 * body.size, height + 0.3 * body.size
+        if aside_kernel(things, px, pz, low, high, out) < 0.055 * body.size or filled_kernel(things, px, pz, low, high):
             return math.nan
     return height
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...body import Pose, Skeleton, exp, log, relative_kernel, settle
 from ...compiled import kernel
-from ..obstacles import is_box, is_pillar, ramp, span
+from ..obstacles import is_box, is_pillar, ramp, slope, span
 from ..routes import distance
 
 ARMS = ("LeftArm", "LeftForeArm", "LeftHand"), ("RightArm", "RightForeArm", "RightHand")
@@ -85,13 +85,17 @@ def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequenc
 
 
 def _near(x: float, z: float, around: Sequence[Any]) -> list[tuple[float, ...]]:
-    """What is near enough: shapes as of `shapes_of`, how low and how high they reach [m]. Ramps are walked on."""
+    """What is near enough: shapes as of `shapes_of`, how low and how high they reach [m], ramps where they are nearest."""
     found = []
     for thing in around:
-        if is_box(thing) and not ramp(thing):
-            centre, size = thing.centre, thing.size
+        if is_box(thing):
+            centre, size, rise = thing.centre, thing.size, 0.0
             if math.hypot(centre[0] - x, centre[2] - z) < FAR + 0.5 * math.hypot(size[0], size[2]):
-                found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, *span(thing)))
+                if ramp(thing):
+                    along = math.sin(thing.heading) * (x - centre[0]) + math.cos(thing.heading) * (z - centre[2])
+                    rise = slope(thing) * min(max(along, -0.5 * size[2]), 0.5 * size[2])
+                low, high = span(thing)
+                found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, low + rise, high + rise))
         elif is_pillar(thing) and math.hypot(thing.foot[0] - x, thing.foot[2] - z) < FAR + thing.radius:
             found.append((thing.foot[0], thing.foot[2], 0.0, 0.0, 0.0, thing.radius, thing.foot[1], thing.foot[1] + thing.height))
     return found

@@ -1,6 +1,7 @@
 """Walls: what stands about that holds a body up which walks at it, and how fast somebody may go towards it.
 
 A wall is what is higher over the floor right before it than a step: of stairs, which are walked up, each tread is the floor before the next.
+A ramp, which is walked on, is as high as where it is nearest: its tall end and what is high of its sides are walls, to who is not over it.
 """
 
 from __future__ import annotations
@@ -21,15 +22,19 @@ NEAR = 0.18
 """How near to its middle a body of usual size lets walls come [m]."""
 EDGE = 0.04
 """Right before something is so far from it [m]."""
+CRACK = 0.1
+"""Ramps that make up hills leave cracks of this width between them at most [m]: they are the floor before each other across one."""
 PASSES = 3
 """So often all walls are gone through: where two meet, what one takes away another may bring back."""
 TRACED, MET = 48, 0.005
 """A straight way is followed in so many stretches at most, until something is nearer than this to where it holds somebody up [m]."""
+PACE = 0.1
+"""Over a ramp and beside what is low of it a straight way is followed no less than so far at a time [m]."""
 
 
 def walls_of(around: Sequence[Any]) -> np.ndarray:
     """What stands about, as kernels here take it, (K, 9): centre x, z [m], half width and half length [m], heading [rad] and radius, as shapes have
-    them; how low and how high it reaches [m], and the slope of a ramp, which is walked on."""
+    them; how low and how high it reaches [m], a ramp in its middle, and a ramp's slope."""
     found = []
     for thing in around:
         if is_box(thing):
@@ -42,26 +47,41 @@ def walls_of(around: Sequence[Any]) -> np.ndarray:
 
 
 @kernel
+def rise_kernel(walls, k, x, z, far, out):
+    """How much higher [m] one of `walls_of` reaches than in its middle where it is nearest to a place, or there, where that is over it: a ramp does.
+    far, out: of the place, as `distance` has them."""
+    if walls[k, 8] == 0.0:
+        return 0.0
+    beside = max(far, 0.0)
+    return walls[k, 8] * (math.sin(walls[k, 4]) * (x - beside * out[0] - walls[k, 0]) + math.cos(walls[k, 4]) * (z - beside * out[1] - walls[k, 1]))
+
+
+@kernel
 def wall_kernel(walls, k, x, z, floor, bound, out, least=STEP):
     """How far [m] a place on a floor [m] is from one of `walls_of`, endless where that holds nobody up, as what is no higher than `least` [m] over the floor;
     out: (3,) as `distance` has it. Of what is no nearer than a bound [m], whether it holds anybody up is not asked."""
-    low, high = walls[k, 6], walls[k, 7]
-    if walls[k, 8] != 0.0 or high <= floor + least or low >= floor + HEAD:
+    rises = walls[k, 8] != 0.0
+    if not rises and (walls[k, 7] <= floor + least or walls[k, 6] >= floor + HEAD):
         return math.inf
     far = distance(x, z, walls[k, :6], out)
     if far >= bound:
         return far
+    rise = rise_kernel(walls, k, x, z, far, out)
+    low, high = walls[k, 6] + rise, walls[k, 7] + rise
+    if rises and (far <= 0.0 or high <= floor + least or low >= floor + HEAD):
+        return math.inf
     before = 0.0
-    px, pz = x - (far - EDGE) * out[0], z - (far - EDGE) * out[1]
-    for i in range(walls.shape[0]):
-        if walls[i, 5] > 0.0:
-            continue
-        c, s = math.cos(walls[i, 4]), math.sin(walls[i, 4])
-        dx, dz = px - walls[i, 0], pz - walls[i, 1]
-        along = s * dx + c * dz
-        top = walls[i, 7] + walls[i, 8] * along
-        if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= high - EDGE:
-            before = top
+    for part in range(2 if rises else 1):
+        px, pz = x - (far - EDGE - part * CRACK) * out[0], z - (far - EDGE - part * CRACK) * out[1]
+        for i in range(walls.shape[0]):
+            if walls[i, 5] > 0.0:
+                continue
+            c, s = math.cos(walls[i, 4]), math.sin(walls[i, 4])
+            dx, dz = px - walls[i, 0], pz - walls[i, 1]
+            along = s * dx + c * dz
+            top = walls[i, 7] + walls[i, 8] * along
+            if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= (high + EDGE if rises or walls[i, 8] != 0.0 else high - EDGE):
+                before = top
     return far if high > before + STEP else math.inf
 
 
@@ -91,7 +111,11 @@ def way_kernel(walls, x, z, floor, ahead, near, most, out):
     for _ in range(TRACED):
         least = math.inf
         for k in range(walls.shape[0]):
-            room = wall_kernel(walls, k, x + gone * ahead[0], z + gone * ahead[1], floor, least + near, here) - near
+            px, pz = x + gone * ahead[0], z + gone * ahead[1]
+            room = wall_kernel(walls, k, px, pz, floor, least + near, here) - near
+            if walls[k, 8] != 0.0 and (room == math.inf or here[0] * ahead[0] + here[1] * ahead[1] > 0.0):  # not here, but it may farther on
+                far = distance(px, pz, walls[k, :6], here)
+                room = max(far - near if far > 0.0 else -far, PACE)
             if room < least:
                 least = room
                 for i in range(3):
