@@ -25,6 +25,8 @@ SHORTEST, SMALL, LONGEST = 0.236, 0.41, 1.53
 ADULT = 0.6, 1.05
 """An adult's leg [m]."""
 LEG_PART = 0.492
+LEVEL, GONE = 0.25, 0.75
+"""In leg lengths: the lowest joint of who goes over a floor keeps its height to within the first, and a way is longer than the second."""
 _UP = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
 
 
@@ -80,7 +82,7 @@ def detect(clip: Clip, *, up: str | None = None, scale: float | None = None, tpo
     """Judge a raw clip; what is given is taken for granted.
 
     The scale is the unit that brings thigh and shin nearest to an adult's. Up is Z if the body,
-    from feet to head, stands along +Z more than along any other axis; any other axis if it stands along that, in its zero pose, too; and Y otherwise. Calibration
+    from feet to head, stands along +Z more than along any other axis, unless it crawls that way; any other axis if it stands along that, in its zero pose, too; and Y otherwise. Calibration
     frames are cut off from the motion by a jump within the first two steps. The root's OFFSET is
     added only where that brings a body from far off the floor onto it.
     MotionFileError if no scale is given and none fits; ValueError for an unknown `up`.
@@ -169,11 +171,18 @@ def _up(skeleton: Skeleton, positions: np.ndarray) -> str:
     if not heads or not feet:
         return "y"
     stand = np.median(positions[:, heads].mean(1) - positions[:, feet].mean(1), axis=0)
-    if stand[2] > max(abs(stand[0]), abs(stand[1])):
-        return "z"
     rest, _ = forward_kinematics(skeleton, np.zeros(3), np.tile(np.eye(3), (len(skeleton), 1, 1)))
+    stood = _along(rest[heads].mean(0) - rest[feet].mean(0))
+    if stand[2] > max(abs(stand[0]), abs(stand[1])):
+        return "y" if stood == "y" and _crawls(positions, leg_length(skeleton)) else "z"
     way = _along(stand)  # who lies, or stands on his hands, in a file of Y up does not do so in its zero pose
-    return way if way == _along(rest[heads].mean(0) - rest[feet].mean(0)) else "y"
+    return way if way == stood else "y"
+
+
+def _crawls(positions: np.ndarray, leg: float) -> bool:
+    """Whether a body (T, J, 3) whose head is farther along Z than its feet goes along Z over a floor across Y: what is lowest of it stays so high along Y, and not along Z."""
+    y, z = (np.ptp(np.percentile(positions[..., axis].min(-1), [5, 95])) for axis in (1, 2))
+    return bool(y < LEVEL * leg and z > GONE * leg)
 
 
 def _along(vector: np.ndarray) -> str:

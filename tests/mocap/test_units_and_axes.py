@@ -58,6 +58,19 @@ def test_who_lies_or_stands_on_his_hands_does_so(turn):
     assert detect(replace(clip, quaternions=quaternions)).up == ("z" if turn == [90, 0, 0] else "y")
 
 
+@pytest.mark.parametrize("turn", [[90, 0, 0], [75, 0, 0]])
+def test_who_crawls_along_z_does_not_walk_up_a_wall(turn):
+    """His head is farther along Z than his feet all the time, as of who stands in a file of Z up; but he goes over a floor."""
+    clip = standing()
+    quaternions, root = clip.quaternions.copy(), clip.root.copy()
+    quaternions[:, 0] = (Rotation.from_euler("xyz", turn, degrees=True) * Rotation.from_quat(quaternions[:, 0])).as_quat()
+    root[:, 2] += np.linspace(0.0, 2.0, len(root))
+    root[:, 1] = 0.4
+    assert detect(replace(clip, quaternions=quaternions, root=root)).up == "y"
+    root[:, 1:] = np.stack([root[:, 2], root[:, 1]], -1)  # who walks 2 m in a file of Z up has no floor across Y
+    assert detect(replace(clip, quaternions=quaternions, root=root)).up == "z"
+
+
 METRES, INCH = (1.0, 0.01, 0.001), 0.0254
 
 
