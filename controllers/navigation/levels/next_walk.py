@@ -108,5 +108,9 @@ def next_leg(walker: Controller, state: CharacterState, goal: Goal, around: Sequ
 
     if known and levels.regions[levels.under(known[0].ground[:2], known[0].height)] == region:
         return to(tuple(known))
+    from ..planning import unfit
+
+    if why := unfit(goal.floor, levels.stops(int(levels.regions[end])), size=walker.size):
+        return Leg(goal.floor, goal.heading, stops, (), why)  # before anybody leaps there
     way = journey(levels, here, start, goal.floor, end, able, barred, walk)
     return to(way.crossings) if way.crossings else Leg(goal.floor, goal.heading, stops, (), way.reason)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..obstacles import ASKEW, CREVICE, HEAD, STEP, is_box, is_pillar, ramp, slope, span
+from ..routes import THIN
 
 OUTLINE = 0.1
 """How far apart the places are at which a box's sides are looked at [m]."""
@@ -21,8 +22,8 @@ BESIDE = 0.03
 """So far within and without a side the ground is looked at [m]."""
 DOORSTEP = 4
 """At so many such places two surfaces meet, at least, where one steps over."""
-THIN, TALL = 0.02, 1e3
-"""How thick a rail is [m], and how high: it counts whatever floor it is seen from."""
+TALL = 1e3
+"""A rail is so high [m]: it counts whatever floor it is seen from."""
 
 
 class Rail(NamedTuple):

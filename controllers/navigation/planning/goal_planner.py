@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..goal import wish
 from ..obstacles import DEPTH, SHOULDER
-from ..routes import distance, grid_way, shapes_of
+from ..routes import distance, ends_ground, grid_way, shapes_of
 from ..steering import in_world
 from .guesses import faced, guesses
 from .walk_plan import Plan
@@ -43,6 +43,8 @@ STRICT = np.array([0.01, 0.0004])
 """... and where a plan is mended by so much, unless he turns aside ..."""
 MARGIN = 0.01
 """... which therefore keeps so much more distance than was asked [m]."""
+BRINK = 0.12
+"""Goals may lie so near to where the ground ends [m]: there are no walls."""
 FARTHEST = 1000.0
 """Nobody is sent farther than this at once [m]: over more, the intervals of one plan get too long to set off by."""
 FREE = np.empty((0, 4))
@@ -128,19 +130,30 @@ def _numbers(name: str, value: Any) -> np.ndarray:
     return value
 
 
+def unfit(goal: ArrayLike, around: Sequence[Any], floor: float = 0.0, clearance: float = SHOULDER, size: float = 1.0) -> str:
+    """Why nobody can stand at a goal (2,) x, z [m] among what stops people on a floor `floor` [m] high; "" where one can. clearance, size: as of `plan`."""
+    return _unfit(np.asarray(goal, float), shapes_of(around, floor), clearance, size)
+
+
+def _unfit(goal: np.ndarray, shapes: np.ndarray, clearance: float, size: float) -> str:
+    out = np.empty(3)
+    for shape in shapes:
+        there, edge = distance(goal[0], goal[1], shape, out), ends_ground(shape)
+        needed = min(BRINK, clearance) if edge else clearance
+        if there < needed:
+            what = "an edge" if edge else "something"
+            return f"the goal is {there * size:.2f} m from {what}, {needed * size:.2f} m are needed" if there > 0.0 else "the goal lies in something"
+    return ""
+
+
 def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance: float, size: float) -> str:
     """Why nobody can walk from start to goal, whatever the way; "" where a way may be."""
     far_off = float(np.hypot(*(goal - start)[:2]))
     if far_off > FARTHEST:
         return f"the goal is {far_off * size:.0f} m away; {FARTHEST * size:g} m can be planned at once: give a goal on the way there first"
-    out = np.empty(3)
-    for shape in shapes:
-        there = distance(goal[0], goal[1], shape, out)
-        if there < clearance:
-            return f"the goal is {there * size:.2f} m from something, {clearance * size:.2f} m are needed" if there > 0.0 else "the goal lies in something"
-        if distance(start[0], start[1], shape, out) <= 0.0:
-            return "the walk starts within something"
-    return ""
+    if why := _unfit(goal, shapes, clearance, size):
+        return why
+    return "the walk starts within something" if any(distance(start[0], start[1], shape, np.empty(3)) <= 0.0 for shape in shapes) else ""
 
 
 def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, shapes, around, girth, top, finer: int = 1) -> None:

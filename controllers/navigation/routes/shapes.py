@@ -14,6 +14,9 @@ import numpy as np
 
 from ...compiled import kernel
 from ..obstacles import HEAD, STEP, is_box, is_pillar, ramp, span
+THIN = 0.001
+"""The end of the ground is a shape so thick [m], and no wall is."""
+
 
 
 def shapes_of(around: Sequence[Any], floor: float = 0.0) -> np.ndarray:
@@ -34,6 +37,11 @@ def shapes_of(around: Sequence[Any], floor: float = 0.0) -> np.ndarray:
         if high > floor + STEP and low < floor + HEAD:
             found.append(shape)
     return np.array(found, float).reshape(-1, 6)
+
+
+def ends_ground(shape: np.ndarray) -> bool:
+    """Whether a shape is no wall, but where the ground ends: one may stand nearer to it."""
+    return bool(shape[2] <= 0.5 * THIN and shape[5] <= 0.0)
 
 
 @kernel
