@@ -7,6 +7,7 @@ from gambol.controllers.contract import Goal, Intent, Leap
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.navigation.levels import journey, journeys, levels_of, named, next_leg
 from gambol.controllers.navigation.levels.run_up import start_of
+from gambol.controllers.navigation.planning import plan
 from gambol.controllers.navigation.routes import distance, shapes_of
 from gambol.controllers.person import person
 from gambol.game.scene import Box, Pillar
@@ -104,6 +105,19 @@ def test_why_no_leaps_lead_there_is_said():
     nobody = crossed(FAR, (0.0, 0.0), (0.0, 3.0), lambda leap: None, 0.6)
     assert not nobody.crossings and not nobody.reason
     assert not crossed(FAR, (0.0, 0.0), (0.5, 0.5), lambda leap: "", 0.6).crossings, "a walk leads there"
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), (0.0, 2.6, 0.4)])
+def test_goals_may_lie_near_an_edge_and_where_nobody_can_stand_is_said_first(someone, start):
+    """0.12 m from where the ground ends there is no wall. Beyond that nobody sets out, or leaps up to find out that he can't."""
+    x, z, floor = start
+    table, here = Box((0.0, 0.2, 3.0), (2.0, 0.4, 2.0)), someone.start((x, z, 0.0), floor)
+    near, beyond = (next_leg(someone, here, Goal((0.0, where)), (table,)) for where in (2.15, 2.06))
+    assert not near.reason and bool(near.crossings) == (floor == 0.0)
+    made = [plan((0.0, 2.6, 0.0), (*leg.place, 0.0), around=levels_of((table,)).stops(region(levels_of((table,)), 0.0, 2.5, 0.4)), floor=0.4).reason
+            for leg in (near._replace(place=np.array([0.0, 2.15])), beyond)]
+    assert made == ["", "the goal is 0.06 m from an edge, 0.12 m are needed"]
+    assert not beyond.crossings and (floor or beyond.reason == made[1])
 
 
 def going(someone, things, start, floor, goal, seconds=25.0):
