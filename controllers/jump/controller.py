@@ -18,8 +18,8 @@ from .crouching import Crouching, begun, crouched
 from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
-from .reach import SETS_FEET, Found, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, landed, on_ground, ready, rebounding, sets_feet, standing, start_of, stayed, turning
+from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
+from .starting import FEET, Jumping, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
@@ -80,7 +80,7 @@ class Jump(Reach, Controller):
             return HOLDS
         if intent.leap is None:
             return READY if intent.aim is not None and self._stands(state) and not self._sets_feet(state) else 0.0
-        return READY if ready(self.physique, state) else 0.0
+        return READY if ready(self.physique, state) and self._on_its_floor(state, intent.around) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,
@@ -141,7 +141,7 @@ class Jump(Reach, Controller):
             raise Refused("nobody asked for a jump")
         start, place, floor, here = self._meant(state, leap, intent.around)
         asked = start, place, floor, leap.airtime, intent.around
-        known = None if leap.how is None else self.again(leap.how, *asked)
+        known = self.again(leap.how, *asked) if isinstance(leap.how, How) else None
         if known is not None:
             return known
         looked = self.seen(*asked, parted)
@@ -349,6 +349,10 @@ class Jump(Reach, Controller):
     def _sets_feet(self, state: CharacterState) -> bool:
         """Whether it goes, and still has to set its feet before it crouches."""
         return not isinstance(state.memory, Jumping | Crouching) and sets_feet(self.physique, state)
+
+    def _on_its_floor(self, state: CharacterState, around: Sequence[Any]) -> bool:
+        """Whether it stands, or goes with its feet on one floor: nobody pushes off the air beyond an edge."""
+        return not around or self._stands(state) or on_its_floor(self.physique, self.start_of(state, around=around), float(level(state.floor)), around)
 
     def _stands(self, state: CharacterState) -> bool:
         """Whether it stands on both feet, and may crouch."""

@@ -170,6 +170,17 @@ def ready(physique: Physique, state: CharacterState) -> bool:
     return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH) and not _comes_down(physique, state)[start.single]
 
 
+def on_its_floor(physique: Physique, start: Start, floor: float, around: Sequence[Any]) -> bool:
+    """Whether feet that push come to stand on that floor [m], heel or ball: who goes over an edge has one of them beyond it."""
+    body, feet = physique.tables, start.planted(floor, physique.tables)
+    for side in (0, 1) if start.single is None else (start.single,):
+        ball, ahead = feet[side, :3], np.array([np.sin(feet[side, 3]), 0.0, np.cos(feet[side, 3])])
+        places = ball, ball + (body.heel[2] - body.toe[2]) * ahead
+        if all(floor_at(x, z, around, high + UP) < high - UP for (x, _, z), high in zip(places, floor + start.rise(np.array(places)))):
+            return False
+    return True
+
+
 def sets_feet(physique: Physique, state: CharacterState) -> bool:
     """Whether somebody on the move still has to set his feet: as they come to stand now, his legs would go through each other in a crouch. Where he moves, his
     gait sets them within a step or two; a runner pushes off one foot, and does not crouch."""

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import SETS_FEET, Crouching, Jumping, Physique
 from gambol.controllers.jump.starting import sets_feet
+from gambol.game.scene import Box
 
 from conftest import FPS, ahead
 
@@ -89,3 +91,19 @@ def test_who_stands_still_has_set_his_feet_however_they_stand(person):
     state = replace(person.active(led(person, *MIDST[0]))[1], contacts=np.ones(4, bool))
     assert sets_feet(Physique(), state)
     assert not sets_feet(Physique(), replace(state, velocity=np.zeros(3)))
+
+
+@pytest.mark.parametrize(("speed", "past"), [(0.8, 1.20), (0.8, 1.26), (2.4, 1.38)])
+def test_nobody_pushes_off_the_air_beyond_an_edge(person, speed, past):
+    """Who is about to step off a low platform leaps once feet that push stand on one floor: a foot beyond the edge was lifted by 9 cm in a step."""
+    kerb, state, wish = (Box((0.0, 0.1, 0.0), (3.0, 0.2, 3.0)),), person.start((0.0, -1.2, 0.0), 0.2), None
+    joints, velocity = [], np.array([speed, 0.0, 0.0])
+    for _ in range(4 * FPS):
+        if state.ground[1] > past:
+            wish = Leap(np.array([0.0, 0.0, state.ground[1] + 0.6 + 0.5 * speed]))
+        state, pose = person.step(state, Intent(velocity, wish, around=kerb), 1 / FPS)
+        joints.append(forward_kinematics(person.skeleton, pose.root, pose.rotations)[0])
+        if isinstance(state.memory.memory, Jumping):
+            break
+    assert isinstance(state.memory.memory, Jumping)
+    assert np.linalg.norm(np.diff(joints[-3:], 2, axis=0), axis=-1).max() * FPS**2 < 250
