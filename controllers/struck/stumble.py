@@ -23,6 +23,9 @@ LOWERS = 0.09
 """Who is thrown goes down by this [m], at standard height, for each m/s (recorded: 0.06 … 0.13)."""
 LIFTS = 0.045, 0.05
 """A foot swings so high [m] and higher by this share of how far it goes."""
+SOFTLY = 8.0
+"""In the midst of its swing a leg is straightened so many times as softly as one that pushes a jump off, as `planted_pose.leg_kernel` has it: a knee that is stretched or bent as fast as
+such a foot goes would be thrown."""
 CLEARS = 0.6
 """… and by this share of how far it steps up or down: past the edge of the tread."""
 CROSSED, CROSSING = 0.6, 0.12
@@ -116,6 +119,7 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
         gone[:, 1] = np.maximum(gone[:, 1], low + body.sole + lower)
         levels[first:, side] = step[6]
         feet[flight, side, :5] = gone
+        feet[flight, side, 5] += SOFTLY * up
         standing[first:last, side] = False
         feet[last:, side, :5], standing[last:, side] = end, True
     return feet, standing, levels

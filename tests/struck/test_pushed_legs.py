@@ -64,6 +64,20 @@ def test_no_knee_leaps_as_runners_are_struck():
     assert stepped > 8
 
 
+@pytest.mark.parametrize(("speed", "moment", "change"), [(1.0, 0, (0.0, -2.0)), (3.0, 30, (1.4, -1.4))])
+def test_no_knee_is_thrown_as_its_leg_stretches_in_its_swing(speed, moment, change):
+    somebody, wish = person(), np.array([speed, 0.0, 0.0])
+    state = somebody.start()
+    for _ in range(180 + moment):
+        state, _ = somebody.step(state, Intent(wish), DT)
+    poses = []
+    for n in range(30):
+        state, pose = somebody.step(state, Intent(wish, strike=None if n else Strike(tuple(BODY.mass * np.array(change)))), DT)
+        poses.append(pose)
+    joints = forward_kinematics(somebody.skeleton, np.stack([pose.root for pose in poses]), np.stack([pose.rotations for pose in poses]))[0]
+    assert np.linalg.norm(np.diff(joints - joints[:, :1], 2, axis=0), axis=-1).max() / DT**2 < 400.0
+
+
 def way(begin, end, own, shares):
     """A foot's way (K, 2) left, ahead [m] past a foot at 0 of a body that faces along z."""
     out, begin, end = np.empty(2), np.array(begin), np.array(end)
