@@ -24,8 +24,8 @@ LOWERS = 0.09
 LIFTS = 0.045, 0.05
 """A foot swings so high [m] and higher by this share of how far it goes."""
 SOFTLY = 8.0
-"""In the midst of its swing a leg is straightened so many times as softly as one that pushes a jump off, as `planted_pose.leg_kernel` has it: a knee that is stretched or bent as fast as
-such a foot goes would be thrown."""
+"""In the midst of its swing a leg straightens so many times as softly as one that pushes a jump off (`planted_pose.SOFT`): a knee that is stretched as fast as such
+a foot goes would be thrown as it comes to its end."""
 CLEARS = 0.6
 """… and by this share of how far it steps up or down: past the edge of the tread."""
 CROSSED, CROSSING = 0.6, 0.12
