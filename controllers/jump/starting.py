@@ -197,13 +197,15 @@ def sets_feet(physique: Physique, state: CharacterState) -> bool:
 
 
 def _feet(skeleton: Skeleton, positions: np.ndarray, turned: np.ndarray) -> np.ndarray:
-    """The feet (2, 5) of a placed body: balls, yaw, pitch."""
+    """The feet (2, 5) of a placed body: balls, yaw, pitch. Yaw is where a foot points that is turned level about its own x axis: a runner's heel comes up until toes point down
+    and back, and where those point turns round then."""
     feet = np.zeros((2, 5))
     for side, name in enumerate(("Left", "Right")):
         foot = turned[skeleton.index(name + "Foot")]
         feet[side, :3] = positions[skeleton.index(name + "Toe")]
-        feet[side, 3] = np.arctan2(foot[0, 2], foot[2, 2])
-        feet[side, 4] = np.arcsin(np.clip(-foot[1, 2], -1.0, 1.0))
+        pitch = np.arctan2(-foot[1, 2], foot[1, 1])
+        ahead = foot[:, 2] * np.cos(pitch) + foot[:, 1] * np.sin(pitch)
+        feet[side, 3:] = np.arctan2(ahead[0], ahead[2]), pitch
     return feet
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..body import yaw
-from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
+from ..body import forward_kinematics, wrap, yaw
+from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, swivelled_kernel, turns, vectors
 from ..jump.motion import FADE, faded, ground_kernel
 from .capture import DROPS, Way
 from .passing import out_of_way, past_kernel
@@ -23,6 +23,9 @@ LOWERS = 0.09
 """Who is thrown goes down by this [m], at standard height, for each m/s (recorded: 0.06 … 0.13)."""
 LIFTS = 0.045, 0.05
 """A foot swings so high [m] and higher by this share of how far it goes."""
+SOFTLY = 8.0
+"""In the midst of its swing a leg straightens so many times as softly as one that pushes a jump off (`planted_pose.SOFT`): a knee that is stretched as fast as such
+a foot goes would be thrown as it comes to its end."""
 CLEARS = 0.6
 """… and by this share of how far it steps up or down: past the edge of the tread."""
 CROSSED, CROSSING = 0.6, 0.12
@@ -52,6 +55,8 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     times = np.arange(len(way.centre)) / RATE
     feet, standing, levels = _feet(start, way, free, body, times)
     centres, velocities = _centres(physique, start, way, feet, standing, levels, times)
+    feet = np.concatenate([feet, np.zeros((len(times), 2, 3))], -1)  # the ground is level where one was struck
+    feet[..., 8] = _swivelled(physique, start, times)
     angles, aside = _carriage(start, way, response, times, (height / size - 1.0) / (CHEST - 1.0))
     offsets, turned = _left_over(physique, start, angles[0], times)
     joints = carriage.joints_of(physique.skeleton)
@@ -114,6 +119,7 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
         gone[:, 1] = np.maximum(gone[:, 1], low + body.sole + lower)
         levels[first:, side] = step[6]
         feet[flight, side, :5] = gone
+        feet[flight, side, 5] += SOFTLY * up
         standing[first:last, side] = False
         feet[last:, side, :5], standing[last:, side] = end, True
     return feet, standing, levels
@@ -196,6 +202,17 @@ def _carriage(start: Start, way: Way, response: np.ndarray, times: np.ndarray, h
     angles[:, 10] += 0.6 * spread
     angles[:, :2] = carriage.STAND[:2] + (angles[:, :2] - carriage.STAND[:2]) * (0.4 + 0.6 * lean)
     return angles, aside
+
+
+def _swivelled(physique: Physique, start: Start, times: np.ndarray) -> np.ndarray:
+    """What is left (N, 2) [rad] of how far the knees were turned about their legs from where they point of themselves."""
+    was = []
+    for ago in (0.0, 1.0 / RATE):
+        local = turns(-ago * start.rates) @ start.rotations
+        placed = forward_kinematics(physique.skeleton, np.zeros(3), local)
+        was.append([swivelled_kernel(physique.tables, side, start.feet[side, 3] - ago * start.feet_rates[side, 3], *placed) for side in range(2)])
+    now, before = np.array(was)
+    return faded(now, wrap(now - before) * RATE, FADE, times)
 
 
 def _left_over(physique: Physique, start: Start, angles: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

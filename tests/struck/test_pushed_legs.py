@@ -7,6 +7,7 @@ from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent, Strike
 from gambol.controllers.jump import Physique
 from gambol.controllers.person import person
+from gambol.controllers.struck import STEPS
 from gambol.controllers.struck.passing import legs_apart, length_kernel, out_of_way, past_kernel
 
 DT, WISH = 1 / 60, np.array([1.4, 0.0, 0.0])
@@ -38,6 +39,43 @@ def test_no_leg_goes_through_the_other_of_who_is_pushed_aside(walks, side, gaine
         assert legs_apart(somebody.skeleton, roots, turns) > 0.04
         ankles = forward_kinematics(somebody.skeleton, roots, turns)[0][:, [somebody.skeleton.index(name) for name in ("LeftFoot", "RightFoot")]]
         assert np.linalg.norm(np.diff(ankles, axis=0), axis=-1).max() / DT < 13.0
+
+
+def test_no_knee_leaps_as_runners_are_struck():
+    """From any moment of a stride, heels behind the buttocks, too, joints go on from where they are; seen from the hips, and no harder than in the steps that follow."""
+    somebody, run = person(), np.array([3.2, 0.0, 0.0])
+    state, stepped = somebody.start(), 0
+    for n in range(212):
+        state, _ = somebody.step(state, Intent(run), DT)
+        if n < 170 or n % 2:
+            continue
+        for change in ((0.0, -1.4), (1.0, -1.0), (-1.0, -1.0)):
+            now, poses = state, [state.previous, state.pose]
+            for after in range(5):
+                now, pose = somebody.step(now, Intent(run, strike=None if after else Strike(tuple(BODY.mass * np.array(change)))), DT)
+                poses.append(pose)
+            if now.active != "struck":
+                continue
+            stepped += now.memory.memory.made.fate == STEPS
+            joints = forward_kinematics(somebody.skeleton, np.stack([pose.root for pose in poses]), np.stack([pose.rotations for pose in poses]))[0]
+            joints = joints - joints[:, :1]
+            assert np.linalg.norm(np.diff(joints, axis=0), axis=-1).max() < 0.17
+            assert np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1).max() / DT**2 < 300.0
+    assert stepped > 8
+
+
+@pytest.mark.parametrize(("speed", "moment", "change"), [(1.0, 0, (0.0, -2.0)), (3.0, 30, (1.4, -1.4))])
+def test_no_knee_is_thrown_as_its_leg_stretches_in_its_swing(speed, moment, change):
+    somebody, wish = person(), np.array([speed, 0.0, 0.0])
+    state = somebody.start()
+    for _ in range(180 + moment):
+        state, _ = somebody.step(state, Intent(wish), DT)
+    poses = []
+    for n in range(30):
+        state, pose = somebody.step(state, Intent(wish, strike=None if n else Strike(tuple(BODY.mass * np.array(change)))), DT)
+        poses.append(pose)
+    joints = forward_kinematics(somebody.skeleton, np.stack([pose.root for pose in poses]), np.stack([pose.rotations for pose in poses]))[0]
+    assert np.linalg.norm(np.diff(joints - joints[:, :1], 2, axis=0), axis=-1).max() / DT**2 < 400.0
 
 
 def way(begin, end, own, shares):

@@ -9,7 +9,7 @@ from .curves import hermite, monotone
 from .dynamics import (GRAVITY, MASS, BodyTables, Physique, centre_kernel, mass_of, momentum_kernel, parts_kernel, place_kernel, turns,
                        vectors)
 from .sloped_feet import LEVEL, landing_feet, raised, rise, soles, standing, striding_feet, uphill
-from .planted_pose import bend_kernel, nearest_kernel, stand_kernel
+from .planted_pose import bend_kernel, nearest_kernel, stand_kernel, swivelled_kernel
 from .start import (FLAT, FOOT_FADE, HEEL_UP, TAKE_OFF_REACH, TOES_DOWN, TOUCH_REACH, TRAIL, TURNED, Measures, Start, airtime_up, carried, measures,
                     over, stretched)
 
@@ -18,5 +18,5 @@ __all__ = [
     "Measures", "Physique", "Start", "airtime_up", "along", "apex_airtime", "bend_kernel", "carriage", "carried", "centre_kernel", "flat_feet",
     "frame", "hermite", "landing_feet", "least_effort", "mass_of", "measures", "momentum_kernel", "monotone", "nearest_kernel",
     "over", "parts_kernel", "place_kernel", "pose_kernel", "raised", "rise", "soles", "stand_kernel", "stand_pelvis_kernel", "standing", "stretched", "striding_feet",
-    "support_kernel", "take_off_velocity", "turns", "uphill", "vectors",
+    "support_kernel", "swivelled_kernel", "take_off_velocity", "turns", "uphill", "vectors",
 ]

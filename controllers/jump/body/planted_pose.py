@@ -19,6 +19,8 @@ STRAIGHT = 0.992
 SOFT = 0.012
 """A leg that pushes straightens ever slower from so much of its length before that on, and its heel rises instead: near the end a knee would have to
 turn infinitely fast."""
+HINGE = 0.02
+"""Where a knee points that is off the line from hip to ankle by less than this share of its leg is told by its hinge rather than by its place."""
 GAIN = 1.0 / 0.82
 """How far the pelvis moves for what the centre of mass lacks: part of the legs stays behind."""
 
@@ -75,12 +77,51 @@ def nearest_kernel(body, hip, foot):
 
 
 @kernel
+def pole_kernel(body, side, yaw, positions, orientations, out):
+    """Write whither (3,) a knee points of itself: between pelvis and a foot that points along `yaw` [rad]."""
+    hip = body.hip[side]
+    for i in range(3):
+        out[i] = orientations[0, i, 2] + 0.5 * (positions[hip, i] - positions[0, i])
+    out[0] += 1.5 * math.sin(yaw)
+    out[2] += 1.5 * math.cos(yaw)
+
+
+@kernel
+def across_kernel(axis, vector):
+    """Take out of a vector (3,) what of it is along an axis (3,) of length 1."""
+    along = axis[0] * vector[0] + axis[1] * vector[1] + axis[2] * vector[2]
+    for i in range(3):
+        vector[i] -= along * axis[i]
+
+
+@kernel
+def swivel_kernel(hip, ankle, angle, pole):
+    """Turn a pole (3,) about the line from hip to ankle (3,) by an angle [rad]; what of it is along that is left out."""
+    axis = (ankle - hip) / distance_kernel(hip, ankle)
+    across_kernel(axis, pole)
+    pole[:] = math.cos(angle) * pole + math.sin(angle) * np.cross(axis, pole)
+
+
+@kernel
+def swivelled_kernel(body, side, yaw, positions, orientations):
+    """How far [rad] the knee of a placed body is turned about the line from hip to ankle from where it points of itself over a foot that points along `yaw` [rad]."""
+    hip, pole = body.hip[side], np.empty(3)
+    axis = (positions[hip + 2] - positions[hip]) / distance_kernel(positions[hip + 2], positions[hip])
+    pole_kernel(body, side, yaw, positions, orientations, pole)
+    knee = positions[hip + 1] - positions[hip] + HINGE * (body.thigh + body.shank) * np.cross(axis, orientations[hip, :, 0])
+    across_kernel(axis, pole)
+    across_kernel(axis, knee)
+    return math.atan2((axis * np.cross(pole, knee)).sum(), (pole * knee).sum())
+
+
+@kernel
 def leg_kernel(body, side, foot, flex, local, positions, orientations):
     """Pose one leg so that its foot is where `foot` (6,) or, on a slope, (8,) says, see `lying_kernel`; the hip's placement is known.
 
     A planted heel (foot[5] > 0) rises where the leg is too short or the ankle would bend beyond
     `flex` [rad]; foot[4] then becomes the pitch that this needs. A leg whose foot[5] is 2 straightens softly, see SOFT; one whose is 1
-    does not. Returns how far the ankle is from where it should be [m].
+    does not. foot[8], where there is one: how far the knee is turned about the line from hip to ankle from where it points of itself [rad].
+    Returns how far the ankle is from where it should be [m].
     """
     hip = body.hip[side]
     knee, ankle, ball = hip + 1, hip + 2, hip + 3
@@ -109,8 +150,9 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
             foot[4] = high
             lying_kernel(foot, high, turned)
             ankle_kernel(body, foot, turned, at)
-        for i in range(3):  # knees point between pelvis and foot
-            pole[i] = pelvis[i, 2] + 1.5 * heading[i] + 0.5 * (positions[hip, i] - positions[0, i])
+        pole_kernel(body, side, foot[3], positions, orientations, pole)
+        if foot.shape[0] > 8 and foot[8] != 0.0:
+            swivel_kernel(root, at, foot[8], pole)
         two_bone_kernel(root, body.thigh, body.shank, at, pole, (1.0 - STRAIGHT) * (body.thigh + body.shank),
                         positions[knee], positions[ankle])
         _frames(positions[hip], positions[knee], positions[ankle], pole, orientations[hip], orientations[knee])
@@ -122,7 +164,7 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
         excess = -flex - math.atan2(sine, cosine)
         if foot[5] <= 0.0 or excess < 1e-4:
             break
-        foot[4] = min(foot[4] + 1.05 * excess, 1.25)
+        foot[4] = max(foot[4], min(foot[4] + 1.05 * excess, 1.25))
     orientations[ankle] = turned
     gap = distance_kernel(positions[ankle], at)
     for i in range(3):
