@@ -63,7 +63,7 @@ def hold_kernel(memory, floors, walls):
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
         rate[0], rate[1] = velocity[0], velocity[1]
-        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], velocity, NEAR, LAG, BRAKE, BACK, LEAPT if m.alert else STEP):
+        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], velocity, NEAR, LAG, BRAKE, BACK, LEAPT if m.alert else STEP):
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
             # nor does what is under way go on towards it
             x, z = velocity[0] - rate[0], velocity[1] - rate[1]
@@ -81,6 +81,6 @@ def beyond_kernel(memory, before, floors, walls, shifts):
     found = False
     for n in range(memory.shape[0]):
         m = memory[n]
-        if out_kernel(walls, m.ground[0], m.ground[1], floors[n], before[n], NEAR - GIVES, shifts[n], LEAPT if m.alert else STEP):
+        if out_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], before[n], NEAR - GIVES, shifts[n], LEAPT if m.alert else STEP):
             found = True
     return found

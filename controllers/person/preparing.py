@@ -144,7 +144,7 @@ def things(walker: Locomotion) -> None:
     for thing in (BOX, POST):
         gap(np.zeros((1, 3)), thing)
     walls = walls_of((BOX, POST))
-    slow_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 0.0, 1.0, 0.0)
+    slow_kernel(walls, 0.0, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 0.0, 1.0, 0.0)
     way_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 1.0, np.empty(3))
     follow(Path(np.array([[0.0, 0.0], [0.0, 1.0]])), np.zeros(3), np.float64(0.0), 1.0)
     grounds = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

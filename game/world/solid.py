@@ -46,7 +46,7 @@ def stopped(state: CharacterState, intent: Intent, around: Sequence[Any]) -> Int
             return _told(intent, heading, np.zeros(2), halt)
         lag, brake, halt = LATER, HARDER, np.array([x + far * velocity[0] / speed, z + far * velocity[1] / speed, math.nan])
     slowed = velocity.copy()
-    if slow_kernel(walls, x, z, floor, slowed, NEAR + SPARE, lag, brake, 0.0):
+    if slow_kernel(walls, x, z, floor, heading, slowed, NEAR + SPARE, lag, brake, 0.0):
         return _told(intent, heading, slowed, halt) if far is not None else _aside(_told(intent, heading, slowed, halt), velocity, slowed)
     return intent if halt is intent.halt else but(intent, halt=halt)
 

@@ -106,9 +106,9 @@ def test_what_it_leads_up_to_holds_up_nobody_who_walks_up(size):
     walls, out, velocity = walls_of((ramp(high, length), landing, down)), np.empty(3), np.array([0.0, 3.0])
     for z in np.linspace(-ahead - 0.5, ahead - 0.01, 20):
         floor = max((z + ahead) * high / length, 0.0)
-        assert not slow_kernel(walls, 0.0, z, floor, velocity, NEAR, 0.1, 6.0, 0.3)
+        assert not slow_kernel(walls, 0.0, z, floor, 0.0, velocity, NEAR, 0.1, 6.0, 0.3)
         assert way_kernel(walls, 0.0, z, floor, np.array([0.0, 1.0]), NEAR, 6.0, out) == 6.0
-    assert slow_kernel(walls, 0.5 * WIDE + 0.3, ahead + 0.5, 0.0, np.array([-3.0, 0.0]), NEAR, 0.1, 6.0, 0.3)
+    assert slow_kernel(walls, 0.5 * WIDE + 0.3, ahead + 0.5, 0.0, 0.0, np.array([-3.0, 0.0]), NEAR, 0.1, 6.0, 0.3)
 
 
 @settings(max_examples=100, deadline=None)

@@ -20,6 +20,8 @@ STEP, HEAD = 0.30, 1.7
 """What is no higher over the floor is stepped on, by a child of 1.2 m 20 cm; what hangs higher is walked under [m]."""
 NEAR = 0.18
 """How near to its middle a body of usual size lets walls come [m]."""
+ASKEW = 0.09
+"""… and so much less near who goes askew to one, one leg on its side: his feet pass each other there [m]."""
 EDGE = 0.04
 """Right before something is so far from it [m]."""
 CRACK = 0.1
@@ -86,14 +88,21 @@ def wall_kernel(walls, k, x, z, floor, bound, out, least=STEP):
 
 
 @kernel
-def slow_kernel(walls, x, z, floor, velocity, near, lag, brake, back, least=STEP):
+def near_kernel(near, heading, out):
+    """How near [m] walls come to somebody in a heading [rad] whom they come as near as that when he faces them or has them beside him. out: (3,) as `distance` has it."""
+    s, c = math.sin(heading), math.cos(heading)
+    return near + ASKEW * (2.0 * (s * out[0] + c * out[1]) * (c * out[0] - s * out[1])) ** 2
+
+
+@kernel
+def slow_kernel(walls, x, z, floor, heading, velocity, near, lag, brake, back, least=STEP):
     """Take from a velocity (2,) along x and z [m/s] what goes towards a wall faster than somebody can brake who begins to after `lag` [s] and brakes with
-    `brake` [m/s²], so that his middle comes no nearer than `near` [m]; whether anything was. back: so fast is led away [m/s] who is too near already; least: what is no higher over the floor [m] holds nobody up."""
+    `brake` [m/s²], so that his middle comes no nearer than `near` [m], see `near_kernel`; whether anything was. back: so fast is led away [m/s] who is too near already; least: what is no higher over the floor [m] holds nobody up."""
     out, slowed = np.empty(3), False
     for _ in range(PASSES):
         for k in range(walls.shape[0]):
             far = distance(x, z, walls[k, :6], out)
-            room = far - near
+            room = far - near_kernel(near, heading, out)
             allowed = brake * (math.sqrt(lag * lag + 2.0 * room / brake) - lag) if room > 0.0 else max(room / lag, -back)
             over = -velocity[0] * out[0] - velocity[1] * out[1] - allowed
             if over > 1e-9 and wall_kernel(walls, k, x, z, floor, math.inf, out, least) < math.inf:
@@ -129,17 +138,18 @@ def way_kernel(walls, x, z, floor, ahead, near, most, out):
 
 
 @kernel
-def out_kernel(walls, x, z, floor, since, near, shift, least=STEP):
-    """Write how far (2,) x, z [m] somebody has to be moved so that no wall is nearer to his middle than `near` [m], or than it was before, at `since` (2,);
+def out_kernel(walls, x, z, floor, heading, since, near, shift, least=STEP):
+    """Write how far (2,) x, z [m] somebody has to be moved so that no wall is nearer to his middle than `near` [m], see `near_kernel`, or than it was before, at `since` (2,);
     whether he has to be. least: what is no higher over the floor [m] holds nobody up."""
     out, was, moved = np.empty(3), np.empty(3), False
     shift[0] = shift[1] = 0.0
     for _ in range(PASSES):
         for k in range(walls.shape[0]):
-            far = wall_kernel(walls, k, x + shift[0], z + shift[1], floor, near, out, least)
-            if far >= near:
+            far = wall_kernel(walls, k, x + shift[0], z + shift[1], floor, near + ASKEW, out, least)
+            keeps = near_kernel(near, heading, out)
+            if far >= keeps:
                 continue
-            missing = min(near, distance(since[0], since[1], walls[k, :6], was)) - far
+            missing = min(keeps, distance(since[0], since[1], walls[k, :6], was)) - far
             if missing > 0.0:
                 shift[0] += missing * out[0]
                 shift[1] += missing * out[1]
