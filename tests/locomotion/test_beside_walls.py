@@ -1,5 +1,7 @@
 """Feet beside what is too high to step on: they come down before it, and swing past it."""
 
+import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -10,10 +12,13 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent
-from gambol.controllers.locomotion.beside_walls import BESIDE, out_of_walls
+from gambol.controllers.locomotion.beside_walls import BESIDE, MOST, out_of_walls
 from gambol.controllers.locomotion.tops import tops
 from gambol.controllers.navigation import gap
 from gambol.controllers.navigation.passing import STEP
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
+from _limbs import legs_apart  # noqa: E402
 
 FPS = 60
 NEAR = st.floats(-1.0, 1.0)
@@ -56,6 +61,21 @@ def test_a_foot_is_led_out_to_its_bodys_side(wide, deep, heading, x, z, aside, a
     c, s = np.cos(heading), np.sin(heading)
     local = np.abs(np.stack([c * led[:, 0] - s * led[:, 1], s * led[:, 0] + c * led[:, 1]], -1))
     assert (local >= 0.5 * np.array([wide, deep]) + BESIDE - 1e-9).any(-1).all()
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.floats(0.02, 0.4), st.floats(4.0, 9.0), st.floats(-3.0, 3.0), st.floats(0.2, 0.5), st.floats(-1.0, 1.0), st.floats(0.05, 0.7), st.floats(-3.0, 3.0))
+def test_a_foot_goes_back_from_a_long_wall_and_never_along_it(thick, long, heading, before, along, ahead, points):
+    """Wherever it was to come down within the wall or beyond it: to the body's side by no farther than it was over, and not aside."""
+    c, s = np.cos(heading), np.sin(heading)
+    turned = np.array([[c, -s], [s, c]])  # places in the wall's frame to x, z
+    line = (np.array([along, ahead]) + np.outer([0.0, 0.175, 0.27], [np.sin(points), np.cos(points)])) @ turned
+    led = pushed(body(*(np.array([along, -before - 0.5 * thick]) @ turned)), (box((0.0, 1.0, 0.0), (long, 2.0, thick), heading),), line)
+    moved = (led - line) @ turned.T
+    over = (line @ turned.T)[:, 1].max() + 0.5 * thick + BESIDE
+    if over < MOST:
+        assert (led @ turned.T)[:, 1].max() <= -0.5 * thick - BESIDE + 1e-9
+    assert np.abs(moved[:, 0]).max() < 1e-9 and -over - 1e-9 <= moved[0, 1] <= 0.0
 
 
 @pytest.mark.parametrize("high", (0.1, STEP))
@@ -103,3 +123,18 @@ def test_who_turns_and_steps_close_by_keeps_his_feet_out_of_it(locomotion, thing
         locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float)))
     deep = -gap(points.reshape(-1, 3), thing).reshape(points.shape[:-1])
     assert deep.max() < 0.03 and np.mean(deep.max(1) > 0.01) < 0.005, (deep.max(), np.mean(deep.max(1) > 0.01))
+
+
+@pytest.mark.parametrize(("angle", "speed"), [(85, 0.8), (70, 0.8), (55, 1.4), (40, 0.8), (25, 1.4)])
+def test_who_comes_to_a_wall_askew_keeps_his_legs_apart(locomotion, angle, speed):
+    """They went through each other, and one was thrown across the other, as high as the hips."""
+    wall, turned = (box((0.0, 1.0, 3.0), (8.0, 2.0, 0.3)),), np.radians(90.0 - angle)
+    state, poses = locomotion.start((-1.6 * np.sin(turned), 2.7 - 1.6 * np.cos(turned), turned)), []
+    for _ in range(200):
+        state, pose = locomotion.step(state, Intent(np.array([speed, 0.0, 0.0]), around=wall), 1 / FPS)
+        poses.append(pose)
+    roots, rotations = np.stack([pose.root for pose in poses]), np.stack([pose.rotations for pose in poses])
+    assert legs_apart(locomotion.skeleton, roots, rotations).min() > 0.03
+    joints, _ = forward_kinematics(locomotion.skeleton, roots, rotations)
+    assert np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1).max() * FPS**2 < 300
+    assert joints[:, [locomotion.skeleton.index(side + "Foot") for side in ("Left", "Right")], 1].max() < 0.35
