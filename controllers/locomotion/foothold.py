@@ -96,8 +96,11 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt
         wanted_x, wanted_z = m.land[foot, 0], m.land[foot, 1]
         _beside(m, body, foot, ahead, m.turn == 0.0 or not m.spot)
         step_first(m, foot, math.hypot(m.land[foot, 0] - wanted_x, m.land[foot, 1] - wanted_z))
-        if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0 and flat:
-            _still_reached(m, foot, x, z, ahead.until[foot], dt)
+        if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0:
+            if flat:
+                _still_reached(m, foot, x, z, ahead.until[foot], dt)
+        elif left < 0.5 * swing:  # it touches down where it is
+            m.land[foot, 0], m.land[foot, 1] = x, z
 
 
 @kernel

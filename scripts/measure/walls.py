@@ -20,7 +20,7 @@ from _limbs import legs_apart
 from gambol.controllers.body import forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.jump import Physique
-from gambol.controllers.navigation.obstacles import gap
+from gambol.controllers.navigation import gap
 from gambol.controllers.person import person
 from gambol.game.scene import Box
 from gambol.game.world import stopped
