@@ -1,11 +1,11 @@
 """Play the whole game by random hands: walk, run, leap, be pushed, be sent to places, among what stands about; and look at the body in every step.
 
-    python scripts/measure/hands.py [--minutes 4] [--seed 0] [--stage course yard] [--pictures DIR]
+    python scripts/measure/hands.py [--minutes 4] [--seed 0] [--stage course yard rooms] [--pictures DIR]
 
 Hands do what players do: head for a thing or away from it on eight keys or a stick, run or walk, tap and hold the leap's key, let go of all keys, step aside, turn on
 the spot, click at places, push. Nothing is asked of the controllers but the final pose: how deep flesh is in things and in the ground, how far soles slide that
-touch it, whether a body in the air is pushed by nothing, how hard joints are thrown, by who moves the body, and about hand-overs. The worst moments are told by
-their seconds; --pictures draws them, five a row, 0.2 s apart in all.
+touch it, whether a body in the air is pushed by nothing, how hard joints are thrown, how near the axes of legs come to each other, by who moves the body, and about hand-overs. The worst moments are told by
+their seconds; --pictures draws them, five a row, 0.2 s apart in all. The rooms are another one for each seed: walls, boxes, kerbs, ramps and pillars at random.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game ha
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
+from _limbs import legs_apart
 from gambol.controllers.body import anatomy, centre_of_mass, forward_kinematics
 from gambol.controllers.navigation import gap
 from gambol.controllers.person import person
@@ -38,7 +39,10 @@ YARD: tuple[Prop, ...] = (
     Box((0.5, 0.06, 4.0), (2.0, 0.12, 2.0)), Box((3.2, 0.2, 3.0), (2.0, 0.4, 0.2)), Box((3.2, 0.15, 5.5), (1.2, 0.3, 1.2), 0.5),
     Pillar((1.5, 0.0, 1.5), 0.2, 2.2), Pillar((-0.8, 0.0, 2.6), 0.25, 2.2), Box((0.0, 1.0, 7.5), (4.0, 2.0, 0.2)), Box((5.2, 0.4, 6.0), (1.5, 0.8, 2.5)))
 """Stairs to a platform, a kerb, a hurdle, low and high boxes, pillars, a wall."""
-STAGES = {"course": COURSE, "yard": YARD}
+THINGS, WITHIN, APART, CLEAR = 24, 4.5, 0.45, 1.0
+"""So many things are tried for a room, no farther from its middle on each side [m]; those that are so near to another, or to where somebody begins [m], are left out."""
+CROSS = 0.04
+"""Legs whose axes are nearer than this to each other [m] go through each other."""
 WHO = "walks", "leaps", "is struck", "changes"
 """Who moves the body; "changes": within CHANGE of a hand-over."""
 CHANGE = 0.1
@@ -46,6 +50,28 @@ NEAR, TOUCHES, ALOFT = 1.5, 0.006, 0.02
 """Things are looked at that are nearer to the pelvis than this; soles touch what is nearer, a body is in the air where nothing is nearer [m]."""
 SLIDES, LASTS = 0.3, 4
 """A sole all of whose touching places are faster than this [m/s] for so many frames slides: a strike is shorter."""
+
+
+def room(seed: int) -> tuple[Prop, ...]:
+    """Walls, boxes, kerbs, ramps and pillars as a seed has them."""
+    rng, found = np.random.default_rng(seed), []
+    for _ in range(THINGS):
+        kind, heading = rng.choice(["wall", "box", "kerb", "pillar", "ramp"], p=[0.25, 0.2, 0.2, 0.15, 0.2]), rng.uniform(-np.pi, np.pi)
+        x, z = rng.uniform(-WITHIN, WITHIN, 2)
+        if kind == "pillar":
+            radius = rng.uniform(0.05, 0.4)
+            thing, reach = Pillar((x, 0.0, z), radius, rng.uniform(0.5, 2.5)), radius
+        else:
+            wide, high, deep = {"wall": (rng.uniform(1.0, 4.0), 2.0, rng.uniform(0.08, 0.5)), "box": (*rng.uniform(0.4, 2.0, 2), rng.uniform(0.4, 2.0)),
+                                "kerb": (rng.uniform(0.4, 2.5), rng.uniform(0.05, 0.2), rng.uniform(0.4, 2.5)), "ramp": (rng.uniform(1.0, 2.0), 1.0, rng.uniform(1.5, 3.0))}[kind]
+            high, slope = (0.6 * high, 0.0) if kind == "box" else (high, rng.uniform(0.1, 0.3) if kind == "ramp" else 0.0)
+            thing, reach = Box((x, 0.5 * high - (0.0 if not slope else 1.0 - 0.5 * slope * deep), z), (wide, high, deep), heading, slope=slope), 0.5 * float(np.hypot(wide, deep))
+        if np.hypot(x, z) > reach + CLEAR and all(np.hypot(x - a, z - b) > reach + far + APART for _, a, b, far in found):
+            found.append((thing, x, z, reach))
+    return tuple(thing for thing, *_ in found)
+
+
+STAGES = {"course": lambda seed: COURSE, "yard": lambda seed: YARD, "rooms": room}
 
 
 def deeds(rng: np.random.Generator, things: Sequence[Prop]) -> Iterator[tuple[str, float, tuple[float, float], dict[str, Any]]]:
@@ -139,6 +165,11 @@ class Body:
         return np.linalg.norm(_second(self.placed[0]), axis=-1)
 
     @cached_property
+    def legs(self) -> np.ndarray:
+        """How far (T,) the axes of both legs are apart [m]."""
+        return legs_apart(self.who.skeleton, [s.pose.root for s in self.states], [s.pose.rotations for s in self.states])
+
+    @cached_property
     def unsupported(self) -> np.ndarray:
         """What pushes (T,) a mass centre of whom nothing touches [m/s²]."""
         free = (self.flesh[1].min(1) > ALOFT).astype(int)
@@ -186,8 +217,9 @@ def report(body: Body, did: Sequence[str]) -> dict[str, list[tuple[int, float]]]
         if now.any():
             print(f"    {name:10} {now.mean():4.0%}: flesh in things > 2 cm {np.mean(deep[now] > 2.0):6.2%}, > 5 cm {np.mean(deep[now] > 5.0):6.2%}, worst {deep[now].max():4.1f} cm · "
                   f"soles slide {np.mean(slides[now] > SLIDES):5.2%} · joints {np.percentile(pulls[now], 99):.0f} m/s² (99 %), {np.percentile(pulls[now], 99.9):.0f} (99.9 %), worst {pulls[now].max():.0f} · "
+                  f"legs nearer than {100 * CROSS:g} cm {np.mean(body.legs[now] < CROSS):5.2%}, at least {100 * body.legs[now].min():.1f} cm · "
                   f"pushed in the air by > 2 m/s² {np.mean(body.unsupported[now] > 2.0):5.2%}, worst {body.unsupported[now].max():.0f}")
-    kinds = {"flesh in things [cm]": deep, "soles slide [m/s]": slides, "joints thrown [m/s²]": pulls, "pushed by nothing [m/s²]": body.unsupported}
+    kinds = {"flesh in things [cm]": deep, "soles slide [m/s]": slides, "joints thrown [m/s²]": pulls, "legs in each other [cm]": 100.0 * (CROSS - body.legs), "pushed by nothing [m/s²]": body.unsupported}
     found = {}
     for kind, values in kinds.items():
         found[kind] = [(k, float(values[k])) for k in worst(values, 6)]
@@ -238,8 +270,9 @@ def main() -> None:
     asked = parser.parse_args()
     for name in asked.stage:
         print(f"On the {name}, seed {asked.seed}:", flush=True)
-        who, states, did = played(STAGES[name], asked.seed, round(60 * RATE * asked.minutes))
-        body = Body(who, states, STAGES[name])
+        things = STAGES[name](asked.seed)
+        who, states, did = played(things, asked.seed, round(60 * RATE * asked.minutes))
+        body = Body(who, states, things)
         found = report(body, did)
         if asked.pictures is not None:
             (asked.pictures / name).mkdir(parents=True, exist_ok=True)
