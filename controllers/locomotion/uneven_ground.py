@@ -14,6 +14,7 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation.passing import STEP
 from .foot_points import shown_kernel
+from .memory import WALK
 from .swing import SAMPLES, line_ahead, smooth, swept_line
 from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, under_kernel
@@ -107,7 +108,9 @@ def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
     low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
     before, rate = m.level, m.level_rate
     m.middle = min(0.5 * (low + high), low + LOW + 0.25 * (high - low))
-    m.level, m.level_rate = spring_kernel(m.level, m.level_rate, m.middle - m.lower, LEVEL_HALFLIFE, dt)
+    climbs = _climbs(m)
+    m.level, m.level_rate = spring_kernel(m.level, m.level_rate - climbs, m.middle - m.lower, LEVEL_HALFLIFE, dt)
+    m.level, m.level_rate = m.level + climbs * dt, m.level_rate + climbs
     if m.level_rate < rate - GRAVITY * dt:  # nobody sinks faster than they fall
         m.level_rate = rate - GRAVITY * dt
         m.level = before + 0.5 * (rate + m.level_rate) * dt
@@ -115,6 +118,16 @@ def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
         m.raised[k] -= m.level - before
     m.stairs = on_stairs(m, tops, floor)
     m.most = 0.0 if m.alert else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto
+
+
+@kernel
+def _climbs(m):
+    """How fast a runner's level rises with a slope [m/s], which would else follow his feet too late for legs to have room."""
+    if m.family == WALK:
+        return 0.0
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x, z = c * m.velocity[2] + s * m.velocity[0], c * m.velocity[0] - s * m.velocity[2]
+    return 0.5 * ((m.tilt[0, 0] + m.tilt[1, 0]) * x + (m.tilt[0, 1] + m.tilt[1, 1]) * z)
 
 
 @kernel
