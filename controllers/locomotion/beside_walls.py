@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-
 from ..compiled import kernel
 from ..navigation.passing import STEP
 
@@ -43,9 +42,11 @@ def out_of_walls(m, tops, floor, foot, line, out):
                 u, w = _within(tops, k, line[i, 0] + out[0], line[i, 1] + out[1])
                 if abs(w) < tops[k, 5] + BESIDE if side < 2 else abs(u) < tops[k, 4] + BESIDE:
                     need = max(need, (tops[k, 4] - sign * u if side < 2 else tops[k, 5] - sign * w) + BESIDE)
+            if not 0.0 < need < MOST:
+                continue
             u, w = (sign * need, 0.0) if side < 2 else (0.0, sign * need)
-            clear = need > 0.0 and _clear(m, tops, floor, stands, line, out[0] + c * u + s * w, out[1] - s * u + c * w)
-            if 0.0 < need < MOST and (clear and not free or clear == free and need < least):
+            clear = _clear(m, tops, floor, stands, line, out[0] + c * u + s * w, out[1] - s * u + c * w)
+            if clear and not free or clear == free and need < least:
                 least, free, way_across, way_along = need, clear, u, w
         if least < MOST:
             out[0] += c * way_across + s * way_along

@@ -153,7 +153,8 @@ def _refused(start: np.ndarray, goal: np.ndarray, shapes: np.ndarray, clearance:
         return f"the goal is {far_off * size:.0f} m away; {FARTHEST * size:g} m can be planned at once: give a goal on the way there first"
     if why := _unfit(goal, shapes, clearance, size):
         return why
-    return "the walk starts within something" if any(distance(start[0], start[1], shape, np.empty(3)) <= 0.0 for shape in shapes) else ""
+    out = np.empty(3)
+    return "the walk starts within something" if any(distance(start[0], start[1], shape, out) <= 0.0 for shape in shapes) else ""
 
 
 def _solve(found, tasks, grounds, velocities, goals, onward, weights, planes, shapes, around, girth, top, finer: int = 1) -> None:

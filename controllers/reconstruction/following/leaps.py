@@ -38,8 +38,7 @@ def led(body: Skeleton, before: Pose, pose: Pose, goes: np.ndarray, step: np.nda
     Also returns which rows (1 + J,) bool leapt, and what (1 + J, 3) it was taken to go on by beyond what it does: what goes on evenly a second time was no leap, but another pace.
     None where all limbs are followed and nothing leapt.
     """
-    told, there, most = set(followed.tolist()), joints_of(pose, body)[0], allowed + BEYOND * swerved
-    limbs = [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
+    there, most, limbs = joints_of(pose, body)[0], allowed + BEYOND * swerved, _free(followed)
     apart = _apart(body, there, before, step)
     if not limbs and apart.max() <= most:
         return None
@@ -67,9 +66,9 @@ def kept(body: Skeleton, pose: Pose, offset: np.ndarray, controls: ControlPoints
     followed: joints whose points are followed. Limbs on which there are none fade by themselves; all else is shortened alike: as a body that is carried somewhere turns
     there and bends, nothing of that is right without the rest.
     """
-    told, rows = set(followed.tolist()), np.ones(len(offset), bool)
-    for limb in LIMBS:
-        rows[limb + 1] = not told.isdisjoint(limb.tolist())
+    rows = np.ones(len(offset), bool)
+    for limb in _free(followed):
+        rows[limb + 1] = False
     share, tried, worst = 1.0, 1.0, math.inf
     for _ in range(TRIES):
         over = np.fmax.reduce(missed(body, pose, np.where(rows, tried, 1.0)[:, None] * offset, controls, seen) / most)
@@ -87,6 +86,12 @@ def missed(body: Skeleton, pose: Pose, by: np.ndarray, controls: ControlPoints, 
     out = np.empty(len(seen))
     missed_kernel(body.parents, body.offsets, pose.root, pose.rotations, by, controls.joints, controls.offsets, seen, out)
     return out
+
+
+def _free(followed: np.ndarray) -> list[np.ndarray]:
+    """The limbs on none of whose joints a point is followed."""
+    told = set(followed.tolist())
+    return [limb for limb in LIMBS if told.isdisjoint(limb.tolist())]
 
 
 def _apart(body: Skeleton, there: np.ndarray, pose: Pose, by: np.ndarray) -> np.ndarray:
