@@ -1,12 +1,15 @@
 """Learn the network for trackers from CMU's motion, and write assets/reconstruction/trackers.npz.
 
-    python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER [--batches 60000] [--ship]
+    python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER [--batches 78000] [--ship]
+    python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --pack PACK.npz
+    python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --weights WEIGHTS.npz
 
 LARGE: a motion database (`gambol database build`) or a folder of motion files, of which CMU's are learnt from: those below cmu, cmu_bvh
 and cmu_30fps. --small: the folder whose clips scripts/measure/reconstruction.py measures on: takes that are tested or tuned on there
 are never learnt from, nor what a few subjects did (`evaluation.STRANGERS`). --work: where checkpoints lie; begun again it goes on from the last
 one, the same as if it had not stopped. --ship: write the network that the newest checkpoint holds, and learn nothing.
-It takes a night on one thread; progress is shown. The same seed gives the same network.
+It takes a night on one thread; progress is shown. The same seed gives the same network. --pack: write all that is learnt from, for
+scripts/build/trackers_torch.py, which learns on a graphics card in minutes; --weights: write the network of what that learnt.
 """
 
 from __future__ import annotations
@@ -19,10 +22,12 @@ from pathlib import Path
 for library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")  # before numpy; more of them help only on a machine that does nothing else
 
+import numpy as np
+
 from gambol.controllers.files import whole
 from gambol.controllers.reconstruction.database import Database, DatabaseError, build
 from gambol.controllers.reconstruction.evaluation import learnt_from, small_of
-from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments
+from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments, packed
 
 CHECKPOINT = "trackers-learning.npz"
 
@@ -33,10 +38,12 @@ def main() -> None:
     parser.add_argument("large", type=Path, metavar="LARGE")
     parser.add_argument("--small", type=Path, required=True, metavar="FOLDER")
     parser.add_argument("--work", type=Path, required=True, metavar="FOLDER")
-    parser.add_argument("--batches", type=int, default=60_000, help="in all; with more the rate falls later")
+    parser.add_argument("--batches", type=int, default=78_000, help="in all; with more the rate falls later")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--every", type=int, default=1000, help="batches between two checkpoints")
     parser.add_argument("--ship", action="store_true", help="write the network of the newest checkpoint")
+    parser.add_argument("--pack", type=Path, metavar="PACK.npz", help="write what is learnt from, and learn nothing")
+    parser.add_argument("--weights", type=Path, metavar="WEIGHTS.npz", help="write the network of weights that were learnt elsewhere, and learn nothing")
     parser.add_argument("--out", type=Path, default=SHIPPED, help="where to")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
@@ -50,13 +57,20 @@ def main() -> None:
         large = Database.open(options.large)
         database = learnt_from(large, small_of(large, options.small))
         _say(f"{len(database):,} poses of {len({take.subject for take in database.takes})} subjects, mirror images included")
-        learner = Learner(Moments.of(database), options.batches, options.seed)
-        if path.exists():
+        moments = Moments.of(database)
+        if options.pack:
+            with whole(options.pack) as own, own.open("wb") as file:
+                np.savez_compressed(file, **packed(moments))
+            return
+        learner = Learner(moments, options.batches, options.seed)
+        if options.weights:
+            learner.take(options.weights)
+        elif path.exists():
             learner.resume(path)
             _say(f"going on from batch {learner.batch}")
         elif options.ship:
             sys.exit(f"{path}: there is no checkpoint to ship")
-        if not options.ship:
+        if not (options.ship or options.weights):
             learner.learn(path, options.every, lambda done, count, loss: _say(f"batch {done} of {count}, {SIZE} samples each: loss {loss:.4f}"))
     except (DatabaseError, ValueError) as error:
         sys.exit(str(error))

@@ -199,7 +199,7 @@ def main() -> None:
     network, large, core = opened(options)
     takes = core.validation if options.tuned else core.test
     followed(network, recorded(large, takes[0]), "6", True, False)  # what it compiles is no frame's time
-    parts = [f"The network after {network.learnt:,} batches of 512; see scripts/measure/reconstruction_trackers.py."]
+    parts = [f"The network after {512 * network.learnt:,} samples; see scripts/measure/reconstruction_trackers.py."]
     for number in options.only:
         name, those, given = COURSES[number], performances(number, large, options.small, takes), number == 0
         rows = [row(worn, network, those, points, turning, given) for worn, (points, turning) in WORN.items()]

@@ -22,7 +22,7 @@ def contacts(database: Database) -> np.ndarray:
 def standing(frames: np.ndarray, running: bool, fps: float) -> np.ndarray:
     """Which of heels and balls stand (T, 4) in frames (T, WIDTH) of a take on the standard body's floor."""
     parts, heights, velocities = np.asarray(frames, float), [], []
-    tracks = _tracks_of(parts, 1.0 / fps)
+    tracks = tracks_of(parts, 1.0 / fps)
     for begin in range(0, len(parts), _CHUNK):
         end = min(begin + _CHUNK, len(parts))
         low, high = max(begin - 1, 0), min(end + 1, len(parts))  # speeds look one frame either way
@@ -32,7 +32,7 @@ def standing(frames: np.ndarray, running: bool, fps: float) -> np.ndarray:
     return detect_contacts(np.concatenate(heights), np.concatenate(velocities), running=running)
 
 
-def _tracks_of(frames: np.ndarray, dt: float) -> np.ndarray:
+def tracks_of(frames: np.ndarray, dt: float) -> np.ndarray:
     """The ground tracks (T, 3) of a take's frames (T, WIDTH), from the origin on."""
     rates = frames[1:] * dt
     heading = np.concatenate([[0.0], np.cumsum(rates[:, YAW_RATE])])

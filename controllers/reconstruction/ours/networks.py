@@ -109,34 +109,41 @@ def misfit_kernel(found, truth, parents, offsets, reference, first, joints, dist
                 error = positions[j, i] - wanted[j, i]
                 force[j, i] = near * error
                 total += 0.5 * near * error * error
-            _cross(positions[j], force[j], moment[j])
-        for j in range(count - 1, -1, -1):
-            p = parents[j]
-            _cross(positions[j], force[j], here)
-            for i in range(3):
-                here[i] = moment[j, i] - here[i]
-            if p < 0:
-                slope[LEFTWARD] += force[j, 0]
-                slope[HEIGHT] += force[j, 1]
-                slope[FORWARD] += force[j, 2]
-            else:
-                for i in range(3):
-                    force[p, i] += force[j, i]
-                    moment[p, i] += moment[j, i]
-            if p < 0 or first[j] >= 0:
-                for k in range(3):
-                    column = first[j] + k
-                    if p < 0:
-                        column = PITCH if k == 0 else YAW_RATE if k == 1 else ROLL
-                    for i in range(3):
-                        slope[column] += axes[j, i, k] * here[i]
+            cross_kernel(positions[j], force[j], moment[j])
+        handed_on_kernel(parents, first, positions, axes, force, moment, here, slope)
         for d in range(size):
             slope[d] /= batch
     return total / batch
 
 
 @kernel(fastmath=EXACT, error_model="numpy")
-def _cross(a, b, out):
+def handed_on_kernel(parents, first, positions, axes, force, moment, here, slope):
+    """Adds to slope (D,) what forces (J, 3) on joints and their moments (J, 3) about the origin, handed on towards the hips, do to a placed pose."""
+    for j in range(len(parents) - 1, -1, -1):
+        p = parents[j]
+        cross_kernel(positions[j], force[j], here)
+        for i in range(3):
+            here[i] = moment[j, i] - here[i]
+        if p < 0:
+            slope[LEFTWARD] += force[j, 0]
+            slope[HEIGHT] += force[j, 1]
+            slope[FORWARD] += force[j, 2]
+        else:
+            for i in range(3):
+                force[p, i] += force[j, i]
+                moment[p, i] += moment[j, i]
+        if p < 0 or first[j] >= 0:
+            for k in range(3):
+                column = first[j] + k
+                if p < 0:
+                    column = PITCH if k == 0 else YAW_RATE if k == 1 else ROLL
+                for i in range(3):
+                    slope[column] += axes[j, i, k] * here[i]
+
+
+@kernel(fastmath=EXACT, error_model="numpy")
+def cross_kernel(a, b, out):
+    """Fills out (3,) with a × b."""
     out[0], out[1], out[2] = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 

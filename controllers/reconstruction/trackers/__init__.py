@@ -5,6 +5,7 @@ contacts, and the most probable pose on the performer's own skeleton.
 from .bodies import bodies, legs
 from .learning import HIDDEN, SIZE, Learner
 from .network import SHIPPED, Network
+from .packed import packed
 from .samples import FIRST, LEGS, Moments, moments_kernel
 from .slots import INPUTS, LAGS, PLACES, SLOTS
 from .tracker_poses import Trackers
@@ -12,5 +13,5 @@ from .tuning import BATCHES, SHARE, Tuner
 
 __all__ = [
     "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
-    "legs", "moments_kernel",
+    "legs", "moments_kernel", "packed",
 ]

@@ -51,3 +51,8 @@ def legs(offsets: np.ndarray) -> np.ndarray:
     knee, foot, toe = (SKELETON.index("Left" + name) for name in ("Leg", "Foot", "Toe"))
     return (np.linalg.norm(offsets[..., knee, :], axis=-1) + np.linalg.norm(offsets[..., foot, :], axis=-1)
             + np.abs(offsets[..., toe, 1]))
+
+
+def proportions() -> dict[str, np.ndarray]:
+    """What `bodies` are drawn by: the part of each joint, how far parts differ, how far joints lie off, twins, sides, and which are in the middle."""
+    return {"group": _GROUP, "parts": np.array(list(_PARTS.values())), "lying": _LYING, "twin": _TWIN, "side": _SIDE, "middle": _MIDDLE}

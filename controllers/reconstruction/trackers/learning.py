@@ -1,7 +1,8 @@
 """Learning the network: batches that stream from a database, Adam, and a checkpoint now and then from which it goes on, the same.
 
-The loss is that of kinematics on each sample's own body (`ours.misfit_kernel`), and the cross-entropy of contacts. What is used
-in the end is the running mean of the weights (Polyak & Juditsky 1992), so that it can be taken at any time.
+The loss is that of kinematics on each sample's own body, distances and turns (the smooth form of Huber 1964: squares count a pose that can't be told
+so much that those that can be told come out worse), and the cross-entropy of contacts. What is used in the end is the running mean of the
+weights (Polyak & Juditsky 1992), so that it can be taken at any time. scripts/build/trackers_torch.py learns the same on a graphics card.
 """
 
 from __future__ import annotations
@@ -15,16 +16,21 @@ import numpy as np
 
 from ...compiled import kernel
 from ...files import ArraysError, arrays
-from ..baselines import backward, forward, starting
-from ..ours import ANGLE, DISTANCE, misfit_kernel
-from ..pose_vector import ANGLES, JOINTS, REFERENCE, SKELETON, WIDTH
-from ..regression import EXACT
+from ..baselines import starting
+from ..ours import ANGLE, DISTANCE, cross_kernel, handed_on_kernel
+from ..pose_vector import ANGLES, JOINTS, PITCH, REFERENCE, ROLL, SKELETON, WIDTH
+from ..regression import EXACT, kinematics_kernel
+from .layers import backward, forward, shares
 from .network import OUTPUTS, Network
 from .samples import FIRST, Batch, Moments
 from .slots import INPUTS, PLACES
 from .wearing import exactly, members
 
-HIDDEN = (768, 768)
+HIDDEN = (1536, 1536, 1536)
+ADDED, DROPPED = True, 0.05
+"""Whether layers between the first and the last add to what they are given, and how much of hidden layers is left out at a time."""
+NEAR, STRAIGHT = 0.01, math.radians(2.0)
+"""Distances [m] and turns [rad] count evenly from about here on, below by their squares."""
 SIZE = 512
 """Samples in a batch."""
 RATE = 1.2e-3
@@ -52,7 +58,7 @@ def loss(found: np.ndarray, batch: Batch) -> tuple[float, np.ndarray]:
     poses = np.ascontiguousarray(found[:, :WIDTH], float)
     slopes = np.empty(found.shape)
     own = np.empty(poses.shape)
-    total = misfits_kernel(poses, batch.truth, SKELETON.parents, batch.bodies, REFERENCE, FIRST, JOINTS, DISTANCE, ANGLE, own)
+    total = misfits_kernel(poses, batch.truth, SKELETON.parents, batch.bodies, REFERENCE, FIRST, JOINTS, DISTANCE, ANGLE, NEAR, STRAIGHT, own)
     slopes[:, :WIDTH] = own
     logits, standing = np.asarray(found[:, WIDTH:], float), batch.contacts
     total += SAYING * float(np.mean(np.logaddexp(0.0, np.where(standing, -logits, logits))))
@@ -61,13 +67,46 @@ def loss(found: np.ndarray, batch: Batch) -> tuple[float, np.ndarray]:
 
 
 @kernel(fastmath=EXACT, error_model="numpy")
-def misfits_kernel(found, truth, parents, bodies, reference, first, joints, distance, angle, slopes):
-    """`ours.misfit_kernel` where each sample has a body (J, 3) of its own."""
-    total, count = 0.0, len(found)
-    for b in range(count):
-        total += misfit_kernel(found[b:b + 1], truth[b:b + 1], parents, bodies[b], reference, first, joints, distance, angle, slopes[b:b + 1])
-    slopes /= count
-    return total / count
+def misfits_kernel(found, truth, parents, bodies, reference, first, joints, distance, angle, near, straight, slopes):
+    """The mean loss of placed poses (B, D) on bodies (B, J, 3); fills its derivatives (B, D) by `found`.
+
+    Of each joint's distance and of each rotation vector's difference √(d² + near²) − near counts, over `distance` and `angle`.
+    """
+    batch, size = found.shape
+    count, far = len(parents), size - 6
+    positions, wanted, axes = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3, 3))
+    orientations, scratch = np.empty((count, 3, 3)), np.empty((3, 3, 3))
+    force, moment, here = np.empty((count, 3)), np.empty((count, 3)), np.empty(3)
+    total, share = 0.0, 1.0 / len(joints)
+    for b in range(batch):
+        kinematics_kernel(truth[b], 1.0, parents, bodies[b], reference, first, wanted, orientations, axes, scratch)
+        kinematics_kernel(found[b], 1.0, parents, bodies[b], reference, first, positions, orientations, axes, scratch)
+        slope = slopes[b]
+        slope[:] = 0.0
+        for at in range(0, far + 1, 3):  # the last one's are the hips' pitch and roll
+            x, y = (at, at + 1) if at < far else (PITCH, ROLL)
+            u, v, w = found[b, x] - truth[b, x], found[b, y] - truth[b, y], 0.0
+            if at < far:
+                w = found[b, at + 2] - truth[b, at + 2]
+            length = math.sqrt(u * u + v * v + w * w + straight * straight)
+            total += share * (length - straight) / angle
+            slope[x], slope[y] = share * u / (length * angle), share * v / (length * angle)
+            if at < far:
+                slope[at + 2] = share * w / (length * angle)
+        force[:], moment[:] = 0.0, 0.0  # moments about the origin
+        for j in joints:
+            square = near * near
+            for i in range(3):
+                square += (positions[j, i] - wanted[j, i]) ** 2
+            length = math.sqrt(square)
+            total += share * (length - near) / distance
+            for i in range(3):
+                force[j, i] = share * (positions[j, i] - wanted[j, i]) / (length * distance)
+            cross_kernel(positions[j], force[j], moment[j])
+        handed_on_kernel(parents, first, positions, axes, force, moment, here, slope)
+        for d in range(size):
+            slope[d] /= batch
+    return total / batch
 
 
 @kernel(fastmath=EXACT, error_model="numpy")
@@ -83,11 +122,11 @@ def adam_kernel(value, slope, first, second, share, scale, left):
 class Learner:
     """A network while it is learnt. moments: what from. batches: in all; the rate falls to nothing until then.
 
-    seed: of all that is drawn. hidden: the widths of the layers between.
+    seed: of all that is drawn. hidden: the widths of the layers between, as wide as each other.
     """
 
-    rate, of = RATE, ""
-    """Of learning; and what a checkpoint must be of, beside seed, size and widths."""
+    rate, of, added, dropped = RATE, "", ADDED, DROPPED
+    """Of learning; what a checkpoint must be of, beside seed, size and widths; see `ADDED`."""
 
     def __init__(self, moments: Moments, batches: int, seed: int = 0, hidden: tuple[int, ...] = HIDDEN, size: int = SIZE):
         self.moments, self.batches, self.seed, self.size, self.batch = moments, batches, seed, size, 0
@@ -101,15 +140,17 @@ class Learner:
     def step(self) -> float:
         """Learn from one batch more. Returns its loss."""
         batch = self.moments.draw(self.size, self.seed, self.batch)
-        found = forward(self.values[:self.count], self.values[self.count:], batch.inputs)
-        out = np.asarray(found[-1], float)
+        weights, biases = self.values[:self.count], self.values[self.count:]
+        kept = shares((self.size, len(biases[0])), self.count - 1, self.dropped, np.random.default_rng([self.seed, self.batch, 2]))
+        found, seen, own = forward(weights, biases, batch.inputs, self.added, kept)
+        out = np.asarray(found, float)
         out[:, :WIDTH] = out[:, :WIDTH] * self.outs[1] + self.outs[0]
         total, slopes = loss(out, batch)
         slopes[:, :WIDTH] *= self.outs[1]
         rate = self.rate * self.share()
         self.batch += 1
         share, scale = np.float32(rate / (1.0 - 0.9 ** self.batch)), np.float32(1.0 / (1.0 - 0.999 ** self.batch))
-        slopes = backward(self.values[:self.count], found, slopes.astype(np.float32))
+        slopes = backward(weights, seen, own, slopes.astype(np.float32), self.added, kept)
         for value, slope, first, second, mean in zip(self.values, slopes, self.first, self.second, self.means, strict=True):
             adam_kernel(value.reshape(-1), np.ascontiguousarray(slope).reshape(-1), first.reshape(-1), second.reshape(-1), share, scale, mean.reshape(-1))
         return total
@@ -150,11 +191,19 @@ class Learner:
             setattr(self, kind, [file[f"{kind}{i}"] for i in range(len(there))])
         self.batch, self.outs = int(file["batch"]), file["outs"]
 
+    def take(self, path: Path) -> None:
+        """What was learnt elsewhere (scripts/build/trackers_torch.py) in the place of what was learnt here. ArraysError for a file of anything else."""
+        file = arrays(path, "file of weights", {}, "")
+        names = [f"{kind}{i}" for kind in ("weights", "biases") for i in range(self.count)]
+        if not {"outs", "learnt", *names} <= set(file) or [file[name].shape for name in names] != [value.shape for value in self.values]:
+            raise ArraysError(f"{path}: is of other widths, or has no weights")
+        self.means, self.outs, self.batch = [file[name].astype(np.float32) for name in names], file["outs"].astype(float), int(file["learnt"]) // self.size
+
     def network(self) -> Network:
         """The network as it is now: the weights' mean without its first steps, and how far off it is with some trackers."""
         used = self.used()
         bare = Network(tuple(used[:self.count]), tuple(used[self.count:]), self.outs, np.empty(0), np.empty(0), np.empty(0),
-                       *self.range(), self.batch)
+                       *self.range(), self.batch, self.added)
         kinds, factors, rests = [], [], []
         for text in KINDS:
             placed = members(text)
@@ -165,7 +214,7 @@ class Learner:
                 kinds.append(np.concatenate([placed, turned]))
                 factors.append(factor)
                 rests.append(rest)
-        return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.batch)
+        return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.batch, self.added)
 
     def used(self) -> list[np.ndarray]:
         """Weights, then biases, as a network has them."""

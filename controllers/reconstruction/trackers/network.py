@@ -17,8 +17,8 @@ from .slots import INPUTS, PLACES
 SHIPPED = assets.path("reconstruction", "trackers.npz")
 """Learnt from CMU's motion; see PROVENANCE.md beside it."""
 OUTPUTS = WIDTH + 4
-VERSION = 1
-"""Of what the numbers in a file mean."""
+VERSION = 2
+"""Of what the numbers in a file mean; the first one had half-precision weights."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +26,8 @@ class Network:
     """weights, biases: of the layers, float32 (inputs, outputs) and (outputs,), ReLU between them. outs: (2, WIDTH) mean and
     deviation of placed poses. kinds: (K, 2 S) bool, for which trackers, placed and turned, `factors` (K, R, WIDTH) and `rests`
     (K, WIDTH) are known: rows whose squares sum up to the errors' covariance, and what is left of it. lower, upper: (ANGLES,) the range
-    of joints' rotation vectors in recordings [rad]. learnt: batches.
+    of joints' rotation vectors in recordings [rad]. learnt: batches, of 512 samples. added: whether layers between the first and the last add to
+    what they are given.
     """
 
     weights: tuple[np.ndarray, ...]
@@ -38,6 +39,7 @@ class Network:
     lower: np.ndarray
     upper: np.ndarray
     learnt: int = 0
+    added: bool = False
 
     def predict(self, inputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Placed poses (..., WIDTH) and the probabilities (..., 4) that heels and balls stand, for inputs (..., INPUTS)."""
@@ -45,10 +47,11 @@ class Network:
         last = len(self.weights) - 1
         for number, (weights, biases) in enumerate(zip(self.weights, self.biases, strict=True)):
             if x.ndim == 1:
-                x = layer_kernel(x, weights, biases, number < last)
+                y = layer_kernel(x, weights, biases, number < last)
             else:
-                x = x @ weights + biases
-                x = np.maximum(x, 0.0) if number < last else x
+                y = x @ weights + biases
+                y = np.maximum(y, 0.0) if number < last else y
+            x = x + y if self.added and 0 < number < last else y
         found = x.astype(float)
         return found[..., :WIDTH] * self.outs[1] + self.outs[0], 1.0 / (1.0 + np.exp(-np.clip(found[..., WIDTH:], -30.0, 30.0)))
 
@@ -60,23 +63,29 @@ class Network:
         return factor.T @ factor + np.diag(self.rests[kind].astype(float))
 
     def save(self, path: str | Path) -> None:
-        """Write it as an .npz file of half-precision numbers."""
-        layers: dict[str, Any] = {f"weights{i}": w.astype(np.float16) for i, w in enumerate(self.weights)}
-        layers |= {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
+        """Write it as an .npz file of weights as whole numbers up to 127, with a scale for each output of a layer."""
+        layers: dict[str, Any] = {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
+        for i, weights in enumerate(self.weights):
+            scales = (np.maximum(np.abs(weights).max(0), 1e-12) / 127.0).astype(np.float32)
+            layers |= {f"weights{i}": np.round(weights / scales).astype(np.int8), f"scales{i}": scales}
         with Path(path).open("wb") as file:
             np.savez_compressed(file, version=VERSION, places=np.array(PLACES), outs=self.outs.astype(np.float32), kinds=self.kinds,
-                                factors=self.factors.astype(np.float32), rests=self.rests.astype(np.float32),
-                                lower=self.lower.astype(np.float32), upper=self.upper.astype(np.float32), learnt=self.learnt, **layers)
+                                factors=self.factors.astype(np.float32), rests=self.rests.astype(np.float32), lower=self.lower.astype(np.float32),
+                                upper=self.upper.astype(np.float32), learnt=self.learnt, added=self.added, **layers)
 
     @staticmethod
     def load(path: str | Path = SHIPPED) -> Network:
-        """Read what `save` wrote. ArraysError, naming the file and what is wrong with it, for anything else."""
-        found = arrays(path, "network of trackers", {"version": VERSION, "places": [*PLACES]}, "`gambol database tune`")
+        """Read what `save` wrote, now or in version 1. ArraysError, naming the file and what is wrong with it, for anything else."""
+        found = arrays(path, "network of trackers", {"places": [*PLACES]}, "`gambol database tune`")
         count = sum(name.startswith("weights") for name in found)
         try:
-            weights, biases = (tuple(found[f"{kind}{i}"].astype(np.float32) for i in range(count)) for kind in ("weights", "biases"))
+            if found["version"].tolist() not in (1, VERSION):
+                raise ArraysError(f"{path}: is of another version of Gambol; `gambol database tune` makes one")
+            scales = (found[f"scales{i}"] if f"scales{i}" in found else np.float32(1.0) for i in range(count))
+            weights = tuple(np.ascontiguousarray(found[f"weights{i}"] * scale, np.float32) for i, scale in enumerate(scales))
+            biases = tuple(found[f"biases{i}"].astype(np.float32) for i in range(count))
             outs, factors, rests, lower, upper = (found[name].astype(float) for name in ("outs", "factors", "rests", "lower", "upper"))
-            made = Network(weights, biases, outs, found["kinds"], factors, rests, lower, upper, int(found["learnt"]))
+            made = Network(weights, biases, outs, found["kinds"], factors, rests, lower, upper, int(found["learnt"]), bool(found.get("added", False)))
         except KeyError as error:
             raise ArraysError(f"{path}: lacks {error}") from None
         made.check(path)
@@ -88,6 +97,8 @@ class Network:
         for number, (weights, biases) in enumerate(zip(self.weights, self.biases, strict=True)):
             if weights.ndim != 2 or weights.shape[0] != width or biases.shape != weights.shape[1:]:
                 raise ArraysError(f"{path}: weights{number} of shape {weights.shape}, expected ({width}, …) and as many biases")
+            if self.added and 0 < number < len(self.weights) - 1 and weights.shape[1] != width:
+                raise ArraysError(f"{path}: weights{number} of shape {weights.shape}, expected ({width}, {width})")
             width = weights.shape[1]
         if width != OUTPUTS:
             raise ArraysError(f"{path}: has {width} outputs, expected {OUTPUTS}")

@@ -33,7 +33,7 @@ class Tuner(Learner):
 
     def __init__(self, began: Network, moments: Moments, batches: int = BATCHES, seed: int = 0, share: float = SHARE):
         super().__init__(moments, batches, seed, tuple(len(bias) for bias in began.biases[:-1]))
-        self.began, self.taken, self.outs = began, share, began.outs
+        self.began, self.taken, self.outs, self.added = began, share, began.outs, began.added
         self.anchors = [*began.weights, *began.biases]
         self.values, self.means = ([value.copy() for value in self.anchors] for _ in range(2))
         told = hashlib.sha1(f"{batches}".encode())

@@ -68,6 +68,11 @@ class Worn:
         return places, turns if self.spun is None else turns @ self.spun
 
 
+def sets() -> dict[str, np.ndarray]:
+    """Which trackers (K, S) bool are worn together, and how often (K,)."""
+    return {"kinds": np.stack([members(text) for _, text in _SETS]), "often": np.array([share for share, _ in _SETS])}
+
+
 def exactly(count: int, placed: np.ndarray, turned: np.ndarray) -> Worn:
     """Some trackers, placed and turned (S,) bool, ideal ones, in each of so many samples."""
     shape = count, len(LAGS), len(PLACES)
@@ -77,8 +82,7 @@ def exactly(count: int, placed: np.ndarray, turned: np.ndarray) -> Worn:
 def worn(count: int, rng: np.random.Generator) -> Worn:
     """Trackers as people wear them, for `count` samples."""
     shape = count, len(LAGS), len(PLACES)
-    kinds = np.stack([members(text) for _, text in _SETS])
-    often = np.array([share for share, _ in _SETS])
+    kinds, often = sets().values()
     kind = np.searchsorted(np.cumsum(often), rng.random(count))
     placed = kinds[np.minimum(kind, len(kinds) - 1)]
     free = kind >= len(kinds)
