@@ -51,6 +51,7 @@ def main() -> None:
     network = Network.load()
     tuner = Tuner(network, Moments.of(learnt), options.batches, share=options.share)
     work = (options.work or Path(".")) / "tuning.npz"
+    work.parent.mkdir(parents=True, exist_ok=True)
     if work.exists():
         tuner.resume(work)
     tuner.learn(work, 500, lambda done, count, loss: print(f"batch {done} of {count}: loss {loss:.3f}", file=sys.stderr, flush=True))
