@@ -26,9 +26,7 @@ def read_amc(path, asf=None, fps: float = 120.0) -> Clip:
     MotionFileError, naming file and line, for anything that is not sound or doesn't fit the skeleton.
     """
     data = read_bytes(path)
-    if not isinstance(asf, AcclaimSkeleton):
-        asf = Path(asf or _skeleton_beside(path))
-        asf = _read_once(asf, asf.stat().st_mtime_ns) if asf.is_file() else read_asf(asf)
+    asf = skeleton_of(path, asf)
     start, radian = _head(data, asf.radian, path)
     bones = _layout(data, start, asf, path)
     values = _frames(data, start, [(name, len(dofs)) for name, dofs, _ in bones], path)
@@ -51,6 +49,14 @@ def read_amc(path, asf=None, fps: float = 120.0) -> Clip:
         zero = Rotation.from_matrix(asf.axes[0])
         quaternions[:, 0] = (Rotation.from_quat(quaternions[:, 0]) * zero).as_quat()
     return Clip(Path(path).stem, skeleton, 1.0 / fps, root, quaternions)
+
+
+def skeleton_of(path, asf=None) -> AcclaimSkeleton:
+    """The skeleton of an AMC file, as of `read_amc`."""
+    if isinstance(asf, AcclaimSkeleton):
+        return asf
+    asf = Path(asf or _skeleton_beside(path))
+    return _read_once(asf, asf.stat().st_mtime_ns) if asf.is_file() else read_asf(asf)
 
 
 @lru_cache(maxsize=8)
