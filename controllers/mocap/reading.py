@@ -9,7 +9,9 @@ from pathlib import Path
 from ..body import Clip
 from .acclaim_motion import skeleton_of
 from .parsing import fail
-from .units_and_axes import LENGTHS, UP, Detected, MotionFileError, detect, read, standardise
+from .units_and_axes import LENGTHS, METRIC, UP, Detected, MotionFileError, detect, read, standardise
+
+_IN = "metres", "decimetres", "centimetres", "millimetres", "feet", "inches"
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,16 @@ class Reading:
     def load(self, path: str | Path) -> Clip:
         """A motion file as a clip in metres, Y up, without calibration frames, as of `mocap.load`."""
         return standardise(*self.read(path))
+
+    def doubt(self, path: str | Path) -> str:
+        """How a file is read that is read as few are, "" of one that is read as most are, or where all of that is told. MotionFileError as of `read`."""
+        if self.up is not None and self.unit is not None:
+            return ""
+        found = self.read(path)[1]
+        if (self.up is not None or found.up == "y") and (self.unit is not None or found.scale in METRIC):
+            return ""
+        unit = next((words for words, metres in zip(_IN, LENGTHS.values()) if metres == found.scale), f"units of {found.scale:.4g} m")
+        return f"{path}: read as with {found.up.upper()} up and in {unit}, as of somebody {found.stature:.2f} m tall"
 
 
 JUDGED = Reading()
