@@ -102,6 +102,14 @@ def say(text: str) -> None:
     typer.echo(text, err=True)
 
 
+def say_forgets() -> None:
+    """Tell, before what takes long, that it will take as long the next time, where nothing can be kept."""
+    from gambol.controllers.compiled import forgets
+
+    if why := forgets():
+        say(f"gambol: {why}")
+
+
 def say_refused(refused: Iterable[str]) -> None:
     """Tell what a scenario asked for that nobody could do, and why."""
     for line in refused:
@@ -125,6 +133,7 @@ def person_of(library: Path | None, character: Path | None = None) -> Any:
     walker, body = Locomotion.load(library), body_of(character)
     programs = preparing.begun(walker, library)
     if programs:
+        say_forgets()
         say("compiling the motion, once: a minute")
     for program in programs:
         program.wait()
@@ -159,6 +168,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     wanted = [one for one in wanted if one[0] != SHIPPED and not known.knows(*one)]
     if not wanted:
         return
+    say_forgets()
     with progress_bar() as bar:
         if not bar.console.is_terminal:
             say("learning to make bodies of a few points, once: a minute, or some minutes of a large database for trackers that turn")

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, body_of, in_body, known, learn, person_of, pixels_of, plainly, reading_of, replayed,
-                   say, unswept)
+                   say, say_forgets, unswept)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -47,6 +47,8 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
 
         walker = Locomotion.load(library)
         programs = preparing.begun(walker, library)  # while the rest is loaded
+        if programs:
+            say_forgets()
 
         from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
         from ..session import LogWriter
@@ -66,7 +68,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         controller, clip = Filmed.load(footage, controller), footage
         for line in lost_frames(controller.footage):
             say(f"gambol: {line}")
-    log = LogWriter(log_file(record), controller, players, clip, database)
+    log = LogWriter(log_file(record), controller, players, clip, database, up=tape and tape.up, unit=tape and tape.unit)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
     beside = Preparing(walker, programs)
