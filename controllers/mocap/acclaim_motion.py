@@ -70,7 +70,7 @@ def _skeleton_beside(path) -> Path:
     found = sorted(p for p in path.parent.iterdir() if p.suffix.lower() == ".asf")
     mine = [p for p in found if path.stem.lower().startswith(p.stem.lower())]
     if len(found) != 1 and not mine:
-        fail(path, None, f"{len(found) or 'no'} .asf files beside it; name its skeleton with asf=")
+        fail(path, None, f"{len(found) or 'no'} .asf files beside it; put its skeleton there, named like it, or name it with asf=")
     return max(mine, key=lambda p: len(p.stem)) if mine else found[0]
 
 

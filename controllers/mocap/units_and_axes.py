@@ -16,6 +16,8 @@ from .parsing import MotionFileError, fail
 
 UNITS = (1.0, 0.1, 0.01, 0.001, 0.3048, 0.0254, 0.0254 / 0.45)
 """Metres in one unit: m, dm, cm, mm, foot, inch, and the 1/0.45 inch of CMU's recordings."""
+OTHERS = ".fbx", ".c3d", ".glb", ".gltf", ".vrm", ".trc", ".npz", ".dae", ".usd", ".usda", ".usdz", ".blend"
+"""What else motion is kept in."""
 LENGTHS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Metres in units, by their usual names."""
 LEG = 0.856
@@ -63,7 +65,8 @@ def read(path, *, asf=None) -> Clip:
         return read_bvh(path)
     if ending == ".amc":
         return read_amc(path, asf)
-    fail(path, None, "is a folder: name a .bvh or .amc file in it" if Path(path).is_dir() else f"'{ending}' is no motion file: .bvh and .amc are read")
+    instead = "; name the .amc file that goes with it" if ending == ".asf" else "; export it as BVH" if ending in OTHERS else ""
+    fail(path, None, "is a folder: name a .bvh or .amc file in it" if Path(path).is_dir() else f"'{ending}' is no motion file: .bvh and .amc are read{instead}")
 
 
 def load(path, *, up: str | None = None, scale: float | None = None, tpose: int | None = None,
@@ -146,7 +149,7 @@ def unit_of(leg: float) -> float:
     if metric and (metric[0] * leg > SMALL or not ADULT[0] < best * leg < ADULT[1]):
         return metric[0]
     if not 0.4 < best * leg < 1.4:
-        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches")
+        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches: tell its unit, if it is another")
     return best
 
 
