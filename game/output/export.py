@@ -125,6 +125,8 @@ def suffix_onto(path: str | Path) -> str:
 def rig_in(path: str | Path, reading: Reading = JUDGED) -> glb.Rigged | MovingRig:
     """The human's skeleton in somebody's own file: .glb, .gltf or .vrm with a skin, .bvh or .amc. reading: how the latter are to be read. CharacterError or MotionFileError, naming the file and what would be
     right, where there is none."""
+    if Path(path).suffix.lower() not in (*READ, *glb.gltf.SUFFIXES):
+        raise OutputError(f"{path}: no rig is read from it; name a {', '.join((*glb.gltf.SUFFIXES, *READ[:-1]))} or {READ[-1]} file")
     return moving_rig(path, reading) if Path(path).suffix.lower() in READ else glb.rigged(path)
 
 

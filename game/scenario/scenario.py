@@ -153,9 +153,16 @@ def shipped() -> tuple[str, ...]:
     return tuple(sorted(file.stem for file in asset("scenarios").glob("*.toml")))
 
 
+OTHERS = {".gambol": "an input log is filmed with --replay", **dict.fromkeys((".bvh", ".amc"), "motion is a follower's clip in one, or read by gambol reconstruct"),
+          **dict.fromkeys((".glb", ".gltf", ".vrm"), "a body is worn with --character")}
+"""What is named in a scenario's place, by the ending of its file."""
+
+
 def locate(name: str | File) -> File:
     """The file of a scenario: that of a shipped one, or `name` itself. ScenarioError if there is neither."""
     file = File(name)
+    if (other := OTHERS.get(file.suffix.lower())) is not None:
+        raise ScenarioError(f"{file}: is no scenario, which is a .toml file; {other}")
     if file.suffix == ".toml" or file.is_file():  # a folder of that name shadows nothing
         return file
     if str(name) not in shipped():
