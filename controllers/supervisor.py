@@ -83,6 +83,8 @@ class Supervisor(Controller):
         self.parts: Mapping[str, Controller] = dict(controllers)
         self.first = next(iter(self.parts))
         for name, part in self.parts.items():
+            if isinstance(part, type):
+                raise ValueError(f"the controller {name!r} is a class, {part.__name__}: make one of it")
             lacks = [answer for answer in ("precondition", "enter", "step", "status") if not hasattr(part, answer)]
             if lacks:
                 raise ValueError(f"the controller {name!r} has no {', '.join(lacks)}: inherit from gambol.controllers.contract.Controller; got {part!r}")
