@@ -21,8 +21,9 @@ def _points(text: str) -> str:
     return text
 
 
-Points = Annotated[str, BeforeValidator(lambda v: str(v) if isinstance(v, int) and not isinstance(v, bool) else v),
-                   AfterValidator(_points)]
+Words = Annotated[str, BeforeValidator(lambda v: str(v) if isinstance(v, int | float) and not isinstance(v, bool) else v)]
+"""A text, or a number without quotes."""
+Points = Annotated[Words, AfterValidator(_points)]
 
 
 class HiddenTable(Table):
@@ -42,7 +43,7 @@ class HiddenTable(Table):
 class FollowsTable(Table):
     """Whose points an actor follows: those of another `actor`, or of a `clip`, a .bvh or .amc file that plays from the origin.
 
-    up, unit: of the clip, the axis that points up, and the unit, m, dm, cm, mm, ft, in or a number of metres in quotes, where they are misjudged. points: the paper's sets "2" … "6", or names with commas. method: who makes a body of them. beside: x, y, z [m]
+    up, unit: of the clip, the axis that points up, and the unit, m, dm, cm, mm, ft, in or a number of metres, where they are misjudged. points: the paper's sets "2" … "6", or names with commas. method: who makes a body of them. beside: x, y, z [m]
     from the performer to the actor. hidden: what is not seen, and when. noise: of the points [m]; seed: of that.
     turns: whether how the points are turned is seen, too.
     """
@@ -50,7 +51,7 @@ class FollowsTable(Table):
     actor: str | None = None
     clip: Annotated[str, AfterValidator(beside_the_file)] | None = None
     up: Annotated[str, one_of(AXES)] | None = None
-    unit: str | None = None
+    unit: Words | None = None
     points: Points = "4"
     method: Annotated[str, one_of(METHODS)] = "ours"
     beside: Point3 = (0.0, 0.0, 0.0)

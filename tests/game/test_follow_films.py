@@ -132,6 +132,10 @@ def test_a_fault_names_file_and_field(tmp_path, old, new, says):
 @pytest.mark.parametrize(("words", "says"), [('unit = "parsec"', "actors[1].follows: a unit is m, dm, cm"), ('up = "north"', "actors[1].follows.up: input should be 'x', 'y', 'z'")])
 def test_what_a_clip_is_read_as_is_an_axis_and_a_unit(tmp_path, words, says):
     (tmp_path / "walk.bvh").touch()
+    for unit in ("0.01", '"cm"', '"0.01"'):
+        scene = SCENE.replace('actor = "A", points = 4', f'clip = "walk.bvh", points = 4, unit = {unit}')
+        reading = load(written(tmp_path, scene)).actors[1].follows.reading()
+        assert (reading.up, reading.unit) == (None, 0.01)
     tells(tmp_path, SCENE, 'actor = "A", points = 4', f'clip = "walk.bvh", points = 4, {words}', says)
 
 
