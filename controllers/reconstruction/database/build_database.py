@@ -56,7 +56,8 @@ def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: boo
     paths = sorted((path for path in folder.rglob("*") if path.suffix.lower() in (".bvh", ".amc")),
                    key=lambda path: (path.parent, path))
     if not paths:
-        raise DatabaseError(f"{folder}: no .bvh or .amc files in it" + ("" if folder.is_dir() else " (no such folder)"))
+        raise DatabaseError(f"{folder}: no .bvh or .amc files in it" + (
+            "" if folder.is_dir() else " (it is a file; a folder of them is needed)" if folder.exists() else " (no such folder)"))
     known = actions(folder)
     with Writer(out, fps, mirrors) as writer:
         def keep(clips: list[tuple[Path, Clip]]) -> None:
