@@ -43,6 +43,8 @@ def cache_home() -> Path:
     where nobody may write there, in a folder that goes when this program ends."""
     home = usual_home()
     try:
+        if not home.is_absolute():  # of somebody who has no home, whose folders would lie wherever he is
+            raise FileNotFoundError(home)
         home.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=home).close()
         return home
@@ -50,6 +52,15 @@ def cache_home() -> Path:
         home = Path(tempfile.mkdtemp(prefix="gambol-"))
         atexit.register(shutil.rmtree, home, ignore_errors=True)
         return home
+
+
+def forgets() -> str:
+    """Why what is made now has to be made again the next time, "" where it is kept."""
+    home = usual_home()
+    if cache_home() == home:
+        return ""
+    where = f"{home}: can't be written" if home.is_absolute() else "you have no home folder"
+    return f"{where}, so what is compiled and learnt is kept for this time alone: name a folder for it in the environment's GAMBOL_CACHE"
 
 
 def usual_home() -> Path:

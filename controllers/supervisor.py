@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .body import Pose, Skeleton
-from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, given, seconds
+from .contract import HARDEST, CharacterState, Controller, Duty, Intent, Leap, Status, Strike, Unable, but, given, known, seconds
 from .navigation import changed, checked, going, matters
 from .navigation.passing import drawn_on
 
@@ -26,6 +26,9 @@ once he stands who was standing up."""
 
 
 ALONE = "characters come singly; a crowd that only walks is stepped by the locomotion itself"
+
+
+ELSE = "this state is not of several controllers: enter it first"
 
 
 RISES, RESTS = 0.2, 0.1
@@ -80,6 +83,8 @@ class Supervisor(Controller):
         self.parts: Mapping[str, Controller] = dict(controllers)
         self.first = next(iter(self.parts))
         for name, part in self.parts.items():
+            if isinstance(part, type):
+                raise ValueError(f"the controller {name!r} is a class, {part.__name__}: make one of it")
             lacks = [answer for answer in ("precondition", "enter", "step", "status") if not hasattr(part, answer)]
             if lacks:
                 raise ValueError(f"the controller {name!r} has no {', '.join(lacks)}: inherit from gambol.controllers.contract.Controller; got {part!r}")
@@ -143,7 +148,7 @@ class Supervisor(Controller):
     def _stepped(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         duty = state.memory
         if not isinstance(duty, Duty):
-            raise ValueError("this state is not of several controllers: enter it first")
+            raise ValueError(ELSE)
         way = None
         if intent.goal is not None:
             way, intent = going(state, intent, self, duty.active == self.first, dt)
@@ -221,16 +226,21 @@ class Supervisor(Controller):
 
     def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str | None:
         """The same. ask: is called once more for each part of it that takes as long as most answers do."""
+        known(state, intent)
         found = [why for why in (part.pondered(self.active(state)[1], intent, ask) for part in self.parts.values()) if why is not None]
         return None if not found else "" if "" in found else found[0]
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that intent.leap says, with how one of them could make it; None where none could."""
+        known(state, intent)
         found = (part.found(self.active(state)[1], intent) for part in self.parts.values())
         return next((leap for leap in found if leap is not None), None)
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:
-        """Who is on duty, and the state as that controller sees it."""
+        """Who is on duty, and the state as that controller sees it. ValueError for a state that is none of several controllers."""
+        known(state)
+        if not isinstance(state.memory, Duty):
+            raise ValueError(ELSE)
         return state.memory.active, but(state, memory=state.memory.memory)
 
     def precondition(self, state: CharacterState, intent: Intent) -> float:
@@ -240,13 +250,15 @@ class Supervisor(Controller):
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state under this supervisor, its first controller on duty unless one is already."""
+        known(state)
         if isinstance(state.memory, Duty) and state.memory.active in self.parts:
             return state
         entered = self.parts[self.first].enter(state, intent)
         return replace(entered, memory=Duty(self.first, entered.memory, "it takes over"))
 
     def status(self, state: CharacterState) -> Status:
-        """It never ends by itself; a walk to a goal is done, or fails with a reason."""
+        """It never ends by itself; a walk to a goal is done, or fails with a reason. ValueError for what is no state."""
+        known(state)
         return Status("running") if state.going is None else state.going.status
 
 

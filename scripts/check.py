@@ -26,6 +26,7 @@ def types() -> int:
         for wing in WINGS:
             shutil.copytree(_setup.ROOT / wing, home / wing, ignore=lambda at, names: [
                 name for name in names if name == "__pycache__" or (Path(at, name).is_file() and not name.endswith((".py", ".typed")))])
+        shutil.copy(_setup.ROOT / "gambol" / "__main__.py", home)
         shutil.copy(_setup.ROOT / "pyproject.toml", folder)
         told = subprocess.run([str(_setup.PYTHON), "-m", "pyright", "--pythonpath", str(_setup.PYTHON), "--project", folder],
                               stdout=subprocess.PIPE, text=True)

@@ -127,6 +127,19 @@ def test_where_nothing_can_be_kept_it_runs_all_the_same(package, kept, tmp_path)
     assert ran == ["20.0", "0"] and not Path(folder).exists()
 
 
+@pytest.mark.parametrize("home, says", [("file/cache", "file/cache: can't be written, so what is compiled"), ("~", "you have no home folder, so what is compiled")])
+def test_where_nothing_can_be_kept_it_is_told(monkeypatch, tmp_path, home, says):
+    """Else a minute goes in every start, and nobody knows why; and no folder is called ~."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(compiled, "cache_home", compiled.cache_home.__wrapped__)
+    monkeypatch.setattr(compiled, "usual_home", lambda: tmp_path / home if home != "~" else Path("~/.cache/gambol"))
+    assert says in compiled.forgets() and "GAMBOL_CACHE" in compiled.forgets()
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    monkeypatch.setattr(compiled, "usual_home", lambda: tmp_path / "new")
+    assert compiled.forgets() == ""
+
+
 def test_a_full_disk_keeps_nothing_and_ends_nothing(package, kept):
     assert call(package, f"import os\ndef full(*paths): raise OSError(28, 'no space left')\nc.os.replace = full\n{CALLED}") == [
         "20.0", "0"]

@@ -36,7 +36,7 @@ def prose(page):
 @cache
 def files():
     """All files and folders of the project, as paths within it."""
-    listed = [path for folder in ("controllers", "game", "assets", "scripts", "examples", "tests", "docs")
+    listed = [path for folder in ("gambol", "controllers", "game", "assets", "scripts", "examples", "tests", "docs")
               for path in (ROOT / folder).rglob("*") if "__pycache__" not in path.parts] + list(ROOT.glob("*"))
     return {path.relative_to(ROOT).as_posix() for path in listed}
 

@@ -8,11 +8,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gambol.controllers.body import Pose, hull, human
+from gambol.controllers.body import Clip, Pose, hull, human
 from gambol.controllers.contract import CharacterState, Controller, Goal, Intent, Leap, Status, Strike
 from gambol.controllers.jump import Physique
 from gambol.controllers.locomotion import Blender, ControlSpace, Locomotion, fourier
+from gambol.controllers.mocap import Rig, calibrate, retarget, write_bvh
 from gambol.controllers.person import person
+from gambol.controllers.reconstruction import parse
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box
 
@@ -259,3 +261,36 @@ def test_pieces_taken_alone_say_what_they_take(walker):
         hull(samples)
     with pytest.raises(ValueError, match="a Blender takes a Locomotion"):
         Blender(walker.library)
+
+
+CLIP = Clip("clip", human(), 1 / 60, np.zeros((4, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (4, 22, 1)))
+
+
+@pytest.mark.parametrize("wrong, says", [
+    ({"frame_time": -0.1}, "frame_time is a number above zero, not -0.1"), ({"frame_time": 0}, "frame_time"), ({"frame_time": "60"}, "frame_time"),
+    ({"root": np.zeros((3, 3))}, "3 frames of 22 joints have a root (3, 3) and quaternions (3, 22, 4); got (3, 3) and (4, 22, 4)"),
+    ({"quaternions": np.zeros((4, 22, 3))}, "got (4, 3) and (4, 22, 3)"), ({"quaternions": np.zeros((4, 21, 4))}, "got (4, 3) and (4, 21, 4)")])
+def test_a_clip_that_no_reader_would_take_is_not_written(tmp_path, wrong, says):
+    with pytest.raises(ValueError, match=re.escape(says)):
+        write_bvh(replace(CLIP, **wrong), tmp_path / "a.bvh")
+    assert not (tmp_path / "a.bvh").exists()
+
+
+@pytest.mark.parametrize("call, says", [
+    (lambda path: write_bvh(CLIP, path, unit="cm"), "unit is a number above zero, not 'cm'"), (lambda path: write_bvh(CLIP, path, order=None), "the order of rotations is"),
+    (lambda path: retarget(str(path)), "what is retargeted is a Clip, as load gives it; got a str"), (lambda path: calibrate([None]), "clips are Clips, as load gives them; got NoneType"),
+    (lambda path: CLIP.resample("60"), "fps is a number of frames a second"), (lambda path: CLIP.resample(0), "fps is"), (lambda path: CLIP.resample(-1), "fps is"),
+    (lambda path: parse(None, human()), "points are named, as in"), (lambda path: parse(4, human()), "points are named, as in"),
+    (lambda path: Rig.of(None, None, None), "names are bones' names"), (lambda path: Rig.of("root", [-1], [[0, 0, 0]]), "names are bones' names"),
+    (lambda path: Rig.of(human().names, [None, *human().parents[1:]], np.zeros((22, 3))), "parents are numbers of bones, -1 of the root"),
+    (lambda path: Rig.of(human().names, human().parents, np.zeros((22, 3)), metres="cm"), "metres, in one unit, is a number above zero, not 'cm'"),
+    (lambda path: Rig.of(human().names, human().parents, np.zeros((22, 3)), metres=0), "metres, in one unit"),
+    (lambda path: Supervisor({"walk": Locomotion}), "the controller 'walk' is a class, Locomotion: make one of it")])
+def test_what_is_of_another_kind_is_told_of(tmp_path, call, says):
+    with pytest.raises(ValueError, match=says):
+        call(tmp_path / "a.bvh")
+    assert not list(tmp_path.iterdir())
+
+
+def test_points_may_be_named_in_a_list():
+    assert parse(["lwrist", "rwrist"], human()).names == parse("lwrist,rwrist", human()).names

@@ -257,3 +257,28 @@ def test_a_leap_is_sought_anew_once_what_refused_it_has_gone_aside(leaper):
 def test_what_is_no_place_is_refused_in_words_though_things_move(leaper):
     goes, state = leaps_after(leaper, (0.0, 1.0), lambda k: (Box((0.0, 0.1, 1.5), (1.0, 0.2, 1.0)), Pillar((1.0 + 0.2 * k, 0.0, 1.0))), 20)
     assert goes is None and "three finite numbers" in state.refused
+
+
+@pytest.mark.parametrize("nobody", [None, "somebody", 5])
+def test_what_is_no_state_is_told_of(nobody):
+    """As of who forgot to keep what `start` gave."""
+    somebody = Supervisor({"walk": StandIn("walk", 0.5), "jump": Jump()})
+    jump, state = somebody.parts["jump"], somebody.start()
+    for ask in (somebody.status, jump.status, somebody.active, jump.start_of, lambda it: somebody.refusal(it, WANTED), lambda it: jump.refusal(it, WANTED),
+                lambda it: somebody.precondition(it, WANTED), lambda it: somebody.enter(it, WANTED)):
+        with pytest.raises(ValueError, match=f"a CharacterState is asked about, .* got a {type(nobody).__name__}"):
+            ask(nobody)
+    for ask in (somebody.refusal, jump.refusal):
+        with pytest.raises(ValueError, match="is an Intent; got a"):
+            ask(state, nobody)
+    with pytest.raises(ValueError, match="this state is of nobody who jumps: enter it first"):
+        jump.step(state, Intent(), 1 / FPS)
+    with pytest.raises(ValueError, match="this state is not of several controllers: enter it first"):
+        somebody.refusal(somebody.parts["walk"].start(), WANTED)
+
+
+@pytest.mark.parametrize("wrong, says", [(None, "settings are Settings"), ({"agility": 2.0}, "settings are Settings"), (Settings(agility="2"), "agility must be one number, got '2'"),
+                                         (Settings(gaze=None), "gaze must be one number"), (Settings(agility=[1.0]), "agility must be one number")])
+def test_settings_are_numbers(wrong, says):
+    with pytest.raises(ValueError, match=re.escape(says)):
+        Locomotion.load(settings=wrong)

@@ -59,7 +59,9 @@ class Clip:
         return replace(self, root=self.root[start:stop], quaternions=self.quaternions[start:stop])
 
     def resample(self, fps: float) -> Clip:
-        """The same motion at another frame rate [Hz]: linear root, spherical-linear joints."""
+        """The same motion at another frame rate [Hz]: linear root, spherical-linear joints. ValueError for what is none."""
+        if not isinstance(fps, float | int | np.floating | np.integer) or not 0.0 < fps < np.inf:
+            raise ValueError(f"fps is a number of frames a second, above zero; got {fps!r}")
         if len(self) < 2:
             return replace(self, frame_time=1.0 / fps)
         old = np.arange(len(self)) * self.frame_time

@@ -46,6 +46,15 @@ def given(state: Any, intent: Any) -> None:
         raise ValueError("this state is of a body of another size: step it with the controller that it is of")
 
 
+def known(state: Any, *wished: Any) -> None:
+    """Nothing, if what is asked about is a state, and what is wished there an intent. ValueError for anything else."""
+    if not isinstance(state, CharacterState):
+        raise ValueError(f"a CharacterState is asked about, as start and step give it; got a {type(state).__name__}")
+    for intent in wished:
+        if not isinstance(intent, Intent):
+            raise ValueError(f"what somebody is asked for is an Intent; got a {type(intent).__name__}")
+
+
 def level(floor: Any, most: float = HIGHEST) -> Any:
     """How high floors (...) lie [m], as they are. ValueError unless they are finite and within ±`most` m."""
     try:

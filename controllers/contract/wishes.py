@@ -183,7 +183,7 @@ class Intent:
         for name, kind in _KINDS:
             if not isinstance(value := getattr(self, name), kind | None):
                 raise ValueError(f"an intent's {name} is a {kind.__name__}, or None; got {value!r}")
-        if not hasattr(self.around, "__getitem__"):
+        if not hasattr(self.around, "__getitem__") or isinstance(self.around, dict):
             raise ValueError(f"around is a sequence of what stands about, empty for nothing; got {self.around!r}")
         for one in self.around[:1]:  # as the first, so the others
             if not any(hasattr(one, name) for name in ("centre", "foot", "place")):  # a goal has a place, and stops nobody

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..body import Pose, Skeleton
-from ..contract import CharacterState, Controller, Intent, Leap, Status, level, seconds
+from ..contract import CharacterState, Controller, Intent, Leap, Status, given, known, level, seconds
 from ..navigation import floor_at
 from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
@@ -178,6 +178,7 @@ class Jump(Reach, Controller):
 
     def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str:
         """The same. ask: is called once more for so much work as most leaps are no more than."""
+        known(state, intent)
         if intent.leap is None:
             return "nobody asked for a jump"
         try:
@@ -227,14 +228,18 @@ class Jump(Reach, Controller):
 
     def start_of(self, state: CharacterState, leap: Leap | None = None, around: Sequence[Any] = ()) -> Start:
         """What a jump needs to know of a state, of how a leap shall land, and of the ground among boxes and pillars around."""
+        known(state)
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
         start = turning(rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start, leap)
         return on_ground(start, state, around)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""
+        given(state, intent)
         dt = seconds(dt)
         level(state.floor)
+        if not isinstance(state.memory, Crouching | Jumping):
+            raise ValueError("this state is of nobody who jumps: enter it first")
         stayed(state.memory.stood, state)
         if isinstance(state.memory, Crouching):
             state = self._released(state, intent)
@@ -322,6 +327,7 @@ class Jump(Reach, Controller):
 
     def status(self, state: CharacterState) -> Status:
         """Running until it stands; one that struck something says so at once, and fails once it stands."""
+        known(state)
         if isinstance(state.memory, Crouching):
             return Status("running", state.memory.refused)
         jumping: Jumping = state.memory

@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from .selection import Choice, neighbours, select
 from .first_stride_build import starts
 from .turning_step_build import turns
 from .velocity_correction import settle
+
+if TYPE_CHECKING:  # who walks by a library needs no files of motion
+    from ..mocap import Reading
 
 SHORTEST = 0.6
 """What is shorter [s] holds no cycle."""
@@ -83,13 +86,13 @@ def read_recipe(path: str | Path) -> tuple[list[Source], str]:
     return sources, provenance
 
 
-def gather(folder: Path, sources: list[Source], progress: Progress | None = None
+def gather(folder: Path, sources: list[Source], progress: Progress | None = None, reading: Reading | None = None
            ) -> tuple[list[tuple[Track, Source, str]], list[str]]:
     """All clips of a folder on the standard human, prepared for cutting; and what could not be read.
 
-    Clips on the same skeleton are calibrated together. Each comes with its source and its actor.
+    Clips on the same skeleton are calibrated together. Each comes with its source and its actor. reading: how all of them are to be read; judged by default.
     """
-    from ..mocap import MotionFileError, calibrate, load, retarget  # who walks by a library needs no files of motion
+    from ..mocap import JUDGED, MotionFileError, calibrate, retarget
 
     found: dict[tuple[int, str], list[Path]] = {}
     for number, source in enumerate(sources):
@@ -107,7 +110,7 @@ def gather(folder: Path, sources: list[Source], progress: Progress | None = None
             if progress:
                 progress("reading", done, total)
             try:
-                clip = load(path)
+                clip = (reading or JUDGED).load(path)
                 if len(clip) * clip.frame_time > SHORTEST:
                     groups.setdefault(_same_skeleton(clip), []).append(clip)
                 else:
@@ -140,9 +143,9 @@ class Collection:
     problems: list[str]
 
 
-def collect(folder: str | Path, sources: list[Source], progress: Progress | None = None) -> Collection:
+def collect(folder: str | Path, sources: list[Source], progress: Progress | None = None, reading: Reading | None = None) -> Collection:
     """All gait cycles of a folder. LibraryError if there are no motion files in it."""
-    tracks, problems = gather(Path(folder), sources, progress)
+    tracks, problems = gather(Path(folder), sources, progress, reading)
     cycles, rank, actor = [], [], []
     for number, (one, source, parent) in enumerate(tracks):
         for family in source.families:
@@ -156,13 +159,13 @@ def collect(folder: str | Path, sources: list[Source], progress: Progress | None
 
 
 def build_library(folder: str | Path, recipe: str | Path | None = None,
-                  progress: Progress | None = None) -> tuple[Library, list[str]]:
-    """A library from a folder of BVH and ASF/AMC files, and notes on what was missing or unreadable.
+                  progress: Progress | None = None, reading: Reading | None = None) -> tuple[Library, list[str]]:
+    """A library from a folder of BVH and ASF/AMC files, all read so, and notes on what was missing or unreadable.
 
     LibraryError if the folder yields no walk that spans the control space.
     """
     sources, provenance = read_recipe(recipe) if recipe else ([Source()], "")
-    found = collect(folder, sources, progress)
+    found = collect(folder, sources, progress, reading)
     walk, missing = select(found.cycles, found.rank, "walk")
     run, _ = select(found.cycles, found.rank, "run")
     if len(walk) < 8:

@@ -6,7 +6,7 @@ keeping, copying or rewinding a state is copying a record.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, SupportsFloat
 
 import numpy as np
 
@@ -58,6 +58,11 @@ DIVIDING = ("agility", "acceleration", "weight_halflife")
 def plain(settings: Settings) -> Settings:
     """The same settings, each of its own kind of number: kernels are compiled anew for any other, 1 for 1.0. ValueError for one that
     is no number, or that no body moves by."""
+    if not isinstance(settings, Settings):
+        raise ValueError(f"settings are Settings, such as Settings(agility=2.0); got {settings!r}")
+    for name, value in settings._asdict().items():
+        if isinstance(value, str) or np.ndim(value) or not isinstance(value, SupportsFloat):
+            raise ValueError(f"{name} must be one number, got {value!r}")
     same = Settings._make(type(usual)(value) for usual, value in zip(Settings(), settings))
     for name, value in same._asdict().items():
         if np.isnan(value) or np.isinf(value) and name != "run_above" or value <= 0.0 and name in DIVIDING:

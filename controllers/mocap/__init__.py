@@ -8,12 +8,13 @@ from .captured import Captured, captured
 from .hinges import elbows, hinged
 from .joint_names import NoHuman, Roles, plain, roles
 from .parsing import MotionFileError
+from .reading import JUDGED, Reading
 from .retarget import retarget
 from .rig import Moved, Rig
 from .t_pose import complete, to_t_pose, upright
 from .units_and_axes import Detected, detect, load, read, standardise
 
 __all__ = [
-    "AcclaimSkeleton", "Calibration", "Captured", "Detected", "MotionFileError", "Moved", "NoHuman", "Rig", "Roles", "calibrate", "captured", "complete", "detect", "elbows", "has_limbs", "hinged",
+    "JUDGED", "AcclaimSkeleton", "Calibration", "Captured", "Detected", "MotionFileError", "Moved", "NoHuman", "Reading", "Rig", "Roles", "calibrate", "captured", "complete", "detect", "elbows", "has_limbs", "hinged",
     "load", "plain", "read", "read_amc", "read_asf", "read_bvh", "retarget", "roles", "standardise", "to_t_pose", "upright", "write_bvh", "zero_positions",
 ]

@@ -26,9 +26,7 @@ def read_amc(path, asf=None, fps: float = 120.0) -> Clip:
     MotionFileError, naming file and line, for anything that is not sound or doesn't fit the skeleton.
     """
     data = read_bytes(path)
-    if not isinstance(asf, AcclaimSkeleton):
-        asf = Path(asf or _skeleton_beside(path))
-        asf = _read_once(asf, asf.stat().st_mtime_ns) if asf.is_file() else read_asf(asf)
+    asf = skeleton_of(path, asf)
     start, radian = _head(data, asf.radian, path)
     bones = _layout(data, start, asf, path)
     values = _frames(data, start, [(name, len(dofs)) for name, dofs, _ in bones], path)
@@ -53,6 +51,14 @@ def read_amc(path, asf=None, fps: float = 120.0) -> Clip:
     return Clip(Path(path).stem, skeleton, 1.0 / fps, root, quaternions)
 
 
+def skeleton_of(path, asf=None) -> AcclaimSkeleton:
+    """The skeleton of an AMC file, as of `read_amc`."""
+    if isinstance(asf, AcclaimSkeleton):
+        return asf
+    asf = Path(asf or _skeleton_beside(path))
+    return _read_once(asf, asf.stat().st_mtime_ns) if asf.is_file() else read_asf(asf)
+
+
 @lru_cache(maxsize=8)
 def _read_once(asf: Path, _modified: int) -> AcclaimSkeleton:
     """One skeleton serves a folder of motions; read again when the file has changed."""
@@ -64,7 +70,7 @@ def _skeleton_beside(path) -> Path:
     found = sorted(p for p in path.parent.iterdir() if p.suffix.lower() == ".asf")
     mine = [p for p in found if path.stem.lower().startswith(p.stem.lower())]
     if len(found) != 1 and not mine:
-        fail(path, None, f"{len(found) or 'no'} .asf files beside it; name its skeleton with asf=")
+        fail(path, None, f"{len(found) or 'no'} .asf files beside it; put its skeleton there, named like it, or name it with asf=")
     return max(mine, key=lambda p: len(p.stem)) if mine else found[0]
 
 

@@ -101,8 +101,14 @@ def write_bvh(clip: Clip, path, order: str = "ZXY", unit: float = 0.01) -> None:
     """
     if not isinstance(clip, Clip):
         raise ValueError(f"write_bvh(clip, path) takes a Clip first, not {type(clip).__name__}")
-    if sorted(order.upper()) != ["X", "Y", "Z"]:
-        raise ValueError(f"the order of rotations is X, Y and Z in some order, not '{order}'")
+    if not isinstance(order, str) or sorted(order.upper()) != ["X", "Y", "Z"]:
+        raise ValueError(f"the order of rotations is X, Y and Z in some order, not {order!r}")
+    for name, value in (("frame_time", clip.frame_time), ("unit", unit)):
+        if not isinstance(value, float | int | np.floating | np.integer) or not 0.0 < value < np.inf:
+            raise ValueError(f"{name} is a number above zero, not {value!r}")
+    if np.shape(clip.root) != (len(clip), 3) or np.shape(clip.quaternions) != (len(clip), len(clip.skeleton), 4):
+        raise ValueError(f"{len(clip)} frames of {len(clip.skeleton)} joints have a root ({len(clip)}, 3) and quaternions ({len(clip)}, {len(clip.skeleton)}, 4); "
+                         f"got {np.shape(clip.root)} and {np.shape(clip.quaternions)}")
     order = order.upper()
     lines, sequence = _hierarchy(clip.skeleton, order, unit)
     angles = Rotation.from_quat(clip.quaternions).as_euler(order, degrees=True, suppress_warnings=True)

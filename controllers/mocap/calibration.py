@@ -63,9 +63,11 @@ def calibrate(clips: Sequence[Clip], skeleton: Skeleton | None = None, *, posed:
     standing; found out by default. ValueError if there is no clip, if the skeleton is no human or a
     bone of its limbs has no length, or if the clips' skeletons differ.
     """
-    clips = list(clips)
+    clips = [clips] if isinstance(clips, Clip) else list(clips)
     if not clips:
         raise ValueError("no clips to calibrate from")
+    if not all(isinstance(clip, Clip) for clip in clips):
+        raise ValueError(f"clips are Clips, as load gives them; got {', '.join(type(clip).__name__ for clip in clips[:3])}")
     skeleton = skeleton or human()
     source = clips[0].skeleton
     part = roles(source)

@@ -38,6 +38,8 @@ def retarget(clip: Clip, skeleton: Skeleton | None = None, *, calibration: Calib
     calibration: from `calibrate`; by default from this clip alone, which serves where the foot
     stands flat in it. ValueError if the clip's skeleton is no human, or not the calibrated one.
     """
+    if not isinstance(clip, Clip):
+        raise ValueError(f"what is retargeted is a Clip, as load gives it; got a {type(clip).__name__}")
     skeleton = skeleton or human()
     known = calibration or calibrate([clip], skeleton)
     if len(known.corrections) != len(clip.skeleton):

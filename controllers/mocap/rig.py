@@ -75,6 +75,12 @@ class Rig:
         metres: in one unit; by default what makes the leg a human's. Its soles are taken to be at 0, or under its toes where that can't be; `on_floor` knows better.
         ValueError, saying what is wrong, where no human can be made of it.
         """
+        if isinstance(names, str) or not hasattr(names, "__len__") or not all(isinstance(name, str) for name in names):
+            raise ValueError(f"names are bones' names, one for each; got {names!r}")
+        if not all(isinstance(parent, int | np.integer) for parent in np.atleast_1d(np.asarray(parents, object)).ravel()):
+            raise ValueError("parents are numbers of bones, -1 of the root")
+        if metres is not None and not (isinstance(metres, float | int | np.floating | np.integer) and 0.0 < metres < np.inf):
+            raise ValueError(f"metres, in one unit, is a number above zero, not {metres!r}")
         places = np.asarray(places, float)
         count = len(names)
         turned = np.tile(np.eye(3), (count, 1, 1)) if turned is None else np.asarray(turned, float)

@@ -16,6 +16,10 @@ from .parsing import MotionFileError, fail
 
 UNITS = (1.0, 0.1, 0.01, 0.001, 0.3048, 0.0254, 0.0254 / 0.45)
 """Metres in one unit: m, dm, cm, mm, foot, inch, and the 1/0.45 inch of CMU's recordings."""
+OTHERS = ".fbx", ".c3d", ".glb", ".gltf", ".vrm", ".trc", ".npz", ".dae", ".usd", ".usda", ".usdz", ".blend"
+"""What else motion is kept in."""
+LENGTHS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+"""Metres in units, by their usual names."""
 LEG = 0.856
 """Thigh and shin of an adult [m], `LEG_PART` of the stature: de Leva 1996."""
 METRIC = 1.0, 0.01, 0.001
@@ -27,7 +31,9 @@ ADULT = 0.6, 1.05
 LEG_PART = 0.492
 LEVEL, GONE = 0.25, 0.75
 """In leg lengths: the lowest joint of who goes over a floor keeps its height to within the first, and a way is longer than the second."""
-_UP = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
+LIES = 0.25
+"""In leg lengths: the lowest joint of who lies on a floor is no higher over it."""
+UP = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
 
 
 @dataclass(frozen=True)
@@ -59,7 +65,8 @@ def read(path, *, asf=None) -> Clip:
         return read_bvh(path)
     if ending == ".amc":
         return read_amc(path, asf)
-    fail(path, None, "is a folder: name a .bvh or .amc file in it" if Path(path).is_dir() else f"'{ending}' is no motion file: .bvh and .amc are read")
+    instead = "; name the .amc file that goes with it" if ending == ".asf" else "; export it as BVH" if ending in OTHERS else ""
+    fail(path, None, "is a folder: name a .bvh or .amc file in it" if Path(path).is_dir() else f"'{ending}' is no motion file: .bvh and .amc are read{instead}")
 
 
 def load(path, *, up: str | None = None, scale: float | None = None, tpose: int | None = None,
@@ -82,14 +89,16 @@ def detect(clip: Clip, *, up: str | None = None, scale: float | None = None, tpo
     """Judge a raw clip; what is given is taken for granted.
 
     The scale is the unit that brings thigh and shin nearest to an adult's. Up is Z if the body,
-    from feet to head, stands along +Z more than along any other axis, unless it crawls that way; any other axis if it stands along that, in its zero pose, too; and Y otherwise. Calibration
+    from feet to head, stands along +Z more than along any other axis, unless it crawls or lies on the floor that way; any other axis if it stands along that, in its zero pose, too; and Y otherwise. Calibration
     frames are cut off from the motion by a jump within the first two steps. The root's OFFSET is
     added only where that brings a body from far off the floor onto it.
-    MotionFileError if no scale is given and none fits; ValueError for an unknown `up`.
+    MotionFileError if no scale is given and none fits; ValueError for an unknown `up`, and a scale that is none.
     """
     leg = leg_length(clip.skeleton)
     if scale is None:
         scale = _unit(leg, clip.skeleton)
+    elif not (isinstance(scale, float | int | np.floating | np.integer) and 0.0 < scale < np.inf):
+        raise ValueError(f"a scale is metres in one unit, above zero, not {scale!r}")
     tpose = _calibration_frames(clip) if tpose is None else int(tpose)
     moving = clip.slice(min(tpose, len(clip) - 1), len(clip))
     positions, _ = moving.kinematics()
@@ -140,7 +149,7 @@ def unit_of(leg: float) -> float:
     if metric and (metric[0] * leg > SMALL or not ADULT[0] < best * leg < ADULT[1]):
         return metric[0]
     if not 0.4 < best * leg < 1.4:
-        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches")
+        raise MotionFileError(f"a leg of {leg:.4g} units is no human's, in metres, centimetres, millimetres, feet or inches: tell its unit, if it is another")
     return best
 
 
@@ -161,9 +170,9 @@ def _unit(leg: float, skeleton: Skeleton) -> float:
 
 
 def _direction(up: str) -> np.ndarray:
-    if up not in _UP:
-        raise ValueError(f"up is one of {', '.join(_UP)}, not '{up}'")
-    return np.array(_UP[up], float)
+    if up not in UP:
+        raise ValueError(f"up is one of {', '.join(UP)}, not '{up}'")
+    return np.array(UP[up], float)
 
 
 def _up(skeleton: Skeleton, positions: np.ndarray) -> str:
@@ -174,7 +183,8 @@ def _up(skeleton: Skeleton, positions: np.ndarray) -> str:
     rest, _ = forward_kinematics(skeleton, np.zeros(3), np.tile(np.eye(3), (len(skeleton), 1, 1)))
     stood = _along(rest[heads].mean(0) - rest[feet].mean(0))
     if stand[2] > max(abs(stand[0]), abs(stand[1])):
-        return "y" if stood == "y" and _crawls(positions, leg_length(skeleton)) else "z"
+        leg = leg_length(skeleton)
+        return "y" if stood == "y" and (_crawls(positions, leg) or _lies(positions, leg)) else "z"
     way = _along(stand)  # who lies, or stands on his hands, in a file of Y up does not do so in its zero pose
     return way if way == stood else "y"
 
@@ -185,9 +195,15 @@ def _crawls(positions: np.ndarray, leg: float) -> bool:
     return bool(y < LEVEL * leg and z > GONE * leg)
 
 
+def _lies(positions: np.ndarray, leg: float) -> bool:
+    """Whether a body (T, J, 3) whose head is farther along Z than its feet lies on the floor at 0 across Y, and does not stand on one at 0 across Z."""
+    across, along = (float(np.percentile(positions[..., axis].min(-1), 5)) for axis in (1, 2))
+    return 0.0 <= across < LIES * leg and abs(along) > LEVEL * leg
+
+
 def _along(vector: np.ndarray) -> str:
     """The axis that a vector (3,) is most nearly along."""
-    return max(_UP, key=lambda name: float(vector @ _UP[name]))
+    return max(UP, key=lambda name: float(vector @ UP[name]))
 
 
 def _calibration_frames(clip: Clip) -> int:

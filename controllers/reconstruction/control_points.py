@@ -6,6 +6,7 @@ six points the paper also compares with, has the middle of the torso in its plac
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -64,13 +65,17 @@ class ControlPoints:
         return self.on(*clip.kinematics())
 
 
-def parse(text: str, skeleton: Skeleton) -> ControlPoints:
-    """The points that a text names: "4" for the paper's set of four, or "lwrist,rankle,Head+0/0.12/0.05".
+def parse(text: str | Sequence[str], skeleton: Skeleton) -> ControlPoints:
+    """The points that a text, or some, name: "4" for the paper's set of four, or "lwrist,rankle,Head+0/0.12/0.05".
 
     Points are divided by commas. A point is a name in `NAMES` or a joint's own, small and capital letters alike,
     and may stand beside the joint by metres right after a plus: x/y/z in the joint's frame.
     ValueError, naming the point and what there is, for anything else.
     """
+    if isinstance(text, list | tuple) and all(isinstance(word, str) for word in text):
+        text = ",".join(text)
+    if not isinstance(text, str):
+        raise ValueError(f"points are named, as in 'lwrist,rwrist', or a set of the paper, '4'; got {text!r}")
     if not text.strip():
         raise ValueError(f"no control points: name some of {_known(skeleton)}, or a set of the paper: {', '.join(SETS)}")
     words = [word.strip() for word in text.split(",")]

@@ -178,6 +178,8 @@ def remember(file: Path, done: Collection[str]) -> None:
     """Write what was done into a file; where that can't be, one is told again another time."""
     words = ", ".join(f'"{name}"' for name in ORDER if name in done)
     with suppress(OSError):
+        if not file.is_absolute():  # of somebody who has no home
+            return
         file.parent.mkdir(parents=True, exist_ok=True)
         with whole(file) as part:
             part.write_text(f"# What Gambol need not teach again; delete this file to be told anew.\ndone = [{words}]\n", "utf-8")

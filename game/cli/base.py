@@ -44,6 +44,8 @@ class Preset(StrEnum):
 Library = Annotated[Path | None, typer.Option(help="A gait library; the shipped one by default.")]
 Wearing = Annotated[Path | None, typer.Option("--character", help="Who to be: a human in a .glb, .gltf or .vrm file; the mannequin by default.")]
 Quality = Annotated[Preset, typer.Option(help="Picture quality.")]
+Up = Annotated[str | None, typer.Option("--up", help="Which axis of motion files points up: x, y, z, -x, -y or -z; judged by the body in them by default.")]
+Unit = Annotated[str | None, typer.Option("--unit", help="The unit of motion files, of .amc files their skeleton's: m, dm, cm, mm, ft, in or a number of metres; judged by the body's legs by default.")]
 
 
 class Mistake(ValueError):
@@ -100,6 +102,14 @@ def say(text: str) -> None:
     typer.echo(text, err=True)
 
 
+def say_forgets() -> None:
+    """Tell, before what takes long, that it will take as long the next time, where nothing can be kept."""
+    from gambol.controllers.compiled import forgets
+
+    if why := forgets():
+        say(f"gambol: {why}")
+
+
 def say_refused(refused: Iterable[str]) -> None:
     """Tell what a scenario asked for that nobody could do, and why."""
     for line in refused:
@@ -123,6 +133,7 @@ def person_of(library: Path | None, character: Path | None = None) -> Any:
     walker, body = Locomotion.load(library), body_of(character)
     programs = preparing.begun(walker, library)
     if programs:
+        say_forgets()
         say("compiling the motion, once: a minute")
     for program in programs:
         program.wait()
@@ -157,6 +168,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     wanted = [one for one in wanted if one[0] != SHIPPED and not known.knows(*one)]
     if not wanted:
         return
+    say_forgets()
     with progress_bar() as bar:
         if not bar.console.is_terminal:
             say("learning to make bodies of a few points, once: a minute, or some minutes of a large database for trackers that turn")
@@ -176,6 +188,29 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
         raise Mistake(learning.fault)
     for name, points in wanted:
         known(name, points)
+
+
+def reading_of(up: str | None, unit: str | None, file: Path | None = None) -> Any:
+    """How motion files are to be read; how one is that is judged to be as few are, is told. Mistake for an axis or a unit that there is not."""
+    from gambol.controllers.mocap import Reading
+
+    try:
+        reading = Reading.of(up)
+    except ValueError as error:
+        raise Mistake(f"--up: {error}") from None
+    try:
+        reading = Reading.of(up, unit)
+    except ValueError as error:
+        raise Mistake(f"--unit: {error}") from None
+    if file is not None and (doubt := reading.doubt(file)):
+        say(f"gambol: {doubt}; --up and --unit say otherwise")
+    return reading
+
+
+def of_a_motion_file(option: str, file: Path | None, up: str | None, unit: str | None) -> None:
+    """Mistake for an axis or a unit where there is no motion file."""
+    if (up, unit) != (None, None) and (file is None or file.suffix.lower() not in (".bvh", ".amc")):
+        raise Mistake(f"{'--up' if up is not None else '--unit'} goes with {option}, a .bvh or .amc file")
 
 
 def known(file: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .base import Mistake, app, plainly, progress_bar, say
+from .base import Mistake, Unit, Up, app, plainly, progress_bar, reading_of, say
 
 database = typer.Typer(no_args_is_help=True, help="Motion databases: build one from motion capture, look at one, teach a network from one.")
 app.add_typer(database, name="database")
@@ -22,16 +22,18 @@ _KEPT = 250
 def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AMC files.")],
           out: Annotated[Path, typer.Option("-o", "--out", help="The .gambolmotion file to write.")] = Path("database.gambolmotion"),
           fps: Annotated[float, typer.Option(min=1.0, max=1000.0, help="Frames a second.")] = 60.0,
-          mirrors: Annotated[bool, typer.Option("--mirrors/--no-mirrors", help="Add the mirror image of every take.")] = True) -> None:
+          mirrors: Annotated[bool, typer.Option("--mirrors/--no-mirrors", help="Add the mirror image of every take.")] = True,
+          up: Up = None, unit: Unit = None) -> None:
     """Put every motion file of a folder onto one skeleton, into one file."""
     from gambol.controllers.reconstruction.database import SUFFIX, build as build_database
 
     from ..files import named, output_file
 
     output_file(out, SUFFIX)
+    reading = reading_of(up, unit)
     with progress_bar() as bar, named(out):
         task = bar.add_task("reading", total=None)
-        made = build_database(folder, out, fps=fps, mirrors=mirrors,
+        made = build_database(folder, out, fps=fps, mirrors=mirrors, reading=reading,
                               progress=lambda done, total: bar.update(task, completed=done, total=total))
     for problem in made.problems:
         say(problem)

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, app, cores, learn, person_of, plainly, progress_bar, say, say_doubts, say_refused
+from .base import Library, Mistake, Preset, Quality, Unit, Up, app, cores, learn, of_a_motion_file, person_of, plainly, progress_bar, reading_of, say, say_doubts, say_refused
 from .film_jobs import Job, at_once, count_of, frames, jobs_of, on_cluster
 
 
@@ -101,7 +101,8 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
           fit: Annotated[int, typer.Option(min=0, max=60, help="Find stature and girth in so many frames first, where --start says where joints are seen.")] = 6,
           masks: Annotated[bool, typer.Option("--masks", help="Follow the true masks instead of the pictures.")] = False,
           lag: Annotated[int, typer.Option(min=0, max=60, help="Look so many frames ahead before a pose is settled: calmer, and nearer to the truth.")] = 0,
-          overlay: Annotated[Path | None, typer.Option(help="A .mp4 film, or a folder, of the contours found, blue, and the model's, red.")] = None) -> None:
+          overlay: Annotated[Path | None, typer.Option(help="A .mp4 film, or a folder, of the contours found, blue, and the model's, red.")] = None,
+          up: Up = None, unit: Unit = None) -> None:
     """Follow somebody through what calibrated cameras filmed, without markers: the motion as a file."""
     from contextlib import nullcontext
 
@@ -117,6 +118,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     from ..footage import clicked_pose, exchanged_clicks, first_poses, lost_frames, person_in, read_footage, seen_in, settled
     from ..studio import error_of, followed, late, overlaid
 
+    of_a_motion_file("--start", start, up, unit)
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")
@@ -141,7 +143,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
         poses = [settled(film, Tracker(surface, film.lenses, float(film.fps)), pose, who, masks)]
     else:
         surface = surface_of(freedom="full")
-        poses = list(first_poses(film, surface, who, start))
+        poses = list(first_poses(film, surface, who, start, reading_of(up, unit, start)))
     tracker, known = Tracker(surface, film.lenses, float(film.fps), TrackerSettings(lag=lag)), len(poses)
     drawn = None if overlay is None else overlaid(film, surface, known - 1, poses[-1])
     with (nullcontext() if drawn is None or overlay is None else recorder(overlay, (drawn.shape[1], drawn.shape[0]), film.fps)) as tape, progress_bar() as bar:

@@ -190,9 +190,13 @@ def gallery(names: Annotated[list[str] | None, typer.Argument(help="Shipped scen
             library: Library = None,
             force: Annotated[bool, typer.Option("--force", help="Make films anew that are up to date.")] = False) -> None:
     """Film all scenarios into a folder, with a page of posters, films and figures."""
+    from ..files import output_folder
     from ..output import PAGE, make, plan, write_page
-    from ..scenario import shipped
+    from ..scenario import load, shipped
 
+    for name in names or ():  # what can't be is told of before anything is compiled
+        load(name)
+    output_folder(out)
     controller = person_of(library)
     plans = plan(names or shipped(), out, controller, preset.value, None if size is None else pixels_of(size), force)
     todo = [one for one in plans if not one.fresh]

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .base import Mistake, app, plainly, progress_bar, say
+from .base import Mistake, Unit, Up, app, plainly, progress_bar, reading_of, say
 
 library = typer.Typer(no_args_is_help=True, help="Gait libraries: build one from motion capture, look at one.")
 app.add_typer(library, name="library")
@@ -18,13 +18,15 @@ app.add_typer(library, name="library")
 @plainly
 def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AMC files.")],
           out: Annotated[Path, typer.Option("-o", "--out", help="The library file to write.")] = Path("library.npz"),
-          recipe: Annotated[Path | None, typer.Option(help="A TOML recipe: which files for which gait.")] = None) -> None:
+          recipe: Annotated[Path | None, typer.Option(help="A TOML recipe: which files for which gait.")] = None,
+          up: Up = None, unit: Unit = None) -> None:
     """Cut gait cycles out of motion capture and make a library of them."""
     from gambol.controllers.locomotion import build_library
 
     from ..files import named, output_file
 
     output_file(out, ".npz")
+    reading = reading_of(up, unit)
     with progress_bar() as bar:
         tasks = {}
 
@@ -33,7 +35,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
                 tasks[what] = bar.add_task(what)
             bar.update(tasks[what], completed=done, total=total)
 
-        made, notes = build_library(folder, recipe, progress=progress)
+        made, notes = build_library(folder, recipe, progress=progress, reading=reading)
     with named(out):
         made.save(out)
 

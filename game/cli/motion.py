@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Wearing, app, known, learn, person_of, plainly, progress_bar, replayed, say, say_doubts, say_refused
+from .base import Library, Mistake, Unit, Up, Wearing, app, known, learn, of_a_motion_file, person_of, plainly, progress_bar, reading_of, replayed, say, say_doubts, say_refused
 
 
 @app.command()
@@ -17,7 +17,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
            fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
            onto: Annotated[Path | None, typer.Option(help="Your own rigged human: -o moves on his bones. Of a .glb, .gltf or .vrm a copy with skin and names, of a .bvh or .amc a .bvh.")] = None,
            actor: Annotated[str | None, typer.Option(help="Whose motion goes --onto a file; the first one's by default.")] = None,
-           library: Library = None, character: Wearing = None) -> None:
+           up: Up = None, unit: Unit = None, library: Library = None, character: Wearing = None) -> None:
     """Write the motion of a scenario or an input log for other programs."""
     from ..output import checked, sampled, takes
     from ..session import SUFFIX, replay
@@ -25,7 +25,8 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
     checked(out)
     if actor is not None and onto is None:
         raise Mistake("--actor: says whose motion goes --onto a file; without it everybody's is written")
-    rig = _rig(onto, out) if onto is not None else None
+    of_a_motion_file("--onto", onto, up, unit)
+    rig = _rig(onto, out, up, unit) if onto is not None else None
     if not what.lower().endswith(SUFFIX):
         from ..scenario import scenario as scenarios
 
@@ -44,12 +45,12 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
         say(f"{path}: {len(done[0].poses)} frames, {log.duration:.1f} s")
 
 
-def _rig(onto: Path, out: Path) -> Any:
+def _rig(onto: Path, out: Path, up: str | None, unit: str | None) -> Any:
     """The rig in a file, and whether the motion on it can be written."""
     from ..files import output_file
     from ..output import rig_in, suffix_onto
 
-    rig = rig_in(onto)
+    rig = rig_in(onto, reading_of(up, unit, onto if suffix_onto(onto) == ".bvh" else None))
     output_file(out, suffix_onto(onto))
     if out.exists() and out.samefile(onto):
         raise Mistake(f"--onto {onto}: would be overwritten; give -o another name")
@@ -90,17 +91,17 @@ def character(out: Annotated[Path, typer.Option("-o", "--out", help="The .glb fi
               child: Annotated[float, typer.Option(help="From 0, grown up, to 1, the proportions of a child of six.")] = 0.0,
               shoulders: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
               hips: Annotated[float, typer.Option(help="Their width over the usual.")] = 1.0,
-              skeleton: Annotated[Path | None, typer.Option(help="Take the lengths of bones from this BVH or ASF/AMC file.")] = None) -> None:
+              skeleton: Annotated[Path | None, typer.Option(help="Take the lengths of bones from this BVH or ASF/AMC file.")] = None,
+              up: Up = None, unit: Unit = None) -> None:
     """Make a mannequin of any size and build, as a GLB with skin and joints."""
     from ..character import Actor, Build, joints_of, tailored, write
     from ..files import output_file
 
     output_file(out, ".glb")
     bones, build = None, Build(height, weight, child, shoulders, hips)
-    from gambol.controllers.mocap import load
-
+    of_a_motion_file("--skeleton", skeleton, up, unit)
     if skeleton is not None:
-        bones = load(skeleton).skeleton
+        bones = reading_of(up, unit, skeleton).load(skeleton).skeleton
     try:
         body = tailored(build, bones, out.stem)
     except ValueError as error:

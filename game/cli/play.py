@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import (Library, Mistake, Preset, Quality, Wearing, app, body_of, in_body, known, learn, person_of, pixels_of, plainly, replayed,
-                   say, unswept)
+from .base import (Library, Mistake, Preset, Quality, Wearing, app, body_of, in_body, known, learn, person_of, pixels_of, plainly, reading_of, replayed,
+                   say, say_forgets, unswept)
 
 Hands = Annotated[Path | None, typer.Option("--bindings", help="Keys and buttons, a .toml file; your own or the shipped ones by default.")]
 NO_DISPLAY = 3
@@ -47,6 +47,8 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
 
         walker = Locomotion.load(library)
         programs = preparing.begun(walker, library)  # while the rest is loaded
+        if programs:
+            say_forgets()
 
         from ..app import OUT, Capture, Opening, Play, Preparing, Teacher, log_file
         from ..session import LogWriter
@@ -66,7 +68,7 @@ def play(library: Library = None, character: Wearing = None, preset: Quality = P
         controller, clip = Filmed.load(footage, controller), footage
         for line in lost_frames(controller.footage):
             say(f"gambol: {line}")
-    log = LogWriter(log_file(record), controller, players, clip, database)
+    log = LogWriter(log_file(record), controller, players, clip, database, up=tape and tape.up, unit=tape and tape.unit)
     capture = Capture(OUT, [text for option, value in (("--library", library), ("--character", character)) if value
                           for text in (option, str(value))])
     beside = Preparing(walker, programs)
@@ -131,17 +133,18 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
             say(f"{sending.lost} frames could not be sent")
 
 
-def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None,
+def watch(method: str, points: str, database: Path | None = None, clip: Path | None = None, stream: Any = None, up: str | None = None, unit: str | None = None,
           size: str = "1280x720", preset: Preset = Preset.full, send: Sequence[str] = (), ask: Any = None) -> None:
     """Open the game on a reconstruction from points: of whoever is played, of a clip, or of a stream's.
 
-    send: HOST:PORT of each program that the body is sent on to. stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
+    send: HOST:PORT of each program that the body is sent on to. up, unit: how the clip is to be read (`reading_of`). stream: a `gambol.controllers.reconstruction.live.sources.Source` of these points, placed where the first player's would be.
     ask: asks whoever wears the stream's trackers how they stand (`live.stand`), in the window, before the game begins.
     """
     from gambol.controllers.reconstruction import SETS
 
     points = next((name for name, some in SETS.items() if points == ",".join(some)), points)
     pixels, hands = pixels_of(size), _hands(None)
+    reading = reading_of(up, unit, clip)
     # beside what ships nobody waits for others to be learnt
     wanted = tuple(dict.fromkeys([method, *(() if stream is not None or method == "trackers" else ("lpcr", "lpca"))]))
     controller = person_of(None)
@@ -151,8 +154,8 @@ def watch(method: str, points: str, database: Path | None = None, clip: Path | N
     from ..session import Comparison, LogWriter
     from ..world import Recorded, methods
 
-    performer = controller if clip is None else Recorded.load(clip, controller)
-    log = LogWriter(log_file(None), performer, 1, clip, database)
+    performer = controller if clip is None else Recorded.load(clip, controller, reading)
+    log = LogWriter(log_file(None), performer, 1, clip, database, up=up, unit=unit)
     capture = Capture(OUT)
     sending = Sending(*send) if send else None
 

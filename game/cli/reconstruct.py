@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from . import live
-from .base import Mistake, app, learn, plainly, progress_bar, say
+from .base import Mistake, Unit, Up, app, learn, of_a_motion_file, plainly, progress_bar, reading_of, say
 from .live import SUFFIX, write_take
 from .play import watch
 
@@ -36,7 +36,8 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
                 seconds: Annotated[float | None, typer.Option(min=0.1, help="Record so long from when somebody has stood still, and wait as long for that, half a minute at least; until Ctrl-C by default.")] = None,
                 keep: Annotated[Path | None, typer.Option(help="Keep all packets in this file as they come, so that nothing is lost and they can be tried again.")] = None,
                 send: Annotated[list[str] | None, typer.Option(help="Send the body on by the VMC protocol to a program that shows it: HOST:PORT, such as 127.0.0.1:39539; named several times, to each.")] = None,
-                window: Annotated[bool, typer.Option("--window", help="Show the body in a window, too, while it is sent on.")] = False) -> None:
+                window: Annotated[bool, typer.Option("--window", help="Show the body in a window, too, while it is sent on.")] = False,
+                up: Up = None, unit: Unit = None) -> None:
     """Make a whole body's motion from the way of two to six points on it."""
     if (clip is None) == (stream is None):
         raise Mistake("reconstruct needs either a motion file or --stream osc")
@@ -49,6 +50,7 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     for option, given in recorded if stream is not None else listening + (recorded if heard_again else worn):
         if given is not None:
             raise Mistake(f"{option} goes with " + ("a motion file" if (option, given) in recorded else "--stream"))
+    of_a_motion_file("CLIP", clip, up, unit)
     if height is not None and calibration is not None:
         raise Mistake("--height and --calibration both say how tall one is: give one of them")
     if poses and (calibration is None or calibration.exists()):
@@ -76,9 +78,9 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
         names = _named("4" if points is None else points)
         method = method or _usual(names, database, turns)
         if out is None:
-            watch(method, names, database, clip=clip)
+            watch(method, names, database, clip=clip, up=up, unit=unit)
         else:
-            _clip(clip, names, out, method, database, noise / 100.0, seed, turns)
+            _clip(clip, names, out, method, database, noise / 100.0, seed, turns, reading_of(up, unit, clip))
         return
     from gambol.controllers.reconstruction.live import read_map, usual_map
 
@@ -159,7 +161,7 @@ def _controller(method: str, file: Path | None, points: str, skeleton: Any = Non
     return Reconstruction(learnt, controls, dt=known.frame_time(method), starts=known.starts(method, points), far=math.inf)
 
 
-def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, noise: float, seed: int, turning: bool) -> None:
+def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, noise: float, seed: int, turning: bool, reading: Any) -> None:
     """Reconstruct a recorded clip from its points, and from how they are turned, and tell how good that is."""
     import numpy as np
 
@@ -168,7 +170,7 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
 
     from ..world import performance
 
-    clip = performance(path)
+    clip = performance(path, reading)
     controller = _controller(method, file, points)
     if turning and not getattr(controller.method, "hears_turns", False):
         raise Mistake(f"--turns goes with a method that hears them, --method trackers or turning; {method} has points alone")

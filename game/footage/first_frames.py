@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gambol.controllers.mocap import load, retarget
+from gambol.controllers.mocap import JUDGED, Reading, retarget
 from gambol.controllers.tracking import ClickError, Tracker, clicked, exchanged, read_clicks
 from gambol.controllers.tracking.silhouettes import Surface, of_person
 from gambol.controllers.tracking.twists import Configuration, fitted
@@ -30,11 +30,12 @@ def person_in(footage: Footage, name: str | None) -> int:
     return footage.people.index(name)
 
 
-def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Path | None = None) -> tuple[Configuration, Configuration]:
-    """The poses of the first two frames, by a motion file, else by the truth. FootageError, MotionFileError where there are none."""
+def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Path | None = None,
+                reading: Reading = JUDGED) -> tuple[Configuration, Configuration]:
+    """The poses of the first two frames, by a motion file, read so, else by the truth. FootageError, MotionFileError where there are none."""
     chain = surface.chain
     if motion is not None:
-        clip = load(motion)
+        clip = reading.load(motion)
         if clip.skeleton.names != chain.skeleton.names:
             try:
                 clip = retarget(clip)

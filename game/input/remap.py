@@ -45,14 +45,15 @@ class BindingsError(ValueError):
 
 def user_file(environment: Mapping[str, str] = os.environ, system: str = sys.platform) -> Path:
     """Where a user's own bindings lie on this system; the file need not be there."""
+    home = Path(os.path.expanduser("~"))  # where somebody has none, it is no folder
     if system == "win32":
-        folder = Path(environment.get("APPDATA") or Path.home() / "AppData" / "Roaming")
+        folder = Path(environment.get("APPDATA") or home / "AppData" / "Roaming")
     elif system == "darwin":
-        folder = Path.home() / "Library" / "Application Support"
+        folder = home / "Library" / "Application Support"
     else:
         folder = Path(environment.get("XDG_CONFIG_HOME") or "")
         if not folder.is_absolute():  # as the XDG specification wants it
-            folder = Path.home() / ".config"
+            folder = home / ".config"
     return folder / "gambol" / FILE
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.body import Pose, Skeleton, forward_kinematics, local_rotations
-from gambol.controllers.mocap import Moved
+from gambol.controllers.mocap import JUDGED, Moved, Reading
 
 from .. import character as glb
 from ..files import OutputError, output_file
@@ -122,10 +122,12 @@ def suffix_onto(path: str | Path) -> str:
     return ".bvh" if Path(path).suffix.lower() in READ else ".glb"
 
 
-def rig_in(path: str | Path) -> glb.Rigged | MovingRig:
-    """The human's skeleton in somebody's own file: .glb, .gltf or .vrm with a skin, .bvh or .amc. CharacterError or MotionFileError, naming the file and what would be
+def rig_in(path: str | Path, reading: Reading = JUDGED) -> glb.Rigged | MovingRig:
+    """The human's skeleton in somebody's own file: .glb, .gltf or .vrm with a skin, .bvh or .amc. reading: how the latter are to be read. CharacterError or MotionFileError, naming the file and what would be
     right, where there is none."""
-    return moving_rig(path) if Path(path).suffix.lower() in READ else glb.rigged(path)
+    if Path(path).suffix.lower() not in (*READ, *glb.gltf.SUFFIXES):
+        raise OutputError(f"{path}: no rig is read from it; name a {', '.join((*glb.gltf.SUFFIXES, *READ[:-1]))} or {READ[-1]} file")
+    return moving_rig(path, reading) if Path(path).suffix.lower() in READ else glb.rigged(path)
 
 
 def on_rig(onto: glb.Rigged | MovingRig, take: Take) -> Moved:

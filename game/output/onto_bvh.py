@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import Clip, Skeleton, between, forward_kinematics, local_rotations
-from gambol.controllers.mocap import MotionFileError, Moved, Rig, calibrate, detect, read, standardise, write_bvh
+from gambol.controllers.mocap import JUDGED, MotionFileError, Moved, Reading, Rig, calibrate, standardise, write_bvh
 
 from ..files import named, output_file
 
@@ -34,11 +34,10 @@ class MovingRig:
     scale: float
 
 
-def moving_rig(path: str | Path) -> MovingRig:
+def moving_rig(path: str | Path, reading: Reading = JUDGED) -> MovingRig:
     """The human's skeleton in a .bvh or .amc file. MotionFileError, naming the file and what would be right, where there is none."""
-    raw = read(path)
+    raw, found = reading.read(path)
     try:
-        found = detect(raw)
         clip = standardise(raw, found)
         known = calibrate([clip])
         seconds = len(clip) * clip.frame_time

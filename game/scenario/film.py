@@ -85,9 +85,10 @@ def opening(scenario: Scenario, controller: Any) -> World:
             someone = tracked_of(performer.controller, watches, RATE, actor.tracks.penalty)
             cast[actor.name] = Character(actor.name, someone, tint=actor.colour, opacity=_opacity(actor), watches=watches,
                                          state=beginning(someone, performer.state, watches.beside), enters=performer.enters, leaves=performer.leaves)
-    clips = {table.performer: table.clip for _, table in scenario.followers if table.clip is not None}
-    for name, clip in clips.items():
-        someone = Recorded.load(clip, controller)
+    clips = {table.performer: table for _, table in scenario.followers if table.clip is not None}
+    for name, table in clips.items():
+        assert table.clip is not None  # see above
+        someone = Recorded.load(table.clip, controller, table.reading())
         cast[name] = Character(name, someone, state=someone.start())
     for actor, table in scenario.followers:
         performer, follows = cast[table.performer], table.follows()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path as File
 from typing import Annotated, Any, get_args
@@ -153,9 +154,17 @@ def shipped() -> tuple[str, ...]:
     return tuple(sorted(file.stem for file in asset("scenarios").glob("*.toml")))
 
 
+_UNCOUNTED = re.compile(r"\[\d+\]")
+OTHERS = {".gambol": "an input log is filmed with --replay", **dict.fromkeys((".bvh", ".amc"), "motion is a follower's clip in one, or read by gambol reconstruct"),
+          **dict.fromkeys((".glb", ".gltf", ".vrm"), "a body is worn with --character")}
+"""What is named in a scenario's place, by the ending of its file."""
+
+
 def locate(name: str | File) -> File:
     """The file of a scenario: that of a shipped one, or `name` itself. ScenarioError if there is neither."""
     file = File(name)
+    if (other := OTHERS.get(file.suffix.lower())) is not None:
+        raise ScenarioError(f"{file}: is no scenario, which is a .toml file; {other}")
     if file.suffix == ".toml" or file.is_file():  # a folder of that name shadows nothing
         return file
     if str(name) not in shipped():
@@ -235,7 +244,9 @@ def _fault(file: File, fault: Mapping[str, Any]) -> str:
         low, high = fault["ctx"].get("min_length"), fault["ctx"].get("max_length")
         text = f"needs {f'at least {low}' if high is None else f'{high} at most'}, has {fault['ctx']['actual_length']}: {short(fault['input'])}"
     elif kind == "tuple_type" and isinstance(fault["input"], dict):
-        text = f"is a list of tables: each begins with [[{where}]], or stands in braces in a list"
+        text = f"is a list of tables: each begins with [[{_UNCOUNTED.sub('', where)}]], or stands in braces in a list"
+    elif kind in ("model_type", "model_attributes_type", "dict_type"):
+        text = f"needs a table, {{ name = value, … }}, got {short(fault['input'])}"
     elif kind not in ("value_error",):
         text = f"{text[0].lower()}{text[1:]}, got {short(fault['input'])}".replace("tuple", "list", 1)
     return f"{file}: {where + ': ' if where else ''}{text}"

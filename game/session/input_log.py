@@ -40,7 +40,7 @@ class Log:
 
     library: the `digest` of what it was played with. character: the name of the body that was worn,
     if any. prints: tick number → `fingerprint`. clip, database: the files of the recording that the first player was, or
-    the folder of footage, and of what the methods of reconstruction learn from; empty where there was none but Gambol's own.
+    the folder of footage, and of what the methods of reconstruction learn from; empty where there was none but Gambol's own. up, unit: as which the clip was read, as of `mocap.Reading.of`; empty where that was judged.
     """
 
     players: int
@@ -51,6 +51,8 @@ class Log:
     path: Path = Path("log")
     clip: str = ""
     database: str = ""
+    up: str = ""
+    unit: str = ""
 
     @property
     def duration(self) -> float:
@@ -62,14 +64,14 @@ class LogWriter:
     """Keeps a log as it is played; the file begins with the first `flush` that has something to write. ticks: so many
     were added.
 
-    clip, database: as in `Log`; kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
+    clip, database, and told, up and unit: as in `Log`; files are kept as whole paths, as a replay may stand in another folder. OutputError from `flush`
     where it can't be written.
     """
 
     def __init__(self, path: Path, controller: Any, players: int, clip: str | Path | None = None,
-                 database: str | Path | None = None):
+                 database: str | Path | None = None, **told: str | None):
         self.path, self._file, self.ticks = Path(path), None, 0
-        needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file}
+        needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file} | {name: word for name, word in told.items() if word}
         self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
                       "library": digest(controller),
                       "character": "" if controller.body is None else printable(controller.body.name, 100), **needs}
@@ -154,4 +156,4 @@ def read(path: str | Path) -> Log:
     if not blocks:
         raise LogError(f"{path}: nothing was played yet")
     return Log(about["players"], about["library"], about["character"], Ticks(blocks), prints, path, about.get("clip", ""),
-               about.get("database", ""))
+               about.get("database", ""), about.get("up", ""), about.get("unit", ""))

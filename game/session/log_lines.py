@@ -23,7 +23,7 @@ BLOCK = 600
 ROOM = 1 << 20
 """A line unpacks to so many bytes at most."""
 _PRESSED, _WORDS = 1000, 4000  # actions set off in a tick, letters of one
-_NAMES = {"library": 64, "character": 200, "clip": 4096, "database": 4096}  # letters of each
+_NAMES = {"library": 64, "character": 200, "clip": 4096, "database": 4096, "up": 2, "unit": 40}  # letters of each
 _CONTROLS = frozenset(chr(code) for code in (*range(32), *range(127, 160)))
 _ESCAPES = ((b"\x1b", b"\x1be"), (b"\n", b"\x1bn"))
 
@@ -73,7 +73,7 @@ def head(path: Path, line: bytes) -> dict:
     if not _whole(found.get("players"), 1, PLAYERS):
         raise LogError(f"{path}: line 1: players: needs a whole number from 1 to {PLAYERS}, not {_short(found.get('players'))}")
     for name, most in _NAMES.items():
-        text = found.get(name, "" if name in ("clip", "database") else None)
+        text = found.get(name, None if name in ("library", "character") else "")
         if not isinstance(text, str) or len(text) > most or not _CONTROLS.isdisjoint(text):
             raise LogError(f"{path}: line 1: {name}: needs a name of at most {most} letters, not {_short(text)}")
     return found

@@ -28,7 +28,15 @@ def performer_of(log: Log, controller: Any) -> Any:
             raise LogError(f"{log.path}: was played with the {what} {file}, which is not there: put it back")
     if not log.clip:
         return controller
-    return Filmed.load(log.clip, controller) if Path(log.clip).is_dir() else Recorded.load(log.clip, controller)
+    if Path(log.clip).is_dir():
+        return Filmed.load(log.clip, controller)
+    from gambol.controllers.mocap import Reading  # a game without a clip starts without
+
+    try:
+        reading = Reading.of(log.up or None, log.unit or None)
+    except ValueError as error:
+        raise LogError(f"{log.path}: line 1: {error}") from None
+    return Recorded.load(log.clip, controller, reading)
 
 
 def of_library(log: Log, controller: Any) -> Log:

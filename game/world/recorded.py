@@ -51,9 +51,9 @@ class Recorded(Controller):
         self._rates = frames[:, [-2, -3, -1]]  # forward, yaw rate, leftward
 
     @staticmethod
-    def load(path: str | Path, walker: Any) -> Recorded:
-        """A .bvh or .amc file on the standard human, feet on the floor. MotionFileError, naming it, if it can't be used."""
-        return Recorded(performance(path), walker)
+    def load(path: str | Path, walker: Any, reading: Any = None) -> Recorded:
+        """A .bvh or .amc file on the standard human, feet on the floor. reading: a `mocap.Reading`, where its axes or unit are known. MotionFileError, naming it, if it can't be used."""
+        return Recorded(performance(path, reading), walker)
 
     @property
     def kind(self) -> str:
@@ -100,11 +100,12 @@ class Recorded(Controller):
                               previous, 0.0 if previous is None else 1.0 / FPS)
 
 
-def performance(path: str | Path) -> Clip:
-    """A motion file at 60 frames a second on the standard human, feet on the floor. MotionFileError, naming it, if it can't be used."""
-    from gambol.controllers.mocap import MotionFileError, hinged, load, retarget
+def performance(path: str | Path, reading: Any = None) -> Clip:
+    """A motion file at 60 frames a second on the standard human, feet on the floor. reading: a `mocap.Reading`, where its axes or unit are known. MotionFileError, naming it,
+    if it can't be used."""
+    from gambol.controllers.mocap import JUDGED, MotionFileError, hinged, retarget
 
-    clip = load(path)
+    clip = (reading or JUDGED).load(path)
     if len(clip) < LEAST or clip.duration * FPS < LEAST - 1.01:
         raise MotionFileError(f"{path}: {len(clip)} frames in {clip.duration:.3g} s are too few; a performance needs {LEAST} in {(LEAST - 1) / FPS:g} s at least")
     try:

@@ -1,6 +1,7 @@
 """The table of keys and buttons, files that change it, and the sheet that shows it."""
 
 import math
+import os
 from dataclasses import replace
 
 import glfw
@@ -9,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+from gambol.game.app.hints import remember
 from gambol.game.cli import app
 from gambol.game.hosts.events import PadState
-from gambol.game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, key_names
+from gambol.game.input import DEFAULT, HOLDING, JOINING, REWOUND, Keyboard, Mouse, Sticks, help_sheet, key_names, remap
 from gambol.game.input.remap import BindingsError, as_toml, clashes, load, remapped, shared, user_file
 
 
@@ -118,6 +120,17 @@ def test_the_printed_table_is_read_back(tmp_path_factory, keys, inner, flag):
             load(file)
     else:
         assert load(file) == table
+
+
+@pytest.mark.parametrize("system", ["linux", "darwin", "win32"])
+def test_who_has_no_home_has_what_is_shipped(tmp_path, monkeypatch, system):
+    """As in a container whose user is a mere number."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    monkeypatch.setattr(remap, "user_file", lambda: user_file({}, system))
+    assert load() == DEFAULT and as_toml(DEFAULT)
+    remember(user_file({}, system).with_name("hints.toml"), {"walk"})
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_users_own_file_is_found(tmp_path, monkeypatch):

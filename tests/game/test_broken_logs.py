@@ -70,7 +70,8 @@ BLOCK = ([3, 1, None, []], bytes(96))
     ({"format": True}, "a log of format true"), ({"format": "\x1b[2J"}, "a log of format .*u001b"), ({"format": {}}, "a log of format a table"),
     ({"library": 1}, "library: needs a name"), ({"library": "x" * 65}, "library: needs a name of at most 64 letters"),
     ({"character": None}, "character: needs a name"), ({"character": "Bob\nand Eve"}, "character: needs a name"),
-    ({"character": "\x9b2J"}, "character"), ({"clip": 7}, "clip: needs a name"), ({"clip": "a\0b"}, "clip"), ({"database": ["x"]}, "database")])
+    ({"character": "\x9b2J"}, "character"), ({"clip": 7}, "clip: needs a name"), ({"clip": "a\0b"}, "clip"), ({"database": ["x"]}, "database"),
+    ({"up": 1}, "up"), ({"unit": "x" * 41}, "unit: needs a name of at most 40 letters")])
 def test_every_field_of_the_head_is_checked(tmp_path, head, says):
     path = written(tmp_path / "a.gambol", [BLOCK], HEAD | head)
     with pytest.raises(LogError, match=f"a.gambol: line 1: {says}") as error:

@@ -137,6 +137,17 @@ def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, comma
 @pytest.mark.parametrize(("arguments", "says"), [
     (("render", "nowhere", "-o", "a.mp4"), "no scenario is called 'nowhere'"),
     (("render", "demo", "-o", "a.gif"), "can't record .gif"),
+    (("strip", "a.gambol", "-o", "a.png"), "a.gambol: is no scenario, which is a .toml file; an input log is filmed with --replay"),
+    (("render", "A.BVH", "-o", "a.mp4"), "is no scenario, which is a .toml file; motion is a follower's clip in one"),
+    (("export", "kid.glb", "-o", "a.glb"), "is no scenario, which is a .toml file; a body is worn with --character"),
+    (("export", "demo", "-o", "a.glb", "--onto", "me.fbx"), "me.fbx: no rig is read from it; name a .glb, .gltf, .vrm, .bvh or .amc file"),
+    (("export", "demo", "-o", "a.glb", "--up", "z"), "--up goes with --onto, a .bvh or .amc file"),
+    (("export", "demo", "-o", "a.glb", "--onto", "me.glb", "--unit", "cm"), "--unit goes with --onto, a .bvh or .amc file"),
+    (("character", "-o", "a.glb", "--unit", "cm"), "--unit goes with --skeleton, a .bvh or .amc file"),
+    (("library", "build", ".", "--up", "north"), "--up: up is one of x, y, z"),
+    (("database", "build", ".", "--unit", "0"), "--unit: a unit is m, dm, cm"),
+    (("track", ".", "-o", "a.bvh", "--up", "z"), "--up goes with --start, a .bvh or .amc file"),
+    (("gallery", "nope", "-o", "films"), "no scenario is called 'nope'"),
     (("render", "demo", "-o", "a.mp4", "--size", "12"), "--size '12': needs width x height"),
     (("render", "demo", "-o", "a.mp4", "--size", "axb"), "--size 'axb': needs width x height"),
     (("render", "demo", "-o", "a.mp4", "--overlay", "bones"), "there is no such overlay; choose from mesh, skeleton"),
@@ -151,6 +162,7 @@ def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, comma
 ])
 def test_a_mistake_is_one_line_and_code_2(arguments, says, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("gambol.controllers.person.preparing.begun", lambda *_: pytest.fail("it began to compile"))
     done = gambol(*arguments)
     assert done.exit_code == 2, done.output
     lines = done.output.strip().splitlines()

@@ -57,6 +57,19 @@ def test_a_clip_from_its_points(motion, tmp_path, suffix):
         assert abs(100 * apart - away) < 1.5  # what is told is what is in the file
 
 
+def test_a_clip_that_is_misread_is_read_as_told(motion, tmp_path):
+    """A small child in centimetres has legs as long as an adult's in inches; who is read as few are is told of."""
+    database, _, clip = motion
+    write_bvh(replace(clip, skeleton=clip.skeleton.scaled(0.45), root=0.45 * clip.root), tmp_path / "child.bvh")
+    said = {}
+    for told in ((), ("--unit", "cm"), ("--unit", "cm", "--up", "Y")):
+        done = gambol("reconstruct", tmp_path / "child.bvh", "--method", "nearest", "--database", database, "-o", tmp_path / "o.bvh", *told)
+        assert done.exit_code == 0, done.output
+        said[told] = done.stderr
+    assert "child.bvh: read as with Y up and in inches, as of somebody 1.99 m tall; --up and --unit say otherwise" in said[()]
+    assert not any("read as with" in said[told] for told in said if told)
+
+
 def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     database, file, _ = motion
     said = {}
@@ -88,6 +101,9 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["--stream", "osc", "--noise", "1", "-o", "o.bvh"], "--noise goes with a motion file"),
     (["--stream", "osc", "--turns", "-o", "o.bvh"], "--turns goes with a motion file"), (["{clip}", "--turns"], "--turns goes with -o"),
     (["{clip}", "--turns", "--method", "nearest", "--database", "{database}", "-o", "o.bvh"], "--turns goes with a method that hears them"),
+    (["{clip}", "--up", "north", "-o", "o.bvh"], "--up: up is one of x, y, z"),
+    (["{clip}", "--unit", "parsec", "-o", "o.bvh"], "--unit: a unit is m, dm, cm, mm, ft, in or a number of metres above zero, not 'parsec'"),
+    (["--stream", "osc", "--up", "y", "-o", "o.bvh"], "--up goes with CLIP, a .bvh or .amc file"),
     (["--stream", "osc", "--map", "none.toml", "-o", "o.bvh"], "none.toml: can't be read"),
     (["--stream", "osc", "--map", "m.toml", "--points", "4", "-o", "o.bvh"], "give one of them"),
     (["--stream", "osc", "--points", "nose", "-o", "o.bvh"], "no control point 'nose'")])

@@ -109,6 +109,7 @@ FAULTS = [
     ('actor = "A", points = 4', 'actor = "ghost", points = 4', "actors[1].follows.actor: nobody with moves is called 'ghost'"),
     ('actor = "A", points = 4', 'points = 4', 'actors[1].follows: needs either actor = "…", another actor, or clip'),
     ('actor = "A", points = 4', 'clip = "none.bvh"', "actors[1].follows.clip: there is no file 'none.bvh' beside the scenario"),
+    ("points = 4", 'points = 4, up = "z"', "actors[1].follows: up and unit go with a clip"),
     ("points = 4", 'points = "9"', "actors[1].follows.points: no control point '9': there are root,"),
     ("points = 4", 'points = "lwrist,lwrist"', "actors[1].follows.points: control point 'lwrist' is given twice"),
     ("points = 4", 'points = 4, method = "best"', "actors[1].follows.method: input should be 'trackers', 'ours', 'turning', 'lpcr'"),
@@ -126,6 +127,16 @@ FAULTS = [
 @pytest.mark.parametrize(("old", "new", "says"), FAULTS)
 def test_a_fault_names_file_and_field(tmp_path, old, new, says):
     tells(tmp_path, SCENE, old, new, says)
+
+
+@pytest.mark.parametrize(("words", "says"), [('unit = "parsec"', "actors[1].follows: a unit is m, dm, cm"), ('up = "north"', "actors[1].follows.up: input should be 'x', 'y', 'z'")])
+def test_what_a_clip_is_read_as_is_an_axis_and_a_unit(tmp_path, words, says):
+    (tmp_path / "walk.bvh").touch()
+    for unit in ("0.01", '"cm"', '"0.01"'):
+        scene = SCENE.replace('actor = "A", points = 4', f'clip = "walk.bvh", points = 4, unit = {unit}')
+        reading = load(written(tmp_path, scene)).actors[1].follows.reading()
+        assert (reading.up, reading.unit) == (None, 0.01)
+    tells(tmp_path, SCENE, 'actor = "A", points = 4', f'clip = "walk.bvh", points = 4, {words}', says)
 
 
 def test_two_are_shipped():

@@ -1,6 +1,7 @@
 """The input log: the same game to the bit, whatever cut it short."""
 
 import errno
+import json
 import os
 import signal
 import subprocess
@@ -13,14 +14,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gambol.controllers.body import Clip, human
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.mocap import Reading, write_bvh
 from gambol.game.files.paths import OutputError
 from gambol.game.input import Wish
 from gambol.game.session.fingerprint import fingerprint
 from gambol.game.session.input_log import LogWriter, read
 from gambol.game.session.log_lines import LogError
-from gambol.game.session.replay import of_library, replay, strayed
+from gambol.game.session.replay import of_library, performer_of, replay, strayed
 from gambol.game.session.settings import SETTINGS
+from gambol.game.world import Recorded
 from logged import GLIDE, play, walk
 from stand_in import Glide
 
@@ -112,6 +116,23 @@ def test_nothing_is_written_before_there_is_something_and_nothing_overwritten(tm
     with pytest.raises(OutputError, match="a.gambol: can't be written"):
         play(path, walk(3))
     assert path.read_bytes() == before
+
+
+def test_a_clip_is_read_again_as_it_was_read(tmp_path):
+    """A log names the axis and the unit that were told for its clip."""
+    child = human().scaled(0.45)
+    write_bvh(Clip("child", child, 1 / 60, np.tile(child.offsets[0], (60, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (60, len(child), 1))), tmp_path / "child.bvh")
+    performer = Recorded.load(tmp_path / "child.bvh", GLIDE, Reading.of("y", "cm"))
+    writer = LogWriter(tmp_path / "a.gambol", performer, 1, tmp_path / "child.bvh", up="y", unit="cm")
+    writer.add((Wish().rounded(),))
+    writer.flush()
+    log = read(tmp_path / "a.gambol")
+    assert (log.up, log.unit) == ("y", "cm")
+    np.testing.assert_array_equal(performer_of(log, GLIDE).root, performer.root)
+    for name, told in {"b": {"up": "q"}, "c": {"unit": "parsec"}}.items():
+        (path := tmp_path / f"{name}.gambol").write_bytes((tmp_path / "a.gambol").read_bytes().replace(b'"up": "y", "unit": "cm"', json.dumps(told)[1:-1].encode()))
+        with pytest.raises(LogError, match=f"{name}.gambol: line 1: .*{[*told.values()][0]}"):
+            performer_of(read(path), GLIDE)
 
 
 def test_a_long_log_is_small(tmp_path):

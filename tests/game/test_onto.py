@@ -119,7 +119,7 @@ def test_the_command_moves_a_file_or_says_why_not(tmp_path, monkeypatch):
     assert abs(tree.world[tree.names.index("pelvis"), 0, 3] - 3.0) < 0.1, "B's motion"
     assert described(tmp_path / "out.glb")["animations"][0]["name"] == "B"
     for words, told in ((("-o", "me.glb", "--onto", "me.glb"), "would be overwritten"), (("-o", "o.bvh", "--onto", "me.glb"), "ends in .glb"),
-                        (("-o", "o.glb", "--onto", "go.toml"), "can't be worn"), (("-o", "o.glb", "--onto", "me.glb", "--actor", "C"), "there are A, B"),
+                        (("-o", "o.glb", "--onto", "go.toml"), "no rig is read from it"), (("-o", "o.glb", "--onto", "me.glb", "--actor", "C"), "there are A, B"),
                         (("-o", "o.glb", "--actor", "A"), "--onto")):
         code, said = export(*words)
         assert code == 2 and told in said.replace("\n", " ") and not (tmp_path / "o.glb").exists(), words

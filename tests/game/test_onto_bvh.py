@@ -117,6 +117,6 @@ def test_the_command_moves_a_motion_files_skeleton_or_says_why_not(walk, tmp_pat
     clip = read(tmp_path / "out.bvh")
     assert code == 0 and "out.bvh: 3 frames" in said and abs(clip.root[0, 0] - 300.0) < 10.0 and clip.root[0, 2] > 80.0, "B's motion, up along Z"
     for words, told in ((("-o", "me.bvh", "--onto", "me.bvh"), "would be overwritten"), (("-o", "o.glb", "--onto", "me.bvh"), "ends in .bvh"),
-                        (("-o", "o.bvh", "--onto", "none.bvh"), "there is no such file"), (("-o", "o.bvh", "--onto", "go.toml"), "can't be worn")):
+                        (("-o", "o.bvh", "--onto", "none.bvh"), "there is no such file"), (("-o", "o.bvh", "--onto", "go.toml"), "no rig is read from it")):
         code, said = export(*words)
         assert code == 2 and told in said.replace("\n", " "), words

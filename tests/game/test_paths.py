@@ -67,5 +67,9 @@ def test_hops_go_up_a_kerb_and_end_before_a_wall(tmp_path, high, up):
 def test_what_nobody_can_mean_is_told(tmp_path, line, says):
     with pytest.raises(ScenarioError, match=says):
         load(written(tmp_path, f'title = "A"\nduration = 5\n[[actors]]\nname = "A"\n{line}\n'))
+    with pytest.raises(ScenarioError, match=r"actors\[0\].moves: is a list of tables: each begins with \[\[actors.moves\]\]"):
+        load(written(tmp_path, 'title = "A"\nduration = 5\n[[actors]]\nname = "A"\nmoves = { walk_to = [0, 5] }\n'))
+    with pytest.raises(ScenarioError, match=r"actors\[0\].moves\[0\]: needs a table, { name = value, … }, got 'walk'"):
+        load(written(tmp_path, 'title = "A"\nduration = 5\n[[actors]]\nname = "A"\nmoves = ["walk"]\n'))
     with pytest.raises(ScenarioError, match=r"actors: is a list of tables: each begins with \[\[actors\]\]"):
         load(written(tmp_path, 'title = "A"\nduration = 5\n[actors]\nname = "A"\n'))

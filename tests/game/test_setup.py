@@ -1,6 +1,7 @@
 """Setting up: nothing twice, one line to type where it may not act itself; starting where the user is."""
 
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -148,3 +149,17 @@ def test_an_old_python_is_told_so():
     code = "import sys, platform; sys.version_info = (3, 9, 1); platform.python_version = lambda: '3.9.1'; import _setup; _setup.ready()"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT / "scripts", capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr == "Gambol needs Python 3.11 or newer; this is 3.9.1\n"
+
+
+def test_python_runs_the_package_itself(tmp_path, monkeypatch):
+    """Who has no script on the path, or several Pythons, types `python -m gambol`."""
+    import setuptools
+
+    installed = {}
+    monkeypatch.setattr(setuptools, "setup", installed.update)
+    monkeypatch.chdir(ROOT)
+    runpy.run_path("setup.py")
+    assert "gambol" in installed["packages"]
+    done = subprocess.run([sys.executable, "-m", "gambol", "--version"], cwd=tmp_path, capture_output=True, text=True, timeout=120,
+                          env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])})
+    assert done.returncode == 0 and done.stdout.startswith("gambol "), done.stderr

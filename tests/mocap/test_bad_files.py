@@ -123,7 +123,8 @@ def check(path, text, line, message, opened=None):
 
 def test_what_is_no_file(tmp_path):
     for path, message in ((tmp_path / "none.bvh", "no such file"), (tmp_path / "none.amc", "no such file"),
-                          (tmp_path / "a.txt", "'.txt' is no motion file"), (tmp_path, "is a folder: name a .bvh or .amc file"),
+                          (tmp_path / "a.txt", "'.txt' is no motion file: .bvh and .amc are read$"),
+                          (tmp_path / "a.FBX", "'.fbx' is no motion file: .* are read; export it as BVH"), (tmp_path / "a.asf", "are read; name the .amc file that goes with it"), (tmp_path, "is a folder: name a .bvh or .amc file"),
                           (tmp_path / "nul\0.bvh", "can't be opened")):
         with pytest.raises(MotionFileError, match=message):
             load(path)
@@ -131,7 +132,7 @@ def test_what_is_no_file(tmp_path):
         with pytest.raises(MotionFileError, match="is a directory"):
             read(tmp_path)
     (tmp_path / "a.amc").write_text(AMC)
-    with pytest.raises(MotionFileError, match="a.amc: no .asf files beside it"):
+    with pytest.raises(MotionFileError, match="a.amc: no .asf files beside it; put its skeleton there"):
         load(tmp_path / "a.amc")
     with pytest.raises(MotionFileError, match="none.asf: there is no such file"):
         load(tmp_path / "a.amc", asf=tmp_path / "none.asf")

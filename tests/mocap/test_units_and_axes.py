@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from motion_samples import BVH, standing
+from motion_samples import AMC, ASF, BVH, standing
 from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import Skeleton
-from gambol.controllers.mocap import Detected, MotionFileError, detect, load, read, standardise, write_bvh
+from gambol.controllers.mocap import Detected, MotionFileError, Reading, detect, load, read, standardise, write_bvh
 from gambol.controllers.mocap.units_and_axes import LEG_PART, UNITS, unit_of
 
 LYING = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]])  # Y up to Z up
@@ -69,6 +69,53 @@ def test_who_crawls_along_z_does_not_walk_up_a_wall(turn):
     assert detect(replace(clip, quaternions=quaternions, root=root)).up == "y"
     root[:, 1:] = np.stack([root[:, 2], root[:, 1]], -1)  # who walks 2 m in a file of Z up has no floor across Y
     assert detect(replace(clip, quaternions=quaternions, root=root)).up == "z"
+
+
+def test_who_lies_still_on_a_floor_does_not_stand(tmp_path):
+    """His head is farther along Z than his feet; but he is as low along Y as who lies, and nowhere near the floor that he would stand on."""
+    clip = standing()
+    quaternions, root = clip.quaternions.copy(), clip.root.copy()
+    quaternions[:, 0] = (Rotation.from_euler("x", 90, degrees=True) * Rotation.from_quat(quaternions[:, 0])).as_quat()
+    root[:] = (0.0, 0.25, 0.0)
+    lying = replace(clip, quaternions=quaternions, root=root)
+    assert detect(lying).up == "y"
+    assert detect(replace(lying, root=root + (0.0, 0.0, 0.95))).up == "z"  # his feet are on a floor across Z
+    assert detect(replace(lying, root=root - (0.0, 0.25, 0.0))).up == "z"  # half of him would be below a floor across Y
+    write_bvh(replace(lying, root=root + (0.0, 0.0, 0.95)), tmp_path / "a.bvh")
+    assert np.ptp(Reading("y").load(tmp_path / "a.bvh").kinematics()[0][0, :, 1]) < 0.6  # who knows better says so
+
+
+def test_a_small_child_in_centimetres_is_one_where_the_unit_is_told(tmp_path):
+    """Else its legs are as long as an adult's in inches."""
+    child = standing()
+    child = replace(child, skeleton=child.skeleton.scaled(0.78 / 1.741), root=child.root * 0.78 / 1.741)
+    write_bvh(child, tmp_path / "a.bvh")
+    assert detect(read(tmp_path / "a.bvh")).stature == pytest.approx(1.98, abs=0.03)
+    for reading in (Reading(unit=0.01), Reading.of(unit="cm"), Reading.of("+Y", " CM "), Reading.of(unit="0.01")):
+        assert reading.read(tmp_path / "a.bvh")[1].stature == pytest.approx(0.78, abs=0.02)
+        np.testing.assert_allclose(reading.load(tmp_path / "a.bvh").root, child.root, atol=1e-5)
+
+
+def test_the_unit_of_an_amc_file_is_its_skeletons(tmp_path):
+    """The file is read in metres, by what the skeleton says, which may be wrong."""
+    (tmp_path / "a.asf").write_text(ASF.replace("name toe", "name foot").replace("shin toe", "shin foot"))
+    (tmp_path / "a.amc").write_text(AMC)
+    told = Reading.of(unit="in").load(tmp_path / "a.amc").skeleton
+    assert np.linalg.norm(told.offsets[2]) == pytest.approx(8 * 0.0254)
+    assert np.linalg.norm(Reading.of(unit="cm").load(tmp_path / "a.amc").skeleton.offsets[2]) == pytest.approx(0.08)
+
+
+@pytest.mark.parametrize("up, unit, says", [("north", None, "up is one of x, y, z"), (None, "parsec", "a unit is m, dm, cm, mm, ft, in or a number of metres above zero, not 'parsec'"),
+                                            (None, "0", "not '0'"), (None, "-1", "not '-1'"), (None, "nan", "not 'nan'"), (None, "inf", "not 'inf'"), (None, "", "not ''")])
+def test_what_is_no_axis_or_unit_is_told_of(up, unit, says):
+    with pytest.raises(ValueError, match=says):
+        Reading.of(up, unit)
+
+
+@pytest.mark.parametrize("scale", [0, -1.0, np.nan, np.inf, "cm"])
+def test_a_scale_is_a_length(scale):
+    with pytest.raises(ValueError, match="a scale is metres in one unit, above zero, not"):
+        detect(standing(), scale=scale)
 
 
 METRES, INCH = (1.0, 0.01, 0.001), 0.0254

@@ -2,6 +2,7 @@
 
 import tracemalloc
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from gambol.controllers.body.rotations import exp, yaw
-from gambol.controllers.mocap import write_bvh
+from gambol.controllers.locomotion import LibraryError, build_library
+from gambol.controllers.mocap import JUDGED, write_bvh
 from gambol.controllers.reconstruction import pose_vector as chart
 from gambol.controllers.reconstruction.database import default as database_default
 from gambol.controllers.reconstruction.database.build_database import build, sound
@@ -177,6 +179,16 @@ def test_a_folder_becomes_a_database(folder, tmp_path):
     assert len(made.database) == 2 * len(plain) and not any(take.mirrored for take in plain.takes)
 
 
+def test_files_are_read_as_told(folder, tmp_path):
+    """By the databases' build and by the libraries'."""
+    told = []
+    reading = SimpleNamespace(load=lambda path: told.append(path.name) or JUDGED.load(path))
+    build(folder, tmp_path / "a", reading=reading)
+    with pytest.raises(LibraryError, match="usable walking cycles"):
+        build_library(folder, reading=reading)
+    assert [told.count(path.name) for path in folder.rglob("*.bvh")] == [2] * 4
+
+
 def test_who_has_a_thigh_of_no_length_is_left_out(folder, tmp_path):
     one = clip(4, 60)
     offsets = one.skeleton.offsets.copy()
@@ -214,6 +226,7 @@ def test_jumps_and_impossible_frames_are_unsound():
 
 
 @pytest.mark.parametrize("given, words", [
+    (["build", __file__], "no .bvh or .amc files in it (it is a file; a folder of them is needed)"),
     (["build", "nowhere"], "no .bvh or .amc files in it (no such folder)"),
     (["build", ".", "-o", "a.bvh"], f"needs a name that ends in {SUFFIX}"),
     (["build", ".", "--fps", "5"], "5 frames a second: a database needs 10 … 240"),

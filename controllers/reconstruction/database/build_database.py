@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...body import Clip
-from ...mocap import MotionFileError, calibrate, elbows, hinged, load, retarget
+from ...mocap import JUDGED, MotionFileError, Reading, calibrate, elbows, hinged, retarget
 from ..pose_vector import ANGLES, FORWARD, HEIGHT, JOINTS, LEFTWARD, PITCH, ROLL, encode
 from .database import FPS, Database, DatabaseError, Writer
 
@@ -44,10 +44,10 @@ class Built:
 
 
 def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: bool = True,
-          progress: Progress | None = None) -> Built:
+          progress: Progress | None = None, reading: Reading = JUDGED) -> Built:
     """Make a database of all .bvh and .amc files of a folder and those below it.
 
-    fps: [Hz]. mirrors: whether to add the mirror image of every take. Files that can't be read are
+    fps: [Hz]. mirrors: whether to add the mirror image of every take. reading: how all of them are to be read. Files that can't be read are
     left out and told of. DatabaseError if nothing is left, or for an fps outside 10 … 240.
     """
     folder, problems = Path(folder), []
@@ -56,7 +56,8 @@ def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: boo
     paths = sorted((path for path in folder.rglob("*") if path.suffix.lower() in (".bvh", ".amc")),
                    key=lambda path: (path.parent, path))
     if not paths:
-        raise DatabaseError(f"{folder}: no .bvh or .amc files in it" + ("" if folder.is_dir() else " (no such folder)"))
+        raise DatabaseError(f"{folder}: no .bvh or .amc files in it" + (
+            "" if folder.is_dir() else " (it is a file; a folder of them is needed)" if folder.exists() else " (no such folder)"))
     known = actions(folder)
     with Writer(out, fps, mirrors) as writer:
         def keep(clips: list[tuple[Path, Clip]]) -> None:
@@ -75,7 +76,7 @@ def build(folder: str | Path, out: str | Path, *, fps: float = FPS, mirrors: boo
                 keep(clips)
                 clips = []
             try:
-                clips.append((path, _at_most(load(path), fps, path)))
+                clips.append((path, _at_most(reading.load(path), fps, path)))
             except MotionFileError as error:
                 problems.append(str(error))
             if progress:

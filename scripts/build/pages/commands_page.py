@@ -18,6 +18,9 @@ What `gambol COMMAND --help` says, of all commands; `-h` is `--help`. [What they
 What is told besides results goes to the standard error. A command ends with 0 when all went well, with 2 for a mistake in what
 was given, told in a line that names it, with 3 where a window cannot be opened, and with 130 when Ctrl-C stops it. 1 is a fault
 of ours, with its traceback; `GAMBOL_TRACEBACK=1` in the environment shows one for mistakes, too.
+
+What is compiled and learnt is kept in the user's folder of caches, `~/.cache/gambol` on Linux, or in the one that `GAMBOL_CACHE` names in the
+environment; where neither can be written, that is told, and it is made anew each time.
 """
 
 
