@@ -18,7 +18,7 @@ from .capture import FALLS, Way, way
 from .flesh import flesh
 from .passing import PACES, legs_apart
 from .recorded_pushes import response
-from .recovery import Recovery
+from .recovery import Recovery, ending
 from .settled import LATE
 from .stepping import walks_kernel
 from .stumble import CHEST, stumble
@@ -35,6 +35,8 @@ RESTS = 0.05
 """Who is slower than this [m/s] once he has got up does not walk on by himself."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
+LEADS = 1.0
+"""In so long [s] it comes to where it will be of one who walks or stands, until he does."""
 SLIDES = 0.3
 """Whose feet would slide faster than this [m/s] were they to catch him falls."""
 GRAZES = 0.03
@@ -154,6 +156,9 @@ class Struck(Controller):
         time = min(memory.time + dt, made.duration)
         pose, (centre, velocity, heading) = made.at(time), made.moving(time)
         ground = np.array([centre[0], centre[2], heading]) + memory.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
+        ends, place = ending(self.skeleton, self.physique.size, made, pose, time)
+        share = np.clip((time - ends) / min(LEADS, ends) + 1.0, 0.0, 1.0)
+        ground[:2] += share**2 * (3.0 - 2.0 * share) * (place - ground[:2])
         c, s = np.cos(ground[2]), np.sin(ground[2])
         velocity = np.array([s * velocity[0] + c * velocity[2], 0.0, c * velocity[0] - s * velocity[2]])
         if made.fate < FALLS and len(intent.around):

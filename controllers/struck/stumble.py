@@ -78,7 +78,7 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     contacts[:, ::2] = standing & (feet[..., 4] < 0.03)
     return Recovery(times, roots, local, centres, velocities, contacts, np.full(len(times), start.heading), way.fate, way.caught,
                     way.steps[:, [0, 2]].copy(), float(times[-1]) - RESTED if np.abs(way.velocity[-1]).max() < STILL else np.inf,
-                    FALLS_OFF if way.fate == DROPS else SAID[min(way.caught, 2)], _floors(way, floor, times))
+                    FALLS_OFF if way.fate == DROPS else SAID[min(way.caught, 2)], _floors(way, floor, times), goes=way.goes)
 
 
 def _floors(way: Way, floor: float, times: np.ndarray) -> np.ndarray:
