@@ -43,8 +43,8 @@ GRAZES = 0.03
 """Nobody sets his feet home who would get deeper into anything for that [m], as into the edges of treads."""
 KNEELS, UPRIGHT = 0.5, 0.85
 """Whose hips would come lower than the first, as a share of where they are as he stands, falls; who has fallen is down until they are at the second."""
-ROOMY = 0.06
-"""Legs whose axes come no nearer than this [m] are not in each other."""
+ROOMY, TANGLED = 0.06, 0.03
+"""Legs whose axes come no nearer than the first [m] are not in each other; whose legs come nearer than the second whatever he does trips over them, and falls."""
 ALOFT = 0.12
 """Who is higher over the floor with both feet [m], at standard height, is in the air and no runner: there nobody can be struck."""
 
@@ -138,7 +138,7 @@ class Struck(Controller):
                 if apart > ROOMY:
                     return made
                 best, room = (made, apart) if apart > room else (best, room)
-        if best is not None:
+        if best is not None and room > TANGLED:
             return best
         made = topple(self.physique, start, floor, self.rate, things)
         if made.supported or (goes := going(True, PACES[-1])).fate == FALLS:

@@ -29,6 +29,7 @@ def walks():
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("gained", [0.85, 1.1])
 def test_no_leg_goes_through_the_other_of_who_is_pushed_aside(walks, side, gained):
+    """Nor does a thigh: pelvis and trunk turn where he goes, so that the leg that crosses is before the other one or behind it, from the hip down."""
     somebody, moments = walks
     for state in moments:
         poses = []
@@ -39,6 +40,23 @@ def test_no_leg_goes_through_the_other_of_who_is_pushed_aside(walks, side, gaine
         assert legs_apart(somebody.skeleton, roots, turns) > 0.04
         ankles = forward_kinematics(somebody.skeleton, roots, turns)[0][:, [somebody.skeleton.index(name) for name in ("LeftFoot", "RightFoot")]]
         assert np.linalg.norm(np.diff(ankles, axis=0), axis=-1).max() / DT < 13.0
+
+
+def test_nobody_who_is_pushed_aside_has_turned_at_once(walks):
+    """Pelvis and trunk begin to turn from how they were as he is struck; hands were thrown at 450 m/s²."""
+    somebody, _ = walks
+    state, wish = somebody.start(), np.array([1.6, 0.0, 0.0])
+    for n in range(214):
+        state, _ = somebody.step(state, Intent(wish), DT)
+        if n < 150 or n % 8:
+            continue
+        for towards in (90.0, 120.0, 240.0, 270.0):
+            way, now, poses = np.radians(towards), state, [state.previous, state.pose]
+            for k in range(2):
+                now, pose = somebody.step(now, Intent(wish, strike=None if k else Strike((120.0 * np.sin(way), 120.0 * np.cos(way)))), DT)
+                poses.append(pose)
+            joints = forward_kinematics(somebody.skeleton, np.stack([pose.root for pose in poses]), np.stack([pose.rotations for pose in poses]))[0]
+            assert np.linalg.norm(np.diff(joints - joints[:, :1], 2, axis=0), axis=-1).max() / DT**2 < 250.0
 
 
 @pytest.mark.parametrize("towards", [180.0, 150.0, 90.0])
