@@ -17,7 +17,8 @@ from ..body import margin_kernel
 from ..compiled import kernel
 from .passing import PACES
 from .swaying import RATE, into_kernel, middle_kernel, support_kernel, sway_kernel
-from .stepping import SOONEST, far_kernel, home_kernel, short_kernel, soon_kernel, step_kernel, walks_kernel, which_kernel
+from .stepping import (SOONEST, ahead_kernel, far_kernel, goes_kernel, home_kernel, leans_kernel, short_kernel, soon_kernel, step_kernel,
+                       walks_kernel, which_kernel)
 from .surroundings import NOTHING, point_kernel, tread_kernel
 
 LONGEST = 6.0
@@ -30,6 +31,8 @@ HASTE = 0.6, 0.35, 0.65
 """Who is pushed faster than the first [m/s] does both sooner, by the second share for each m/s, to the third at most."""
 GOES_ON = 0.12
 """Who walks on once a foot has landed: so long his way is still told [s]."""
+TRIES = 1.0
+"""So long he may fall ahead over his soles until he goes [s]."""
 STRIDE = 0.5
 """A foot that was in the air when a fast body was struck lands as that has gone so far on [m], at standard height."""
 SHOWN = 1.6
@@ -52,7 +55,8 @@ SWAYS, STEPS, FALLS, DROPS = range(4)
 class Way(NamedTuple):
     """Where it goes. centre, velocity: (N, 2) x, z of the mass centre [m] and its velocity [m/s], at RATE. steps: (S, 7) of each
     step its side, 0 left or 1 right, when it lifts and lands [s], and where its ball comes down and points: x, z [m], yaw [rad], and how high the ground lies there [m]. levels: (2,)
-    how high it lies under the feet as they stand [m]. fate: SWAYS, STEPS, FALLS or DROPS. caught: how many steps it took to catch it."""
+    how high it lies under the feet as they stand [m]. fate: SWAYS, STEPS, FALLS or DROPS. caught: how many steps it took to catch it. goes: from when on [s] it can walk as it
+    wishes, infinite where it does not."""
 
     centre: np.ndarray
     velocity: np.ndarray
@@ -60,6 +64,7 @@ class Way(NamedTuple):
     levels: np.ndarray
     fate: int
     caught: int
+    goes: float = math.inf
 
 
 def way(centre: np.ndarray, velocity: np.ndarray, feet: np.ndarray, free: np.ndarray, heading: float, rate: float, wish: np.ndarray, body, floor: float = 0.0,
@@ -74,18 +79,18 @@ def way(centre: np.ndarray, velocity: np.ndarray, feet: np.ndarray, free: np.nda
     for side in range(2):
         stood[side, 3] = floor if free[side] else tread_kernel(things, stood[side, 0], stood[side, 1], floor + 0.2, float(floor))
     levels = stood[:, 3].copy()
-    n, taken, fate, caught = way_kernel(np.asarray(centre, float), np.asarray(velocity, float), stood, np.array(free, bool), float(heading), float(rate),
-                                        np.asarray(wish, float), body, things, bool(over), float(pace), out[0], out[1], steps)
-    return Way(out[0, :n].copy(), out[1, :n].copy(), steps[:taken].copy(), levels, fate, caught)
+    n, taken, fate, caught, goes = way_kernel(np.asarray(centre, float), np.asarray(velocity, float), stood, np.array(free, bool), float(heading), float(rate),
+                                              np.asarray(wish, float), body, things, bool(over), float(pace), out[0], out[1], steps)
+    return Way(out[0, :n].copy(), out[1, :n].copy(), steps[:taken].copy(), levels, fate, caught, goes)
 
 
 @kernel
 def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, over, pace, centres, velocities, steps):
-    """See `way`. Returns how many moments and steps, the fate, and the steps that caught it."""
+    """See `way`. Returns how many moments and steps, the fate, the steps that caught it, and when it can walk on [s]."""
     x, v, p, goal, point = centre.copy(), velocity.copy(), centre.copy(), np.empty(2), np.empty(2)
     points, corners, target, other = np.empty((8, 2)), np.empty((9, 2)), np.empty(4), np.empty(2)
     swing, lands, lifts, taken, caught, fate, closing = -1, 0.0, -1.0, 0, 0, SWAYS, False
-    landed, last, dt, calm, still, side, gone, closed = 0.0, 0, 1.0 / RATE, 0.0, 0.0, -1, False, False
+    landed, last, dt, calm, still, side, gone, closed, leans, leaned = 0.0, 0, 1.0 / RATE, 0.0, 0.0, -1, False, False, False, 0.0
     stance = 0 if math.hypot(feet[0, 0] - x[0], feet[0, 1] - x[1]) < math.hypot(feet[1, 0] - x[0], feet[1, 1] - x[1]) else 1
     haste = max(1.0 - HASTE[1] * max(math.hypot(velocity[0], velocity[1]) - HASTE[0], 0.0), HASTE[2])
     first, wishes, ends = not (free[0] or free[1]), wish[0] != 0.0 or wish[1] != 0.0, math.inf
@@ -105,18 +110,23 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 if not closing:
                     caught += 1
                 if gone:
-                    return n + 1, taken, DROPS, caught
+                    return n + 1, taken, DROPS, caught, math.inf
                 last, stance, swing, landed = swing, swing, -1, now
                 count = support_kernel(body, feet, free, points, corners)
                 behind = not free[1 - last] and far_kernel(feet[1 - last], x, heading, 2.0 * last - 1.0, wishes, body.size) > 1.0
                 inside = max(margin_kernel(corners, count, point[0], point[1]), margin_kernel(corners, count, point[0] - short * wish[0], point[1] - short * wish[1]))
                 lost = inside < -LOST * body.size or caught > MOST or behind
                 if lost and not over or caught > 2 * MOST:
-                    return n + 1, taken, FALLS, caught
+                    return n + 1, taken, FALLS, caught, math.inf
                 if not closing and wishes and walks_kernel(v, heading, body.size):
-                    ends = now + GOES_ON
+                    ends = now + GOES_ON if goes_kernel(v, wish, body.size) else math.inf
+        if taken > 0 and swing < 0 and ends == math.inf and not (free[0] or free[1]):  # it falls ahead until it goes, unless something holds it
+            leans = leaned < TRIES and walks_kernel(v, heading, body.size) and leans_kernel(corners, count, point, wish, body.size)
+            leaned += dt * leans
+            if leans and goes_kernel(v, wish, body.size):
+                ends = now + GOES_ON
         if now > ends:
-            return n + 1, taken, fate, caught
+            return n + 1, taken, fate, caught, ends - GOES_ON
         if swing >= 0:
             pass
         elif (free[0] or free[1]) and ends == math.inf:  # struck in the middle of a step: the foot in the air goes on to where it is needed
@@ -135,7 +145,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
             fate = STEPS
             count = support_kernel(body, feet, free, points, corners)
         drags = swing < 0 and taken > 0 and not free[1 - last] and math.hypot(x[0] + GOES_ON * v[0] - feet[1 - last, 0], x[1] + GOES_ON * v[1] - feet[1 - last, 1]) > STRIDES * body.size
-        if swing < 0 and not (free[0] or free[1]) and (drags or ends == math.inf):
+        if swing < 0 and not (free[0] or free[1]) and (drags or ends == math.inf and not leans):
             inside = margin_kernel(corners, count, point[0], point[1])
             moves = math.hypot(v[0], v[1])
             if drags or inside < 0.0:  # it has to step
@@ -154,7 +164,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                 lifts = -1.0
                 still = still + dt if moves < STILL else 0.0
                 if still > ENOUGH and now > SHOWN:
-                    return n + 1, taken, fate, caught
+                    return n + 1, taken, fate, caught, math.inf
                 if home_kernel(things, body, 1 - stance, feet, heading, target) > HOME * body.size and not closed:
                     middle_kernel(body, feet[stance], goal)
                     near = math.hypot(point[0] - goal[0], point[1] - goal[1])
@@ -167,15 +177,16 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
                     if near < NEAR and moves < 0.03:
                         calm += dt
                         if calm > 0.25 and now > SHOWN:
-                            return n + 1, taken, fate, caught
+                            return n + 1, taken, fate, caught, math.inf
             if swing >= 0:
+                leans = False
                 steps[taken, 0], steps[taken, 1], steps[taken, 2] = swing, now, lands
                 steps[taken, 3:7] = target
                 taken += 1
                 free[swing] = True
                 count = support_kernel(body, feet, free, points, corners)
                 if taken >= len(steps):
-                    return n + 1, taken, FALLS, caught
+                    return n + 1, taken, FALLS, caught, math.inf
         middle_kernel(body, feet[0], goal)
         middle_kernel(body, feet[1], other)
         if swing >= 0:
@@ -184,5 +195,7 @@ def way_kernel(centre, velocity, feet, free, heading, rate, wish, body, things, 
             middle_kernel(body, feet[stance], goal)
         else:
             goal[0], goal[1] = 0.5 * (goal[0] + other[0]), 0.5 * (goal[1] + other[1])
+        if leans:  # pressure goes back, so that it falls ahead
+            ahead_kernel(point, wish, body.size, goal)
         sway_kernel(things, feet[stance, 3], body.size, x, v, p, goal, corners, count, rate, dt)
-    return len(centres), taken, fate, caught
+    return len(centres), taken, fate, caught, math.inf

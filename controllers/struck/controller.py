@@ -18,7 +18,7 @@ from .capture import FALLS, Way, way
 from .flesh import flesh
 from .passing import PACES, legs_apart
 from .recorded_pushes import response
-from .recovery import Recovery
+from .recovery import Recovery, ending
 from .settled import LATE
 from .stepping import walks_kernel
 from .stumble import CHEST, stumble
@@ -35,14 +35,16 @@ RESTS = 0.05
 """Who is slower than this [m/s] once he has got up does not walk on by himself."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
+LEADS = 1.0
+"""In so long [s] it comes to where it will be of one who walks or stands, until he does."""
 SLIDES = 0.3
 """Whose feet would slide faster than this [m/s] were they to catch him falls."""
 GRAZES = 0.03
 """Nobody sets his feet home who would get deeper into anything for that [m], as into the edges of treads."""
 KNEELS, UPRIGHT = 0.5, 0.85
 """Whose hips would come lower than the first, as a share of where they are as he stands, falls; who has fallen is down until they are at the second."""
-ROOMY = 0.06
-"""Legs whose axes come no nearer than this [m] are not in each other."""
+ROOMY, TANGLED = 0.06, 0.03
+"""Legs whose axes come no nearer than the first [m] are not in each other; whose legs come nearer than the second whatever he does trips over them, and falls."""
 ALOFT = 0.12
 """Who is higher over the floor with both feet [m], at standard height, is in the air and no runner: there nobody can be struck."""
 
@@ -136,7 +138,7 @@ class Struck(Controller):
                 if apart > ROOMY:
                     return made
                 best, room = (made, apart) if apart > room else (best, room)
-        if best is not None:
+        if best is not None and room > TANGLED:
             return best
         made = topple(self.physique, start, floor, self.rate, things)
         if made.supported or (goes := going(True, PACES[-1])).fate == FALLS:
@@ -154,6 +156,9 @@ class Struck(Controller):
         time = min(memory.time + dt, made.duration)
         pose, (centre, velocity, heading) = made.at(time), made.moving(time)
         ground = np.array([centre[0], centre[2], heading]) + memory.shift * (1.0 + SHIFTS * time) * np.exp(-SHIFTS * time)
+        ends, place = ending(self.skeleton, self.physique.size, made, pose, time)
+        share = np.clip((time - ends) / min(LEADS, ends) + 1.0, 0.0, 1.0)
+        ground[:2] += share**2 * (3.0 - 2.0 * share) * (place - ground[:2])
         c, s = np.cos(ground[2]), np.sin(ground[2])
         velocity = np.array([s * velocity[0] + c * velocity[2], 0.0, c * velocity[0] - s * velocity[2]])
         if made.fate < FALLS and len(intent.around):

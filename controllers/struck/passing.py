@@ -68,12 +68,14 @@ def out_of_way(share: np.ndarray, most: float) -> np.ndarray:
 
 
 def legs_apart(skeleton: Skeleton, roots: np.ndarray, local: np.ndarray) -> float:
-    """How near [m] the axes of one shin and foot come to those of the other in poses (N, 3), (N, J, 3, 3): by turns, each one's nearest place to the other."""
+    """How near [m] the axes of one leg, from a third of its thigh down, come to those of the other in poses (N, 3), (N, J, 3, 3): by turns, each one's nearest place to the other."""
     places = forward_kinematics(skeleton, roots, local)[0]
-    left, right = (np.stack([places[:, skeleton.index(side + part)] for part in ("Leg", "Foot", "Toe")], 1) for side in ("Left", "Right"))
-    a, c = left[:, :2, None], right[:, None, :2]
+    left, right = (np.stack([places[:, skeleton.index(side + part)] for part in ("UpLeg", "Leg", "Foot", "Toe")], 1) for side in ("Left", "Right"))
+    for leg in (left, right):
+        leg[:, 0] += (leg[:, 1] - leg[:, 0]) / 3.0
+    a, c = left[:, :3, None], right[:, None, :3]
     u, v = np.diff(left, axis=1)[:, :, None], np.diff(right, axis=1)[:, None]
-    uu, vv, off, there = (u * u).sum(-1), (v * v).sum(-1), a - c, np.full((len(roots), 2, 2), 0.5)
+    uu, vv, off, there = (u * u).sum(-1), (v * v).sum(-1), a - c, np.full((len(roots), 3, 3), 0.5)
     for _ in range(4):
         here = np.clip(((off + there[..., None] * u) * v).sum(-1) / vv, 0.0, 1.0)
         there = np.clip(((here[..., None] * v - off) * u).sum(-1) / uu, 0.0, 1.0)

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..body import Pose
+from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..jump.motion import between_kernel
 from .settled import Settling
+
+BEHIND = 0.019
+"""The ground frame of one who stands is so far behind the middle of his heels and balls [m], at standard height."""
+BEFORE = (1.2, 1.8, 1.9, 3.1, 4.5), (-0.01, -0.02, 0.09, 0.08, 0.2)
+"""That of one who walks, or runs from the third speed on [m/s], is so far before his hips [m], at standard height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +22,8 @@ class Recovery:
     """A motion of N samples. times: (N,) [s]. roots: (N, 3), local: (N, J, 3, 3) poses. centres, velocities: (N, 3) of the mass centre [m, m/s]. contacts: (N, 4) bool of heels
     and balls. headings: (N,) [rad] where it faces. fate: of `capture`; caught: the steps that caught it. landings: (L, 2) which foot lands, and when [s]. rests: when [s] it
     stands, but for trunk and arms. why: what is to be said of it. floors: (N,) how high it stands [m].
-    supported: whether the ground carries it in every moment, and it does not lie over an abyss. settling: what of it is still to be bent to the ground; None where nothing is."""
+    supported: whether the ground carries it in every moment, and it does not lie over an abyss. settling: what of it is still to be bent to the ground; None where nothing is.
+    goes: from when on [s] it walks on, as it was meant to when it was made; infinite where it was not."""
 
     times: np.ndarray
     roots: np.ndarray
@@ -33,6 +40,7 @@ class Recovery:
     floors: np.ndarray
     supported: bool = True
     settling: Settling | None = None
+    goes: float = math.inf
 
     @property
     def duration(self) -> float:
@@ -44,8 +52,8 @@ class Recovery:
         return time >= self.rests
 
     def landing(self, time: float, within: float) -> int:
-        """The foot, 0 left or 1 right, that has landed no longer than `within` [s] before; −1 for none."""
-        just = (self.landings[:, 1] <= time) & (time < self.landings[:, 1] + within)
+        """The foot, 0 left or 1 right, that has landed no longer than `within` [s] before, or last before it walks on; −1 for none, or too early."""
+        just = (self.landings[:, 1] <= time) & (time < self.landings[:, 1] + within if self.goes == math.inf else time >= self.goes)
         return int(self.landings[just, 0][-1]) if just.any() else -1
 
     def between(self, time: float) -> tuple[int, float]:
@@ -65,3 +73,15 @@ class Recovery:
         n, part = self.between(time)
         centre, velocity, heading = (rows[n] + part * (rows[n + 1] - rows[n]) for rows in (self.centres, self.velocities, self.headings))
         return centre, velocity, float(heading)
+
+
+def ending(skeleton: Skeleton, size: float, made: Recovery, pose: Pose, time: float) -> tuple[float, np.ndarray]:
+    """When [s] somebody who plays a recovery, in a pose now, walks on or stands, and where (2,) x, z [m] his ground frame would be now if he did already. size: of his body, over
+    standard height."""
+    heading = made.moving(time)[2]
+    facing = np.array([math.sin(heading), math.cos(heading)])
+    if made.goes < math.inf:
+        velocity = made.moving(made.goes)[1][[0, 2]]
+        return made.goes, pose.root[[0, 2]] + size * np.interp(velocity @ facing / math.sqrt(size), *BEFORE) * facing
+    middle = contact_points(skeleton, *forward_kinematics(skeleton, made.roots[-1], made.local[-1]))[:, [0, 2]].mean(0)
+    return min(made.rests, made.duration), middle - BEHIND * size * facing

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..body import HALF_SOLE
+from ..body import HALF_SOLE, margin_kernel
 from ..compiled import kernel
 from .passing import PACES, length_kernel
 from .swaying import RATE, middle_kernel, support_kernel, sway_kernel
@@ -14,6 +14,9 @@ from .surroundings import place_kernel
 
 WALKS = (-0.75, 4.3, 0.55)
 """Who wants to walk does so once he goes between the first two ahead and no faster than the third aside [m/s], at standard height."""
+GOES, LEANS = 0.35, 0.35
+"""He is on his way who goes faster than the first towards where he wishes [m/s], and walks on from there; who is slower would stand, and be beyond his toes. He first falls ahead over his feet, if
+his capture point is no farther that way from his soles than the second [m], at standard height."""
 FAR = (0.64, 0.60, 0.50)
 """A mass centre so far ahead of a foot's ball that stands, or behind it, or a hip so far beside it [m], at standard height, when the other lands, was not caught: no leg is
 so long."""
@@ -131,6 +134,33 @@ def walks_kernel(v, heading, size):
     """Whether a body goes with a velocity (2,) with which one walks."""
     c, s, scale = math.cos(heading), math.sin(heading), math.sqrt(size)
     return WALKS[0] * scale < s * v[0] + c * v[1] < WALKS[1] * scale and abs(c * v[0] - s * v[1]) < WALKS[2] * scale
+
+
+@kernel
+def goes_kernel(v, wish, size):
+    """Whether a body goes with a velocity (2,) towards where it wishes to (2,) [m/s]."""
+    return v[0] * wish[0] + v[1] * wish[1] > GOES * math.sqrt(size) * math.hypot(wish[0], wish[1])
+
+
+@kernel
+def leans_kernel(corners, count, point, wish, size):
+    """Whether a body that is to walk as it wishes (2,) [m/s] need only fall ahead over its soles for that: its capture point (2,) is over them, or beyond them straight that way."""
+    pace = math.hypot(wish[0], wish[1])
+    if pace < GOES * math.sqrt(size):
+        return False
+    for k in range(15):
+        back = k / 14.0 * LEANS * size / pace
+        if margin_kernel(corners, count, point[0] - back * wish[0], point[1] - back * wish[1]) >= 0.0:
+            return True
+    return False
+
+
+@kernel
+def ahead_kernel(point, wish, size, goal):
+    """Move the place (2,) to which a capture point (2,) is led ahead of it, towards where a body wishes to (2,) [m/s]."""
+    pace = math.hypot(wish[0], wish[1])
+    more = ((point[0] - goal[0]) * wish[0] + (point[1] - goal[1]) * wish[1]) / pace + LEANS * size
+    goal[0], goal[1] = goal[0] + more * wish[0] / pace, goal[1] + more * wish[1] / pace
 
 
 @kernel

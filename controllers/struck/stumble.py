@@ -28,8 +28,8 @@ SOFTLY = 8.0
 a foot goes would be thrown as it comes to its end."""
 CLEARS = 0.6
 """… and by this share of how far it steps up or down: past the edge of the tread."""
-CROSSED, CROSSING = 0.6, 0.12
-"""Who crosses over turns pelvis and trunk by this towards where he goes [rad], in so long [s]."""
+CROSSED, CROSSING, BEFOREHAND = 0.8, 0.12, 0.08
+"""Who crosses over turns pelvis and trunk by this towards where he goes [rad], in so long [s], and is turned so long before his feet cross and after [s]: thighs would go through each other."""
 PEELS = 0.35
 """How far a foot that leaves points down at most [rad]."""
 MOST = 1.4
@@ -61,7 +61,7 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     offsets, turned = _left_over(physique, start, angles[0], times)
     joints = carriage.joints_of(physique.skeleton)
     offsets[:, joints[:3], 2] += aside[:, None] / 3.0
-    facing = yaw(start.heading + _turned(feet, standing, start.heading)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
+    facing = yaw(start.heading + _turned(feet, start.heading, times)) @ turns(angles[:, :1] * [1.0, 0.0, 0.0])
     roots, local = np.empty((len(times), 3)), np.tile(np.eye(3), (len(times), len(physique.skeleton), 1, 1))
     root, begins = np.array(start.root, float), [0, *(int(round(step[1] * RATE)) for step in way.steps if step[1] > 0.0), len(times)]
     turned = np.ascontiguousarray(turned @ facing)
@@ -78,7 +78,7 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     contacts[:, ::2] = standing & (feet[..., 4] < 0.03)
     return Recovery(times, roots, local, centres, velocities, contacts, np.full(len(times), start.heading), way.fate, way.caught,
                     way.steps[:, [0, 2]].copy(), float(times[-1]) - RESTED if np.abs(way.velocity[-1]).max() < STILL else np.inf,
-                    FALLS_OFF if way.fate == DROPS else SAID[min(way.caught, 2)], _floors(way, floor, times))
+                    FALLS_OFF if way.fate == DROPS else SAID[min(way.caught, 2)], _floors(way, floor, times), goes=way.goes)
 
 
 def _floors(way: Way, floor: float, times: np.ndarray) -> np.ndarray:
@@ -125,14 +125,17 @@ def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> 
     return feet, standing, levels
 
 
-def _turned(feet: np.ndarray, standing: np.ndarray, heading: float) -> np.ndarray:
-    """How far (N,) [rad] pelvis and trunk are turned to the left because a foot crosses the other, or stands across it."""
-    from scipy.ndimage import gaussian_filter1d  # no game waits for it at its start
+def _turned(feet: np.ndarray, heading: float, times: np.ndarray) -> np.ndarray:
+    """How far (N,) [rad] pelvis and trunk are turned to the left because a foot crosses the other, or stands across it: at first not at all, nor any faster than before."""
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d  # no game waits for it at its start
 
     apart = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.cos(heading), -np.sin(heading)]
     before = (feet[:, 0, [0, 2]] - feet[:, 1, [0, 2]]) @ [np.sin(heading), np.cos(heading)]
     across = np.where(apart < 0.0, CROSSED * -np.sign(before), 0.0)
-    return gaussian_filter1d(np.concatenate([np.zeros(len(across)), across]), CROSSING * RATE, mode="nearest")[len(across):]
+    wide, across = 2 * round(BEFOREHAND * RATE) + 1, np.concatenate([np.zeros(len(across)), across])
+    across = maximum_filter1d(across, wide, mode="nearest") + minimum_filter1d(across, wide, mode="nearest")
+    turned = gaussian_filter1d(across, CROSSING * RATE, mode="nearest")[len(across) - len(apart):]
+    return turned - faded(turned[:1], (turned[1:2] - turned[:1]) * RATE, CROSSING, times)[:, 0]
 
 
 def quintic(begin, rate, end, share):
