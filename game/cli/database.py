@@ -47,7 +47,7 @@ def build(folder: Annotated[Path, typer.Argument(help="A folder of BVH or ASF/AM
 @plainly
 def tune(file: Annotated[Path, typer.Argument(help="A .gambolmotion file of one's own motion, 60 frames a second.")],
          out: Annotated[Path, typer.Option("-o", "--out", help="The .npz file to write: one's own network.")] = Path("network.npz"),
-         batches: Annotated[int, typer.Option(min=10, max=1_000_000, help="How much is learnt; 3000 take some minutes on one core.")] = 3000,
+         batches: Annotated[int, typer.Option(min=10, max=1_000_000, help="How much is learnt; 1000 take some minutes on one core.")] = 1000,
          share: Annotated[float, typer.Option(min=0.0, max=1.0, help="How much of it is used: 0 is the network as it was; the more, the less it knows of others' motion.")] = 0.5,
          seed: Annotated[int, typer.Option(min=0, help="Of what is drawn.")] = 0,
          network: Annotated[Path | None, typer.Option(help="The network to go on from; the one that ships by default.")] = None) -> None:

@@ -1,6 +1,6 @@
 """How much better the network that ships is for one's own motion, once it has learnt on from some of it.
 
-    python scripts/measure/tuning.py LARGE --small FOLDER [--tuned] [--share 0.5] [--batches 3000] [--work FOLDER]
+    python scripts/measure/tuning.py LARGE --small FOLDER [--tuned] [--share 0.5] [--batches 1000] [--work FOLDER]
 
 LARGE, FOLDER: as for scripts/build/trackers.py. Own motion is that of SNU, nothing of which the network was learnt from, or with --tuned that of
 NCSOFT, on which settings were chosen: every other take, mirror images beside it, is learnt on from, as `gambol database tune` does; of the

@@ -16,7 +16,7 @@ from .samples import Moments
 
 RATE = 3e-4
 """At most; a quarter of what the network was learnt with."""
-BATCHES = 3000
+BATCHES = 1000
 """Some minutes on one core."""
 HOLD = 1e-3
 """How firmly weights are held where they began: so much of what they are off is taken back in a batch while the rate is greatest."""
