@@ -25,7 +25,7 @@ from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .short_leg import give_way
 from .swing import SWING, swing_kernel, swing_progress
 from ..navigation.passing import STEP
-from .uneven_ground import RECOVERS, follow_ground, lie_kernel, rise_ahead, touch
+from .uneven_ground import RECOVERS, follow_ground, leave_level, lie_kernel, rise_ahead, touch
 
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
 """A point is free while its blended label is below the first, and held while it is above the second: early as it
@@ -76,6 +76,8 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     m.off[:] = 0
     if tops.shape[0] > 0:
         follow_ground(m, body, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
+    else:
+        leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
         take_hold(m, k, legs.height, dt)

@@ -186,6 +186,15 @@ def _left_at(m, foot, place):
 
 
 @kernel
+def leave_level(m):
+    """Note where feet stand while nothing is about: what comes about in mid-swing is passed over from there on."""
+    place = np.empty(2)
+    for foot in range(2):
+        if max(m.grip[2 * foot], m.grip[2 * foot + 1]) >= 1.0:
+            _left_at(m, foot, place)
+
+
+@kernel
 def _along(m, foot, place):
     """How high the ground that a foot has left lies under it now, if it goes on as it rose there."""
     _ball(m, foot, place)

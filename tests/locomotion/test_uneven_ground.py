@@ -226,3 +226,19 @@ def test_runners_hips_rise_and_sink_with_the_slope(locomotion, slope):
             over.append(pose.root[1] - floor_at(0.0, state.ground[1], hill))
     assert len(over) > 30 and 0.88 < min(over) and max(over) < 1.2
     assert np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1).max() * FPS**2 < 450
+
+
+def test_what_comes_about_in_mid_swing_is_passed_over_from_where_the_foot_left(locomotion):
+    """And not from where somebody was when he last had anything about him: a kerb that lies behind him by then raises no foot."""
+    for late in range(0, 40, 4):
+        for speed in (1.2, 2.8):
+            state, lifted = locomotion.start(), []
+            for k in range(240 + late):
+                state, _ = locomotion.step(state, Intent(np.array([speed, 0.0, 0.0])), 1 / FPS)
+            for around in ((), (box((0.0, 0.075, 2.0), (4.0, 0.15, 1.0)),)):
+                now, heights = state, []
+                for _ in range(12):
+                    now, pose = locomotion.step(now, Intent(np.array([speed, 0.0, 0.0]), around=around), 1 / FPS)
+                    heights.append(contact_points(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, pose.root, pose.rotations))[:, 1])
+                lifted.append(np.array(heights))
+            assert np.abs(lifted[1] - lifted[0]).max() < 2e-3
