@@ -54,7 +54,7 @@ def _goes_on(somebody, state, wish, impulse):
 def main() -> None:
     """Print the figures."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rooms", type=int, default=40, help="so many of each kind")
+    parser.add_argument("--rooms", type=int, default=40, help="so many of each kind, or none")
     parser.add_argument("--seed", type=int, default=0, help="of the rooms")
     parser.add_argument("--only-rooms", action="store_true", help="nothing of how hard it takes")
     parser.add_argument("--legs", action="store_true", help="only how near legs come, and how fast feet go")
@@ -64,7 +64,8 @@ def main() -> None:
         found = pushes(somebody)
         print("\n".join(told(found, speed) for speed in SPEEDS))
         return
-    report(somebody, given.seed, given.rooms)
+    if given.rooms > 0:
+        report(somebody, given.seed, given.rooms)
     if given.only_rooms:
         return
     struck = somebody.parts["struck"]
