@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,8 @@ import numpy as np
 
 from .... import assets
 from ...files import ArraysError, arrays
-from ..ours import layer_kernel
 from ..pose_vector import ANGLES, WIDTH
+from .layers import rounded, rounded_kernel
 from .slots import INPUTS, PLACES
 
 SHIPPED = assets.path("reconstruction", "trackers.npz")
@@ -47,7 +48,7 @@ class Network:
         last = len(self.weights) - 1
         for number, (weights, biases) in enumerate(zip(self.weights, self.biases, strict=True)):
             if x.ndim == 1:
-                y = layer_kernel(x, weights, biases, number < last)
+                y = rounded_kernel(x, *self._rounded[number], biases, number < last)
             else:
                 y = x @ weights + biases
                 y = np.maximum(y, 0.0) if number < last else y
@@ -65,9 +66,8 @@ class Network:
     def save(self, path: str | Path) -> None:
         """Write it as an .npz file of weights as whole numbers up to 127, with a scale for each output of a layer."""
         layers: dict[str, Any] = {f"biases{i}": b.astype(np.float32) for i, b in enumerate(self.biases)}
-        for i, weights in enumerate(self.weights):
-            scales = (np.maximum(np.abs(weights).max(0), 1e-12) / 127.0).astype(np.float32)
-            layers |= {f"weights{i}": np.round(weights / scales).astype(np.int8), f"scales{i}": scales}
+        for i, (weights, scales) in enumerate(self._rounded):
+            layers |= {f"weights{i}": weights, f"scales{i}": scales}
         with Path(path).open("wb") as file:
             np.savez_compressed(file, version=VERSION, places=np.array(PLACES), outs=self.outs.astype(np.float32), kinds=self.kinds,
                                 factors=self.factors.astype(np.float32), rests=self.rests.astype(np.float32), lower=self.lower.astype(np.float32),
@@ -90,6 +90,11 @@ class Network:
             raise ArraysError(f"{path}: lacks {error}") from None
         made.check(path)
         return made
+
+    @cached_property
+    def _rounded(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Each layer's weights as they are written, see `rounded`."""
+        return [rounded(weights) for weights in self.weights]
 
     def check(self, path: str | Path) -> None:
         """ArraysError, naming the file and the array, for one of the wrong shape or with numbers that are none."""
