@@ -233,7 +233,7 @@ def test_what_comes_about_in_mid_swing_is_passed_over_from_where_the_foot_left(l
     for late in range(0, 40, 4):
         for speed in (1.2, 2.8):
             state, lifted = locomotion.start(), []
-            for k in range(240 + late):
+            for _ in range(240 + late):
                 state, _ = locomotion.step(state, Intent(np.array([speed, 0.0, 0.0])), 1 / FPS)
             for around in ((), (box((0.0, 0.075, 2.0), (4.0, 0.15, 1.0)),)):
                 now, heights = state, []

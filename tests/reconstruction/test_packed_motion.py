@@ -87,7 +87,7 @@ def test_pytorch_draws_and_judges_the_same(moments, monkeypatch):
     """The samples of given moments, bodies and trackers, and the loss with its slopes, are those that are drawn and judged here."""
     torch = pytest.importorskip("torch", reason="PyTorch learns the network on a graphics card; nothing else needs it")
     monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts" / "build")
-    theirs = importlib.import_module("trackers_torch")
+    theirs, learning = importlib.import_module("_torch_samples"), importlib.import_module("trackers_torch")
     pack, count = packed(moments), 64
     body = theirs.Body(pack, "cpu")
     motion, dice = theirs.Motion(pack, body), theirs.Dice(torch.Generator().manual_seed(0), "cpu")
@@ -112,7 +112,7 @@ def test_pytorch_draws_and_judges_the_same(moments, monkeypatch):
     np.testing.assert_allclose(found.truth, truth, atol=1e-3)
 
     poses = torch.tensor(truth + 0.2 * np.random.default_rng(1).normal(size=truth.shape), dtype=torch.float32, requires_grad=True)
-    total = theirs.loss(body, poses, torch.zeros(count, 4), found)
+    total = learning.loss(body, poses, torch.zeros(count, 4), found)
     total.backward()
     mine, slopes = loss(np.concatenate([poses.detach().numpy(), np.zeros((count, 4))], -1), Batch(inputs, found.truth.numpy().astype(float), moments.contacts[at], people))
     assert np.isclose(total.item(), mine, rtol=1e-4)
