@@ -36,8 +36,8 @@ BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
 """So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
 CERTAIN = 0.35
 """After this share of its swing a foot keeps to the place where it will come down …"""
-FARTHEST = 0.6
-"""… unless that gets farther away than this [m]."""
+FARTHEST, KEPT = 0.6, 0.8
+"""… unless that gets farther away than this [m], or its foot comes to point so that it would not stand there any more, before the share of its swing at which it is too late for another."""
 CLEAR, TURNS = 0.08, 0.3
 """On level ground it keeps to none, but where something is higher or lower within the first [m] of it and its body turns faster than the second [rad/s]."""
 SLOWEST = 0.4
@@ -75,7 +75,7 @@ def come_down(m, tops, floor, foot, progress, out):
     beside_x, beside_z = m.land[foot, 0], m.land[foot, 1]
     x, z = ball[0] + beside_x, ball[1] + beside_z
     aim = m.aim[foot]
-    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
+    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST and (progress > KEPT or _still_fits(m, tops, floor, aim, c, s, out)):
         m.land[foot, 0], m.land[foot, 1] = aim[0] - ball[0], aim[1] - ball[1]
         out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
         return
@@ -91,6 +91,14 @@ def come_down(m, tops, floor, foot, progress, out):
     if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
         step = max(0.5 * speed / cadence_kernel(m), 0.05)
         m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)
+
+
+@kernel
+def _still_fits(m, tops, floor, aim, c, s, out):
+    """Whether a foot that will point to where cosine c and sine s say can stand on the place (5,) that it chose: it chose that for how it was to point by then, which another
+    wish may have changed. out: (3,) scratch."""
+    stands = under_kernel(m, tops, floor, aim[0], aim[1], c, s, out)
+    return stands > NONE and abs(out[0] + floor - aim[2]) < SAME
 
 
 @kernel
