@@ -30,7 +30,7 @@ WORTH = np.array([9.0, 0.22, 0.12, 0.0])
 """So much farther away a foot is set for more of it to stand [m]."""
 WITHIN = 0.02
 """A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
-TIP, SOLE = 0.07, 0.03
+TIP, SOLE = 0.07, 0.05
 """Toes are looked at so far before the ball, and so far to both sides of a foot's line, lest they stand in a riser that they come to askew [m]."""
 BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
 """So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
