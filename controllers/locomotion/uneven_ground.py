@@ -40,8 +40,6 @@ BETWEEN = 20
 """So many places on a foot's way are looked at for what it must pass over."""
 SOON = 0.03
 """A foot that goes aside is looked for where it will be so much later [s]."""
-LIFTS, LAGS = 3.0, 0.04
-"""A foot that its way leads over something soon is as high by then as if it went up so fast [m/s] from now on; what is shown of it follows so much later [s]."""
 REACHES = 0.06
 """A foot that goes up is up so far before a riser [m]."""
 TOUCHES, VOID = 0.035, 0.25
@@ -52,7 +50,7 @@ TOUCHES, VOID = 0.035, 0.25
 def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
-    under, place, bears, line, soon = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2)), np.empty(1)
+    under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -92,7 +90,7 @@ def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
-        over = _between(m, body, ahead, goes, tops, floor, foot, max(under[0], m.left[foot]), line, soon)
+        over = _between(m, body, ahead, goes, tops, floor, foot, max(under[0], m.left[foot]), line)
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
         bearing = path
@@ -100,7 +98,6 @@ def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
             up, down = smooth(progress / RISES), smooth((progress - SINKS) / (1.0 - SINKS))
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
-        path = max(path, soon[0])
         m.base[foot] = min(max(path, rising, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
         m.high[foot] = m.base[foot] - under[0]
         bears[foot] = min(m.base[foot], bearing)
@@ -147,12 +144,10 @@ def _loose(m, tops, floor, foot, place, dt):
 
 
 @kernel
-def _between(m, body, ahead, goes, tops, floor, foot, highest, line, soon):
+def _between(m, body, ahead, goes, tops, floor, foot, highest, line):
     """How high the ground lies at most between where a foot left and where it comes down, and below its way from now on from heel to tip, slopes apart,
-    as far as it can be stepped over from `highest`: as far aside as it gives way. goes: (4, 2) how fast the blend's contact points go [m/s]; line: (3, 2) scratch;
-    soon: (1,) how high it must be by now, to be over that in time."""
+    as far as it can be stepped over from `highest`: as far aside as it gives way. goes: (4, 2) how fast the blend's contact points go [m/s]; line: (3, 2) scratch."""
     ground, most = np.empty(3), -1e9
-    soon[0] = -1e9
     for k in range(BETWEEN):
         share = (k + 1.0) / (BETWEEN + 1.0)
         x = m.left_at[foot, 0] + share * (m.coming[foot, 1, 0] + m.land[foot, 0] - m.left_at[foot, 0])
@@ -160,20 +155,17 @@ def _between(m, body, ahead, goes, tops, floor, foot, highest, line, soon):
         if ground_kernel(tops, x, z, floor, m.level, ground) and ground[0] <= highest + STEP:
             most = max(most, ground[0])
     for k in range(SAMPLES):
-        share = ahead.shares[foot, k]
-        if m.turn != 0.0 or 0.0 < share < 1.0:
-            if share > 0.0:
+        if m.turn != 0.0 or 0.0 < ahead.shares[foot, k] < 1.0:
+            if ahead.shares[foot, k] > 0.0:
                 line_ahead(m, body, foot, ahead, k, line)
             else:
-                share = (k + 0.5) / SAMPLES
-                swept_line(m, body, foot, goes, ahead.until[foot], share, line)
+                swept_line(m, body, foot, goes, ahead.until[foot], (k + 0.5) / SAMPLES, line)
             for i in range(3):
                 line[i, 0] += m.aside[foot, 0] + SOON * m.aside_rate[foot, 0]
                 line[i, 1] += m.aside[foot, 1] + SOON * m.aside_rate[foot, 1]
                 found = ground_kernel(tops, line[i, 0], line[i, 1], floor, m.level, ground)
                 if found and ground[0] <= highest + STEP and ground[1] == 0.0 and ground[2] == 0.0:  # soles lie along a slope
                     most = max(most, ground[0])
-                    soon[0] = max(soon[0], ground[0] - LIFTS * max(share * ahead.until[foot] - LAGS, 0.0))
     return most
 
 
