@@ -31,7 +31,7 @@ WORTH = np.array([9.0, 0.22, 0.12, 0.0])
 WITHIN = 0.02
 """A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
 TIP, SOLE = 0.07, 0.05
-"""Toes are looked at so far before the ball, and so far to both sides of a foot's line, lest they stand in a riser that they come to askew [m]."""
+"""Toes are looked at so far before the ball, and so far to both sides of a foot's line, half a shoe's width, lest they stand in a riser that they come to askew [m]."""
 BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
 """So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
 CERTAIN = 0.35
@@ -162,8 +162,8 @@ def under_kernel(m, tops, floor, x, z, c, s, out):
             out[0], out[1], out[2] = top, part[1], part[2]
     if ground_kernel(tops, x + (TOE + WITHIN) * s, z + (TOE + WITHIN) * c, floor, m.level, part):  # toes may hang over an edge
         found = found and part[0] - (TOE + WITHIN) * (s * part[1] + c * part[2]) < top + SAME
-    for k in range(6):
-        along, left = (TIP, 0.0, -FOOT)[k // 2], SOLE - 2.0 * SOLE * (k % 2)
+    for k in range(8):
+        along, left = (TIP, 0.0, -0.5 * FOOT, -FOOT)[k // 2], SOLE - 2.0 * SOLE * (k % 2)
         dx, dz = along * s + left * c, along * c - left * s
         if found and ground_kernel(tops, x + dx, z + dz, floor, m.level, part):
             found = part[0] - dx * part[1] - dz * part[2] < top + SAME
