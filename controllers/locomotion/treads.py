@@ -30,14 +30,14 @@ WORTH = np.array([9.0, 0.22, 0.12, 0.0])
 """So much farther away a foot is set for more of it to stand [m]."""
 WITHIN = 0.02
 """A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
-TIP, SOLE = 0.07, 0.03
-"""Toes are looked at so far before the ball, and so far to both sides of a foot's line, lest they stand in a riser that they come to askew [m]."""
+TIP, SOLE = 0.07, 0.05
+"""Toes are looked at so far before the ball, and so far to both sides of a foot's line, half a shoe's width, lest they stand in a riser that they come to askew [m]."""
 BEHIND_BALL = np.array([0.0, WITHIN, 0.5 * FOOT, FOOT])
 """So far behind a ball it is looked whether a foot stands [m]: two places for the ball, halfway to the heel, the heel."""
 CERTAIN = 0.35
 """After this share of its swing a foot keeps to the place where it will come down …"""
-FARTHEST = 0.6
-"""… unless that gets farther away than this [m]."""
+FARTHEST, KEPT = 0.6, 0.8
+"""… unless that gets farther away than this [m], or its foot comes to point so that it would not stand there any more, before the share of its swing at which it is too late for another."""
 CLEAR, TURNS = 0.08, 0.3
 """On level ground it keeps to none, but where something is higher or lower within the first [m] of it and its body turns faster than the second [rad/s]."""
 SLOWEST = 0.4
@@ -75,7 +75,7 @@ def come_down(m, tops, floor, foot, progress, out):
     beside_x, beside_z = m.land[foot, 0], m.land[foot, 1]
     x, z = ball[0] + beside_x, ball[1] + beside_z
     aim = m.aim[foot]
-    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST:
+    if m.aimed[foot] == 1 and math.hypot(aim[0] - x, aim[1] - z) < FARTHEST and (progress > KEPT or _still_fits(m, tops, floor, aim, c, s, out)):
         m.land[foot, 0], m.land[foot, 1] = aim[0] - ball[0], aim[1] - ball[1]
         out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
         return
@@ -91,6 +91,14 @@ def come_down(m, tops, floor, foot, progress, out):
     if m.aimed[foot] == 1 and shift < 0.0:  # steps that must be short are slow ones
         step = max(0.5 * speed / cadence_kernel(m), 0.05)
         m.pace = max(m.pace * max(1.0 + shift / step, 0.5), SLOWEST)
+
+
+@kernel
+def _still_fits(m, tops, floor, aim, c, s, out):
+    """Whether a foot that will point to where cosine c and sine s say can stand on the place (5,) that it chose: it chose that for how it was to point by then, which another
+    wish may have changed. out: (3,) scratch."""
+    stands = under_kernel(m, tops, floor, aim[0], aim[1], c, s, out)
+    return stands > NONE and abs(out[0] + floor - aim[2]) < SAME
 
 
 @kernel
@@ -154,8 +162,8 @@ def under_kernel(m, tops, floor, x, z, c, s, out):
             out[0], out[1], out[2] = top, part[1], part[2]
     if ground_kernel(tops, x + (TOE + WITHIN) * s, z + (TOE + WITHIN) * c, floor, m.level, part):  # toes may hang over an edge
         found = found and part[0] - (TOE + WITHIN) * (s * part[1] + c * part[2]) < top + SAME
-    for k in range(6):
-        along, left = (TIP, 0.0, -FOOT)[k // 2], SOLE - 2.0 * SOLE * (k % 2)
+    for k in range(8):
+        along, left = (TIP, 0.0, -0.5 * FOOT, -FOOT)[k // 2], SOLE - 2.0 * SOLE * (k % 2)
         dx, dz = along * s + left * c, along * c - left * s
         if found and ground_kernel(tops, x + dx, z + dz, floor, m.level, part):
             found = part[0] - dx * part[1] - dz * part[2] < top + SAME

@@ -2,7 +2,7 @@
 
     python scripts/measure/tables.py [--heights METRES ...]
 
-Elbows, forearms and hands are capsules (`_limbs.py`, hands half a forearm long); told are, over all heights and distances of a way to pass, the deepest of any in any frame, how
+Elbows, forearms and hands as they are bent are capsules; told are, over all heights and distances of a way to pass, the deepest of any in any frame, how
 many frames are deeper than 2 cm, and how hard joints turn over the recordings' own 99th percentile, beside the same moves where nothing stands.
 """
 
@@ -14,7 +14,7 @@ from collections import namedtuple
 import numpy as np
 
 from _motion import Motion
-from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body import end_positions, forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.navigation import gap
 from gambol.controllers.person import person
@@ -61,11 +61,12 @@ def played(who, wishes, box):
 
 def depths(skeleton, poses, box) -> np.ndarray:
     """How deep (T,) [m] arms are in a box, negative outside."""
-    places = forward_kinematics(skeleton, np.array([pose.root for pose in poses]), np.array([pose.rotations for pose in poses]))[0]
+    places, turned = forward_kinematics(skeleton, np.array([pose.root for pose in poses]), np.array([pose.rotations for pose in poses]))
+    ends = end_positions(skeleton, places, turned)
     worst = np.full(len(poses), -np.inf)
     for elbow, wrist in ARMS:
         a, b = places[:, skeleton.index(elbow)], places[:, skeleton.index(wrist)]
-        tip = b + 0.5 * (b - a)
+        tip = ends[:, skeleton.end_index[wrist]]
         for one, other, thick in ((a, b, np.linspace(FORE, HAND, len(PARTS))), (b, tip, np.full(len(PARTS), HAND))):
             points = one[:, None] + PARTS[:, None] * (other - one)[:, None]
             worst = np.maximum(worst, (thick - gap(points.reshape(-1, 3), box).reshape(points.shape[:2])).max(1))

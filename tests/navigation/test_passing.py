@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from gambol.controllers.body import forward_kinematics
+from gambol.controllers.body import end_positions, forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import gap
 from gambol.controllers.navigation.passing import drawn_in
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box, Pillar
+from gambol.game.world import stopped
 
 @pytest.fixture(scope="module")
 def locomotion():
@@ -74,6 +75,20 @@ def test_forearms_keep_out_where_an_elbow_is_right_over_a_table(locomotion):
     places = np.array([arms(locomotion.skeleton, pose) for pose, _ in walk(locomotion, (1.8, 0.0, 0.0), (table,))])
     forearms = places[:, [4]] + np.linspace(0.0, 1.0, 5)[:, None] * (places[:, [5]] - places[:, [4]])
     assert gap(forearms.reshape(-1, 3), table).min() > 0.035
+
+
+@pytest.mark.parametrize("velocity, table", [((1.8, 0.0, 0.0), Box((-0.25 - 0.4, 0.55, 0.0), (0.8, 1.1, 40.0))), ((0.7, 0.0, 0.0), Box((0.0, 0.35, 2.4), (4.0, 0.7, 0.8)))])
+def test_hands_keep_out_to_their_finger_tips(locomotion, velocity, table):
+    """Past a table and up to one: hands hang bent, not straight on from forearms."""
+    skeleton, someone = locomotion.skeleton, Supervisor({"locomotion": locomotion})
+    state, deep = someone.start(), []
+    for _ in range(5 * 60):
+        intent = stopped(state, Intent(np.array(velocity), around=(table,)), (table,))
+        state, pose = someone.step(state, intent, 1 / 60)
+        placed = forward_kinematics(skeleton, pose.root, pose.rotations)
+        tips = end_positions(skeleton, *placed)[[skeleton.end_index[name] for name in ("LeftHand", "RightHand")]]
+        deep.append(0.03 - gap(tips, table).min())
+    assert max(deep) < 0.01
 
 
 def test_between_two_walls_both_do(locomotion):

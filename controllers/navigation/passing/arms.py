@@ -22,10 +22,12 @@ from ..routes import distance
 
 ARMS = ("LeftArm", "LeftForeArm", "LeftHand"), ("RightArm", "RightForeArm", "RightHand")
 THICK = 0.045, 0.04, 0.035
-"""Elbows, wrists and finger tips, half a forearm on, are so thick [m]."""
+"""Elbows, wrists and finger tips are so thick [m]."""
+FINGERS = 0.5
+"""Finger tips are so much of a forearm beyond the wrist, straight on, of a skeleton that tells of no end of its hands."""
 KEPT = 0.02
 """So much room is left beside them [m]."""
-SOFT = 0.025
+SOFT = 0.04
 """An arm begins to be drawn in so much before it has to [m]."""
 MOST, AHEAD = 0.35, 0.9
 """No farther than this [rad]: across there is the trunk, and back or ahead a shoulder's own reach."""
@@ -80,7 +82,8 @@ def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequenc
     if not things or not len(chains):
         return pose
     rotations = np.array(pose.rotations)
-    moved = draw_kernel(np.asarray(pose.root, float), rotations, skeleton.parents, skeleton.offsets, chains, np.asarray(ground, float), np.array(things), np.array(THICK))
+    moved = draw_kernel(np.asarray(pose.root, float), rotations, skeleton.parents, skeleton.offsets, chains, _tips(skeleton), np.asarray(ground, float), np.array(things),
+                        np.array(THICK))
     return Pose(pose.root, rotations) if moved else pose
 
 
@@ -107,9 +110,16 @@ def _chains(names: tuple[str, ...]) -> np.ndarray:
     return np.array([[names.index(name) for name in chain] for chain in ARMS if all(name in names for name in chain)], np.int64).reshape(-1, 3)
 
 
+@lru_cache(maxsize=8)
+def _tips(skeleton: Skeleton) -> np.ndarray:
+    """Where finger tips (2, 3) are in their hands' frames [m]: hands are bent as they hang, so that these are elsewhere than straight on."""
+    hands = [chain[2] for chain in _chains(skeleton.names)]
+    return np.array([skeleton.end_offsets[end] if (end := skeleton.end_index.get(skeleton.names[hand])) is not None else FINGERS * skeleton.offsets[hand] for hand in hands])
+
+
 @kernel
-def draw_kernel(root, local, parents, offsets, chains, ground, things, thick):
-    """Turn the upper arms in local rotations (J, 3, 3), in place; whether any was. things: (K, 8) as of `_near`."""
+def draw_kernel(root, local, parents, offsets, chains, tips, ground, things, thick):
+    """Turn the upper arms in local rotations (J, 3, 3), in place; whether any was. tips: (2, 3) as of `_tips`; things: (K, 8) as of `_near`."""
     count = local.shape[0]
     places, turned = np.empty((count, 3)), np.empty((count, 3, 3))
     for j in range(count):
@@ -128,10 +138,10 @@ def draw_kernel(root, local, parents, offsets, chains, ground, things, thick):
                         turned[j, i, k] += turned[p, i, m] * local[j, m, k]
     points, slope, axis, moved = np.empty((3, 3)), np.empty(3), np.empty(3), False
     for arm in range(chains.shape[0]):
-        shoulder = chains[arm, 0]
+        shoulder, hand = chains[arm, 0], chains[arm, 2]
         for i in range(3):
-            points[0, i], points[1, i] = places[chains[arm, 1], i], places[chains[arm, 2], i]
-            points[2, i] = points[1, i] + 0.5 * (points[1, i] - points[0, i])
+            points[0, i], points[1, i] = places[chains[arm, 1], i], places[hand, i]
+            points[2, i] = points[1, i] + turned[hand, i, 0] * tips[arm, 0] + turned[hand, i, 1] * tips[arm, 1] + turned[hand, i, 2] * tips[arm, 2]
         for n in range(things.shape[0]):
             there = distance(ground[0], ground[1], things[n, :6], slope)
             if there <= 0.0:

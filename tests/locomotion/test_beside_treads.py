@@ -1,0 +1,49 @@
+"""Whoever turns about on stairs and beside what is low, his wish changing all the time, keeps his feet and shins out of it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import forward_kinematics
+from gambol.controllers.contract import Intent
+from gambol.controllers.jump.body import Physique
+from gambol.controllers.navigation import floor_at, gap
+from gambol.controllers.struck import flesh
+
+COUNT, FPS, CHANGES = 160, 60, 24
+"""So many people; steps a second; a wish holds for so many steps."""
+DEEP = 0.02
+"""What is deeper than this [m] counts."""
+
+
+def box(x, z, wide, high, deep):
+    return SimpleNamespace(centre=(x, 0.5 * high, z), size=(wide, high, deep), heading=0.0, slope=0.0)
+
+
+THINGS = {"stairs": tuple(box(0.0, 0.29 * k, 2.0, 0.17 * (k + 1), 0.29) for k in range(6)), "a kerb": (box(0.0, 0.6, 1.2, 0.12, 1.0),), "a low box": (box(0.0, 0.6, 1.4, 0.3, 1.2),)}
+
+
+@pytest.fixture(scope="module")
+def deepest(locomotion):
+    """For each of THINGS how deep (T, N) [m] anything is in it of those who were not put into it."""
+    physique, found = Physique(), {}
+    for name, things in THINGS.items():
+        rng = np.random.default_rng(0)
+        ground = np.stack([rng.uniform(-1.0, 1.0, COUNT), rng.uniform(-0.8, 1.4, COUNT), rng.uniform(-np.pi, np.pi, COUNT)], -1)
+        state, depths = locomotion.start(ground, np.array([floor_at(x, z, things, 9.0) for x, z, _ in ground])), []
+        for k in range(10 * CHANGES):
+            if k % CHANGES == 0:
+                wish = np.stack([rng.uniform(0.2, 0.8, COUNT), rng.uniform(-2.5, 2.5, COUNT), rng.choice([0.0, 0.0, 0.3, -0.3], COUNT)], -1) * rng.choice([1.0, 1.0, 1.0, 0.0], (COUNT, 1))
+            state, pose = locomotion.step(state, Intent(wish, around=things), 1 / FPS)
+            places, thick = flesh(physique, *forward_kinematics(locomotion.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
+            depths.append((thick - np.min([gap(places.reshape(-1, 3), thing).reshape(places.shape[:2]) for thing in things], 0)).max(1))
+        depths = np.array(depths)
+        found[name] = depths[:, depths[0] < 0.5 * DEEP]
+    return found
+
+
+@pytest.mark.parametrize("name, share", (("stairs", 0.0085), ("a kerb", 0.005), ("a low box", 0.010)))
+def test_legs_keep_out_of_it(deepest, name, share):
+    """Feet choose their places anew as they come to point otherwise, half a shoe clear of risers beside them."""
+    assert np.mean(deepest[name] > DEEP) < share
