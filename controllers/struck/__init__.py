@@ -2,9 +2,9 @@
 
 from .capture import DROPS, FALLS, STEPS, SWAYS
 from .controller import Recovering, Struck, rehearse
-from .flesh import flesh
+from .flesh import flesh, flesh_of
 from .recorded_falls import SPACED
 from .recorded_pushes import TAKES, fit
 from .recovery import Recovery
 
-__all__ = ["DROPS", "FALLS", "SPACED", "STEPS", "SWAYS", "TAKES", "Recovering", "Recovery", "Struck", "fit", "flesh", "rehearse"]
+__all__ = ["DROPS", "FALLS", "SPACED", "STEPS", "SWAYS", "TAKES", "Recovering", "Recovery", "Struck", "fit", "flesh", "flesh_of", "rehearse"]

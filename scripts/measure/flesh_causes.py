@@ -17,11 +17,9 @@ from typing import Any
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
-from gambol.controllers.contract.states import Duty, OfSize
-from gambol.controllers.navigation import gap
-from gambol.controllers.navigation.obstacles import is_box, is_pillar, ramp, span
-from gambol.controllers.navigation.passing import STEP
-from gambol.controllers.struck.flesh import SPACED, flesh_of
+from gambol.controllers.contract import Duty, OfSize
+from gambol.controllers.navigation import STEP, gap, is_box, is_pillar, ramp, span
+from gambol.controllers.struck import flesh_of
 from gambol.game.world import DT, RATE
 from hands import NEAR, STAGES, Body, played
 
@@ -39,7 +37,6 @@ def limbs(skeleton: Any, physique: Any) -> list[tuple[str, int]]:
         name = skeleton.names[joint]
         side = next((k for k, word in enumerate(("Left", "Right")) if name.startswith(word)), -1)
         found.append((LIMBS[name.removeprefix("Left").removeprefix("Right")], side))
-    assert len(found) % SPACED == 0
     return found
 
 
