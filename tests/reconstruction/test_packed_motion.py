@@ -8,12 +8,13 @@ import pytest
 
 from gambol.controllers.files import ArraysError
 from gambol.controllers.reconstruction import SKELETON
+from gambol.controllers.reconstruction.baselines import backward, forward
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.ours import seen_from
 from gambol.controllers.reconstruction.pose_vector import REFERENCE, YAW_RATE, encode
 from gambol.controllers.reconstruction.trackers import FIRST, INPUTS, LAGS, LEGS, SLOTS, Learner, Moments, legs, moments_kernel, packed
-from gambol.controllers.reconstruction.trackers.layers import backward, forward, shares
+from gambol.controllers.reconstruction.trackers.layers import shares
 from gambol.controllers.reconstruction.trackers.learning import loss
 from gambol.controllers.reconstruction.trackers.samples import Batch
 from gambol.controllers.reconstruction.trackers.slots import views_kernel

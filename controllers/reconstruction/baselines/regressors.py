@@ -34,7 +34,7 @@ class Layers:
 
     def predict(self, inputs: np.ndarray) -> np.ndarray:
         """Frames (..., D) for inputs (..., P)."""
-        return forward(self.weights, self.biases, (inputs - self.ins[0]) / self.ins[1])[-1] * self.outs[1] + self.outs[0]
+        return forward(self.weights, self.biases, (inputs - self.ins[0]) / self.ins[1])[0] * self.outs[1] + self.outs[0]
 
     def believe(self, memory: Memory, seen: np.ndarray, goals: np.ndarray) -> tuple[Gaussian, Any]:
         """See `method.Prior`."""
@@ -91,9 +91,9 @@ def network(samples: Samples, hidden: tuple[int, ...] = (384, 384), batches: int
     for batch in range(batches):
         x, y = samples.draw(rng.choice(learnt, size), rng)
         x, y = ((x - ins[0]) / ins[1]).astype(np.float32), ((y - outs[0]) / outs[1]).astype(np.float32)
-        found = forward(values[:count], values[count:], x)
-        error = found[-1] - y
-        adam.step(backward(values[:count], found, error * (2 / error.size)))
+        found, seen, own = forward(values[:count], values[count:], x)
+        error = found - y
+        adam.step(backward(values[:count], seen, own, error * (2 / error.size)))
         if progress is not None:
             progress(batch, float(np.mean(error ** 2)))
     return _judged(samples, rest, Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.eye(widths[-1])))
@@ -124,22 +124,31 @@ def starting(widths: tuple[int, ...], rng: np.random.Generator) -> list[np.ndarr
     return [*weights, *(np.zeros(b, np.float32) for b in widths[1:])]
 
 
-def forward(weights, biases, x):
-    """What each layer gives out, the input first."""
-    found = [x]
+def forward(weights, biases, x, added=False, kept=None):
+    """What comes out (B, outputs) of x (B, inputs), and what each layer saw and gave. added: whether layers between the first and the last add to what they
+    are given (He et al. 2016). kept: what each hidden layer's sum is multiplied by."""
+    seen, own, last = [], [], len(weights) - 1
     for i, (w, b) in enumerate(zip(weights, biases, strict=True)):
-        x = x @ w + b
-        found.append(np.maximum(x, 0, out=x) if i + 1 < len(weights) else x)
-    return found
+        seen.append(x)
+        y = x @ w + b
+        own.append(np.maximum(y, 0, out=y) if i < last else y)
+        x = x + y if added and 0 < i < last else y
+        if kept is not None and i < last:
+            x = x * kept[i]
+    return x, seen, own
 
 
-def backward(weights, found, slope):
-    """Derivatives of the loss by all weights, then all biases, from that by the output (B, D)."""
-    by_weights, by_biases = [], []
-    for i in range(len(weights) - 1, -1, -1):
-        by_weights.insert(0, found[i].T @ slope)
-        by_biases.insert(0, slope.sum(0))
-        slope = (slope @ weights[i].T) * (found[i] > 0)
+def backward(weights, seen, own, slope, added=False, kept=None):
+    """Derivatives of the loss by all weights, then all biases, from that by what came out (B, outputs)."""
+    by_weights, by_biases, last = [], [], len(weights) - 1
+    for i in range(last, -1, -1):
+        if kept is not None and i < last:
+            slope = slope * kept[i]
+        through = slope if i == last else slope * (own[i] > 0)
+        by_weights.insert(0, seen[i].T @ through)
+        by_biases.insert(0, through.sum(0))
+        below = through @ weights[i].T
+        slope = below + slope if added and 0 < i < last else below
     return by_weights + by_biases
 
 

@@ -40,7 +40,7 @@ class CalibrationNetwork:
 
     def predict(self, inputs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What standing got wrong (B, TARGETS), see `simulated.numbers`, and standard deviations (B, TARGETS) of what is left, of inputs (B, INPUTS)."""
-        found = forward(self.weights, self.biases, scaled(inputs, self.ins))[-1].astype(float)
+        found = forward(self.weights, self.biases, scaled(inputs, self.ins))[0].astype(float)
         return found[:, :TARGETS], np.exp(np.clip(found[:, TARGETS:], -6.0, 3.0))
 
     def strange(self, inputs: np.ndarray) -> np.ndarray:
@@ -105,9 +105,9 @@ def learnt(moments: Moments, people: int, seed: int = 0, progress: Callable[[str
         chosen = rng.integers(0, people, _SIZE)
         x = scaled(inputs[chosen], ins)
         x += np.float32(_BLUR) * rng.standard_normal(x.shape, np.float32)
-        found = forward(values[:depth], values[depth:], x)
-        error, slopes = loss(found[-1].astype(float), truth[chosen], tells[chosen])
-        slopes = backward(values[:depth], found, slopes.astype(np.float32))
+        found, seen, own = forward(values[:depth], values[depth:], x)
+        error, slopes = loss(found.astype(float), truth[chosen], tells[chosen])
+        slopes = backward(values[:depth], seen, own, slopes.astype(np.float32))
         rate = adam.rate * 0.5 * (1.0 + np.cos(np.pi * batch / batches))
         adam.step(slopes)
         for weights in values[:depth]:

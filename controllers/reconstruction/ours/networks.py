@@ -239,8 +239,8 @@ def _learn(samples, seed, batches, hidden, progress):
     count, adam = len(hidden) + 1, Adam(values, batches, _RATE)
     for batch in range(batches):
         inputs, truth = draw(samples, rng.integers(len(samples), size=_SIZE), rng)
-        found = forward(values[:count], values[count:], ((inputs - ins[0]) / ins[1]).astype(np.float32))
-        _, slopes = misfit(found[-1] * outs[1] + outs[0], truth)
-        adam.step(backward(values[:count], found, (slopes * outs[1]).astype(np.float32)))
+        found, seen, own = forward(values[:count], values[count:], ((inputs - ins[0]) / ins[1]).astype(np.float32))
+        _, slopes = misfit(found * outs[1] + outs[0], truth)
+        adam.step(backward(values[:count], seen, own, (slopes * outs[1]).astype(np.float32)))
         progress(batch + 1)
     return Layers(tuple(values[:count]), tuple(values[count:]), ins, outs, np.eye(len(outs[0])))

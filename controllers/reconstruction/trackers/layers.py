@@ -1,8 +1,4 @@
-"""Layers of the network: what they give out for one sample, and while they are learnt, with derivatives by their weights.
-
-Those between the first and the last may add to what they are given (He et al. 2016), and parts of what hidden ones give out may be
-left out while it is learnt (Srivastava et al. 2014).
-"""
+"""Layers of the network: one for one sample, and what is left out of hidden ones while they are learnt (Srivastava et al. 2014)."""
 
 from __future__ import annotations
 
@@ -41,33 +37,6 @@ def rounded_kernel(x, weights, scales, biases, rectified):
         if rectified:
             out[j] = max(out[j], np.float32(0.0))
     return out
-
-
-def forward(weights, biases, x, added=False, kept=None):
-    """What comes out (B, outputs) of x (B, inputs), and what each layer saw and gave. kept: what each hidden layer's sum is multiplied by."""
-    seen, own, last = [], [], len(weights) - 1
-    for i, (w, b) in enumerate(zip(weights, biases, strict=True)):
-        seen.append(x)
-        y = x @ w + b
-        own.append(np.maximum(y, 0, out=y) if i < last else y)
-        x = x + y if added and 0 < i < last else y
-        if kept is not None and i < last:
-            x = x * kept[i]
-    return x, seen, own
-
-
-def backward(weights, seen, own, slope, added=False, kept=None):
-    """Derivatives of the loss by all weights, then all biases, from that by what came out (B, outputs)."""
-    by_weights, by_biases, last = [], [], len(weights) - 1
-    for i in range(last, -1, -1):
-        if kept is not None and i < last:
-            slope = slope * kept[i]
-        through = slope if i == last else slope * (own[i] > 0)
-        by_weights.insert(0, seen[i].T @ through)
-        by_biases.insert(0, through.sum(0))
-        below = through @ weights[i].T
-        slope = below + slope if added and 0 < i < last else below
-    return by_weights + by_biases
 
 
 def shares(shape: tuple[int, int], layers: int, dropped: float, rng: np.random.Generator) -> list[np.ndarray] | None:

@@ -16,11 +16,11 @@ import numpy as np
 
 from ...compiled import kernel
 from ...files import ArraysError, arrays
-from ..baselines import starting
+from ..baselines import backward, forward, starting
 from ..ours import ANGLE, DISTANCE, cross_kernel, handed_on_kernel
 from ..pose_vector import ANGLES, JOINTS, PITCH, REFERENCE, ROLL, SKELETON, WIDTH
 from ..regression import EXACT, kinematics_kernel
-from .layers import backward, forward, shares
+from .layers import shares
 from .network import OUTPUTS, Network
 from .samples import FIRST, Batch, Moments
 from .slots import INPUTS, PLACES
