@@ -13,12 +13,12 @@ from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.ours import seen_from
 from gambol.controllers.reconstruction.pose_vector import REFERENCE, YAW_RATE, encode
-from gambol.controllers.reconstruction.trackers import FIRST, INPUTS, LAGS, LEGS, SLOTS, Learner, Moments, legs, moments_kernel, packed
+from gambol.controllers.reconstruction.trackers import FIRST, INPUTS, LAGS, LEGS, SLOTS, Learner, Moments, bodies, legs, moments_kernel, packed
 from gambol.controllers.reconstruction.trackers.layers import shares
 from gambol.controllers.reconstruction.trackers.learning import loss
 from gambol.controllers.reconstruction.trackers.samples import Batch
 from gambol.controllers.reconstruction.trackers.slots import views_kernel
-from gambol.controllers.reconstruction.trackers.wearing import Worn
+from gambol.controllers.reconstruction.trackers.wearing import Worn, worn
 from dolls import strides
 
 DT = 1 / 60
@@ -102,12 +102,12 @@ def test_pytorch_draws_and_judges_the_same(moments, monkeypatch):
     places, turns, there, truth = np.empty((*shape, 3)), np.empty((*shape, 3, 3)), np.empty(shape[:2], bool), np.empty((count, 63))
     moments_kernel(database.frames, database.sound, at, first, DT, LAGS, SLOTS, people, legs(people) / float(legs(SKELETON.offsets)), SKELETON.offsets,
                    SKELETON.parents, REFERENCE, FIRST, LEGS, truth, places, turns, there)
-    worn = Worn(*(part.numpy() for part in wearing)).among(there)
-    places, turns = worn.spoilt(places, turns)
+    told = Worn(*(part.numpy() for part in wearing)).among(there)
+    places, turns = told.spoilt(places, turns)
     given = np.zeros((count, 3))
-    given[:, 2] = worn.heading - database.frames[at, YAW_RATE] * DT
+    given[:, 2] = told.heading - database.frames[at, YAW_RATE] * DT
     inputs, ground = np.empty((count, INPUTS), np.float32), np.empty((count, 3))
-    views_kernel(places, turns, worn.placed, worn.turned, people, SKELETON.offsets, LAGS, DT, given, inputs, ground)
+    views_kernel(places, turns, told.placed, told.turned, people, SKELETON.offsets, LAGS, DT, given, inputs, ground)
     truth = seen_from(ground, truth, np.zeros(3))
     np.testing.assert_allclose(found.inputs, inputs, atol=0.03)  # changes of rounded places over a thirtieth of a second
     np.testing.assert_allclose(found.truth, truth, atol=1e-3)
@@ -118,6 +118,20 @@ def test_pytorch_draws_and_judges_the_same(moments, monkeypatch):
     mine, slopes = loss(np.concatenate([poses.detach().numpy(), np.zeros((count, 4))], -1), Batch(inputs, found.truth.numpy().astype(float), moments.contacts[at], people))
     assert np.isclose(total.item(), mine, rtol=1e-4)
     np.testing.assert_allclose(poses.grad.numpy(), slopes[:, :63], atol=1e-5)
+
+
+def test_pytorch_draws_bodies_and_trackers_as_often(moments, monkeypatch):
+    """How far bodies differ, how often trackers are worn, turn and are known, and how ill they sit: as they are drawn here."""
+    torch = pytest.importorskip("torch", reason="PyTorch learns the network on a graphics card; nothing else needs it")
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts" / "build")
+    theirs, count, rng = importlib.import_module("_torch_samples"), 20_000, np.random.default_rng(0)
+    body, dice = theirs.Body(packed(moments), "cpu"), theirs.Dice(torch.Generator().manual_seed(0), "cpu")
+    mine, own = worn(count, rng), [np.asarray(part) for part in theirs.worn(body, count, dice)]
+    for a, b in ((mine.placed, own[0]), (mine.turned, own[1])):
+        np.testing.assert_allclose(a.mean(0), b.mean(0), atol=0.02)
+    for a, b in ((mine.moved, own[2]), (mine.off, own[3]), (mine.spun[..., 0, 1], own[4][..., 0, 1]), (mine.heading, own[5])):
+        assert np.isclose(np.std(a), np.std(b), rtol=0.05) and np.isclose(np.mean(np.abs(a) < 1e-9), np.mean(np.abs(b) < 1e-9), atol=0.02)
+    np.testing.assert_allclose(bodies(count, rng).std(0), np.asarray(theirs.bodies(body, count, dice)).std(0), rtol=0.05, atol=1e-4)
 
 
 def _plain(moments):
