@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, standing, striding_feet, turns, vectors
-from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, LIFT_ROWS, MOMENT, SAME, Airborne, Path, Plan, depths, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
+from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, LIFT_ROWS, MOMENT, SAME, Airborne, Path, Plan, RUNNERS_HEEL, depths, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
                      lifted, lifts, lowest, settling, sinking, spread)
 from .prior import BETWEEN, EACH, LEGS
 
@@ -43,6 +43,10 @@ BEYOND = 1.7
 """How far the legs reach beyond how a body just came down, at first: it turns about half as far back."""
 TAKES, TAKEN = 6, 2e-5
 """At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
+HELD, RISES_ON = 13, 0.5
+"""Where ankles can't keep heels down in the push is looked at so many times; from there they rise by so much of what others rise."""
+LOOKS, TOUCHES = 120.0, 0.05
+"""How fast joints turn is looked at so often a second, over the whole push and for so long after touch-down [s]."""
 CLEARINGS = 3
 """Feet that would go through the floor in the air are lifted so often."""
 COARSE = 3
@@ -147,6 +151,56 @@ class _Draft(Airborne):
             swing = 1 - start.single
             self.feet[:, swing, 5] = FREE
             self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
+        else:
+            self._hold_heels()
+
+    def _hold_heels(self) -> None:
+        """Let heels that ankles can't keep down when the body is low stay up, and rise on from there, as a runner's do: one that came down in the push would straighten
+        the knee the faster."""
+        some = self._pushing(HELD)
+        forced = self._posed(some)[2][:, :, 4]
+        for side, highest in enumerate(forced.argmax(0)):
+            up, first, ends = forced[highest, side], some[highest], self.pitches[-1, side]
+            if up > self.pitches[first, side]:
+                late = (self.times[first:] - self.times[first]) / max(self.times[-1] - self.times[first], 1e-9)
+                ends = max(ends, min(up + RISES_ON * ends, RUNNERS_HEEL[1]))
+                self.pitches[first:, side] = np.maximum(self.pitches[first:, side], up + late**2 * (ends - up))
+
+    def _pushing(self, count: int) -> np.ndarray:
+        """About so many samples (M,) of the push, from its first to its last."""
+        first = int(np.searchsorted(self.times, self.off))
+        return np.unique(np.linspace(first, len(self.times) - 1, count).round().astype(int))
+
+    def _posed(self, some: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Roots (M, 3), local rotations (M, J, 3, 3) and feet (M, 2, 8) of samples (M,) of wind-up and push, as the body is posed over its feet."""
+        roots, local, feet = np.empty((len(some), 3)), self.local[some], self.feet[some]
+        feet[:, :, 4] = self.pitches[some]
+        ground_kernel(self.body, self.flex, self.angles[some], self.joints, self.offsets[some], self.turns[some], self.centres[some], feet,
+                      self.centres[some[0]] + self.start.root - self.start.centre, roots, local)
+        return roots, local, feet
+
+    def fastest(self) -> np.ndarray:
+        """How fast (2, 2) [rad/s] knees and ankles turn at most in the push and as the body touches down upright."""
+        self._prepare_ground()
+        some = self._pushing(max(round(LOOKS * self.push.duration), 2))
+        after = np.arange(round(LOOKS * TOUCHES) + 1) / LOOKS
+        c = self.way.land + self.way.falling * 0.0 + self.absorbs.motion(after)[0] - self.way.land
+        angles = self.carriage(self.down + after)
+        feet = standing(len(after), self.start.lands_on)
+        feet[..., :5] = self.landing
+        feet[..., 4] = self._toes_down(after)[:, None]
+        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
+        self._free(feet)
+        ground_kernel(self.body, self.flex, angles, self.joints, self._left_over(self.down + after), self._upright(angles[:, 0], np.inf), c, feet,
+                      c[0] - [0.0, 0.05, 0.0], roots, local)
+        out = np.empty((2, 2))
+        for n, (times, posed) in enumerate(((self.times[some], self._posed(some)[1]), (after, local))):
+            sides = [self.body.hip[side] + 1 for side in (0, 1) if not ((self.start.single == 1 - side) if n == 0 else (self.way.lands == 1 - side))]
+            for k in (0, 1):
+                joints = [j + k for j in sides]
+                turned = vectors(np.swapaxes(posed[:-2, joints], -1, -2) @ posed[2:, joints])
+                out[n, k] = (np.linalg.norm(turned, axis=-1) / (times[2:] - times[:-2])[:, None]).max()
+        return out
 
     def _along_the_floor(self) -> None:
         """Centre of mass and force as the path's course has them along the floor."""
@@ -244,7 +298,7 @@ class _Draft(Airborne):
                 break
         self._reach(wanted)
         for _ in range(CLEARINGS):
-            deep, down = depths(self.physique, self.air_roots, self.air, self.planted, self.landing, self.start.slope, self.start.lands_on)
+            deep, down = depths(self.physique, self.air_roots, self.air, self.arc, self.planted, self.landing, self.start.slope, self.start.lands_on)
             if not deep.any():
                 break
             bent = vectors(self.air[:, self.legs].reshape(-1, 2, 4, 3, 3))[:, :, :EACH, 0]

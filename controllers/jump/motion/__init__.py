@@ -8,7 +8,7 @@ from .clearing import depths, lifts, spread
 from .descent import sinking
 from .edges import over_nothing, steps_over
 from .fall import fall, struck
-from .footing import faded, heels_rise, heels_up, settling
+from .footing import RUNNERS_HEEL, faded, heels_rise, heels_up, settling
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
 from .grounded import grounded
@@ -21,7 +21,7 @@ from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "LIFT_ROWS", "MOMENT", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
+    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "LIFT_ROWS", "MOMENT", "PLANT", "ROLL_SPACED", "RUNNERS_HEEL", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
     "between_kernel", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "lifted", "lifts", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sinking", "sole_places", "spread", "steps_over", "struck", "tumbled",
 ]

@@ -16,14 +16,15 @@ GRAZES = 0.002
 TOE = 0.16
 """An ankle that is bent by 1 rad more lifts the toes by so much [m], at standard height."""
 FROM = 0.2
-"""The floor that was left counts in the first half of a flight where a foot is no farther from where it stood than this [m], at standard height; else the lower of both:
-who leaps down comes down beside it."""
+"""The floor that was left counts in the first half of a flight, until the body is as low as it left, where a foot is no farther from where it stood than this [m], at
+standard height; else the lower of both: who leaps down comes down beside it."""
 
 
-def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.ndarray, landing: np.ndarray, slope: np.ndarray,
+def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, arc: np.ndarray, left: np.ndarray, landing: np.ndarray, slope: np.ndarray,
            lands_on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """How deep (N, 2) [m] each foot of flying poses (N, 3), (N, J, 3, 3) is in the floor that it left or on which it lands, 0 where in neither, and whether
-    its toes point down (N, 2). left, landing: (2, 5) the feet as they stood and will stand, on floors that rise by slope and lands_on (2,) [m/m]."""
+    its toes point down (N, 2). arc: (N, 3) [m] the centre of mass. left, landing: (2, 5) the feet as they stood and will stand, on floors that rise by slope and
+    lands_on (2,) [m/m]."""
     body = physique.tables
     positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
     for root, pose, places, facing in zip(roots, local, positions, turned):
@@ -31,7 +32,7 @@ def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, left: np.nd
     corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)
     floors = [feet[:, 1].mean() - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, [0, 2]].mean(0), way) for feet, way in ((left, slope), (landing, lands_on))]
     away = np.linalg.norm(corners[..., [0, 2]] - left[:, None, [0, 2]], axis=-1)
-    early = np.arange(len(roots))[:, None, None] < 0.5 * len(roots)
+    early = ((np.arange(len(roots)) < 0.5 * len(roots)) & (arc[:, 1] >= arc[0, 1]))[:, None, None]
     floor = np.where((away < FROM * body.size) & early, floors[0], np.minimum(*floors))
     deep = np.maximum((floor - corners[..., 1]).max(-1), 0.0)
     return np.where(deep > GRAZES * body.size, deep, 0.0), turned[:, body.hip + 2, 1, 2] < 0.0

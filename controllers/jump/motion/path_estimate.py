@@ -4,6 +4,7 @@ wind-up over take-off to landing, and what stops a body from going there.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -20,11 +21,9 @@ from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = 0.85, 15.5, 0.07
-"""Whoever falls faster touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of the fall, and knees turn no
-faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
-TILTED = 0.7
-"""Whose legs trail behind him lands lower by so much of that than with legs that trail as straight as usual."""
+SOFT = 0.85, 15.5, 0.11
+"""Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
+knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 TURN_SETTLES = 0.25
@@ -154,7 +153,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     heights, crouch, passing = upright, 0.0, start.velocity * FLAT
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
-        height = max(min(heights.touch(trail * along, trail * across) - TILTED * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
+        height = max(min(heights.touch(trail * along, trail * across) - soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
@@ -174,7 +173,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         found = pushing.take_off(leave, land, velocity, flight)
         passing = found.passing
         before, lacks = lacks, np.array([
-            *found.leave, min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]), body)]) - guess
+            *found.leave, (1.0 - start.eased[2]) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(_given(velocity + flight * gravity, trail * towards, height), body, start.eased[1])]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation
@@ -235,11 +234,17 @@ def _tuck(keys: np.ndarray, flight: float, tucked: bool) -> np.ndarray:
     return keys
 
 
-def softened(fall: float, body: BodyTables) -> float:
-    """How much lower [m] a body touches down that falls with `fall` [m/s], see SOFT.
+def _given(velocity: np.ndarray, ahead: np.ndarray, height: float) -> float:
+    """How fast [m/s] a velocity (3,) shortens legs whose feet are ahead (3,) [m] along the floor of a centre of mass so high [m] over them."""
+    leg = ahead - [0.0, height, 0.0]
+    return float(velocity @ leg / np.linalg.norm(leg))
+
+
+def softened(fall: float, body: BodyTables, more: float = 0.0) -> float:
+    """How much lower [m] a body touches down that comes down along its legs with `fall` [m/s], see SOFT, knees bent by so much more [rad] than for that.
 
     A leg of two bones of length a whose knee is bent by θ gets shorter by a sin θ/2 for each radian.
     """
     bone = 0.5 * (body.thigh + body.shank)
-    sine = min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)
-    return float(np.clip(2.0 * bone * (TOUCH_REACH - np.sqrt(1.0 - sine**2)), 0.0, SOFT[2] * body.size))
+    bent = math.asin(min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)) + 0.5 * more
+    return float(np.clip(2.0 * bone * (TOUCH_REACH - math.cos(bent)), 0.0, SOFT[2] * body.size))

@@ -91,6 +91,7 @@ def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, 
         astray = velocity * FLAT - max(float(velocity @ facing), 0.0) * facing
         share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
         reach = min(reach, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
+    reach = math.cos(math.acos(reach) + 0.5 * float(start.eased[0]))
     down = heels_up(start, feet, guess, pushes, body) - float(uphill(feet, start.slope).mean())
     return stretched(physique, angles, feet, down, reach, heading, guess) + lifted
 
