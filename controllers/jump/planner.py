@@ -60,18 +60,22 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
 
     Checks nothing: see `reach`.
     """
+    return begun(physique, start, way, place, floor).plan()
+
+
+def begun(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Draft:
+    """The same jump as far as the floor has to do with it; `Draft.plan` makes the rest."""
     place = np.asarray(place, float)
     landing = (landing_feet(place, start.lands, physique.tables, start.lands_on) if way.lands is None
                else striding_feet(place, start.lands, physique.tables, way.lands, start.lands_on))
-    planted = start.planted(floor, physique.tables)
-    return _Draft(physique, start, way, planted, landing).plan()
+    return Draft(physique, start, way, start.planted(floor, physique.tables), landing)
 
 
-class _Draft(Airborne):
+class Draft(Airborne):
     """One plan in the making: what its parts share."""
 
     def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray):
-        assert way.push is not None  # a fall has none, and is no `_Draft`
+        assert way.push is not None  # a fall has none, and is no `Draft`
         self.planted, self.off, self.push = planted, way.wind_up, way.push
         leave = self.off + self.push.duration
         self.sinks = max(self.off - way.dip, 0.0)  # nobody bows who has not begun to go down
@@ -79,6 +83,7 @@ class _Draft(Airborne):
         self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
         self.lifts = np.zeros((LIFT_ROWS, 2, EACH))
         super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()))
+        self._prepare_ground()
 
     def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:
         """Keys (K, LEGS) of the carriage until touch-down, arms swung less far until take-off where they have less time than recorded ones."""
@@ -94,8 +99,7 @@ class _Draft(Airborne):
         return keys
 
     def plan(self) -> Plan:
-        """Everything, in order."""
-        self._prepare_ground()
+        """Everything else, in order."""
         self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)
@@ -180,27 +184,17 @@ class _Draft(Airborne):
         return roots, local, feet
 
     def fastest(self) -> np.ndarray:
-        """How fast (2, 2) [rad/s] knees and ankles turn at most in the push and as the body touches down upright."""
-        self._prepare_ground()
-        some = self._pushing(max(round(LOOKS * self.push.duration), 2))
+        """How fast (2, 2) [rad/s] knees and ankles turn at most of legs that push, until it leaves, and of those on which it comes down, upright, from then on."""
+        some = self._pushing(max(round(LOOKS * self.push.duration), 2) + 1)
         after = np.arange(round(LOOKS * TOUCHES) + 1) / LOOKS
-        c = self.way.land + self.way.falling * 0.0 + self.absorbs.motion(after)[0] - self.way.land
-        angles = self.carriage(self.down + after)
-        feet = standing(len(after), self.start.lands_on)
-        feet[..., :5] = self.landing
-        feet[..., 4] = self._toes_down(after)[:, None]
-        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
-        self._free(feet)
-        ground_kernel(self.body, self.flex, angles, self.joints, self._left_over(self.down + after), self._upright(angles[:, 0], np.inf), c, feet,
-                      c[0] - [0.0, 0.05, 0.0], roots, local)
-        out = np.empty((2, 2))
-        for n, (times, posed) in enumerate(((self.times[some], self._posed(some)[1]), (after, local))):
-            sides = [self.body.hip[side] + 1 for side in (0, 1) if not ((self.start.single == 1 - side) if n == 0 else (self.way.lands == 1 - side))]
-            for k in (0, 1):
-                joints = [j + k for j in sides]
-                turned = vectors(np.swapaxes(posed[:-2, joints], -1, -2) @ posed[2:, joints])
-                out[n, k] = (np.linalg.norm(turned, axis=-1) / (times[2:] - times[:-2])[:, None]).max()
-        return out
+        legs = [side for side in (0, 1) if self.start.single in (None, side)], [side for side in (0, 1) if self.way.lands in (None, side)]
+        return np.stack([self._turning(times, local, sides) for times, local, sides in zip((self.times[some], after), (self._posed(some)[1], self._touched(after)), legs)])
+
+    def _turning(self, times: np.ndarray, local: np.ndarray, sides: list[int]) -> np.ndarray:
+        """How fast (2,) [rad/s] knees and ankles of legs on these sides turn at most between every other of poses (M, J, 3, 3) at times (M,) [s]."""
+        joints = self.body.hip[sides][:, None] + [1, 2]
+        turned = vectors(np.swapaxes(local[:-2, joints], -1, -2) @ local[2:, joints])
+        return (np.linalg.norm(turned, axis=-1) / (times[2:] - times[:-2])[:, None, None]).max((0, 1))
 
     def _along_the_floor(self) -> None:
         """Centre of mass and force as the path's course has them along the floor."""

@@ -182,6 +182,19 @@ class Airborne:
         bent = vectors(posed[:, self.legs])
         return posed[0], np.clip(MEET[0] / step * (bent[1] - bent[0]), -MEET[1], MEET[1])
 
+    def _touched(self, after: np.ndarray) -> np.ndarray:
+        """The local rotations (M, J, 3, 3) so long (M,) [s] after it touched down, if it does upright."""
+        angles, feet = self.carriage(self.down + after), standing(len(after), self.start.lands_on)
+        feet[..., :5], feet[..., 4] = self.landing, self._toes_down(after)[:, None]
+        self._free(feet)
+        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
+        if self.way.lands is not None:
+            local[:, self.swings] = self.swung(after)
+        centres = self.absorbs.motion(after)[0]
+        ground_kernel(self.body, self.flex, angles, self.joints, self._left_over(self.down + after), self._upright(angles[:, 0], np.inf), centres, feet,
+                      centres[0] - [0.0, 0.05, 0.0], roots, local)
+        return local
+
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
         velocity and acceleration; whether the heels (M, 2) stand; when it walks on."""

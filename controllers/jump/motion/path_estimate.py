@@ -173,7 +173,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         found = pushing.take_off(leave, land, velocity, flight)
         passing = found.passing
         before, lacks = lacks, np.array([
-            *found.leave, (1.0 - start.eased[2]) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(_given(velocity + flight * gravity, trail * towards, height), body, start.eased[1])]) - guess
+            *found.leave, (1.0 - start.eased[3]) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(_given(velocity + flight * gravity, trail * towards, height), body, start.eased[2])]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation

@@ -12,10 +12,11 @@ import numpy as np
 from ...contract import level
 from ...navigation import floor_at
 from ..body import FLAT, Physique, Start
-from ..motion import Plan, rolled, rolls, room
-from ..planner import plan
+from ..motion import Path, Plan, rolled, rolls, room
+from ..planner import Draft, begun
 from ..prior import Prior
 from .arcs import HEIGHTS, Arc, Arcs, How, following
+from .easing import eased
 from .feasibility import STEEP, meant, stopped, wrong
 from .seeking import PLAN, Pieces, counted, weighed, whole
 from .sweep import Touch, touch
@@ -118,10 +119,18 @@ class Reach(Arcs):
 
     def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, float | None]:
         """The plan along an arc; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
-        made, why = self._down(plan(self.physique, replace(start, haste=arc.how.haste), arc.path, place, floor), around)
+        made, why = self._down(self._eased(start, place, floor, around, arc).plan(), around)
         why = why or wrong(self.physique, made)
         hit = None if why else touch(self.physique, made, around)
         return (None, why, None) if why else (None, hit.reason, hit.deep) if hit is not None else (made, "", None)
+
+    def _eased(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> Draft:
+        """The leap along an arc, or along one near it whose legs turn no faster than people's."""
+        def another(more: np.ndarray) -> tuple[Start, Path, str]:
+            easier = replace(start, haste=arc.how.haste, eased=more)
+            found = self.arc(easier, place, floor, around, arc.how)
+            return easier, found.path, found.why
+        return eased(replace(start, haste=arc.how.haste), arc.path, another, lambda some, way: begun(self.physique, some, way, place, floor))
 
     def _down(self, made: Plan, around: Sequence[Any]) -> tuple[Plan, str]:
         """A plan as it comes down: with a roll where that is so hard that people roll, if there is room; why it can't come down, if so."""
@@ -141,7 +150,7 @@ class Reach(Arcs):
         way = arc.path
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = plan(self.physique, replace(start, haste=arc.how.haste), way, place, floor)
+        made = self._eased(start, place, floor, around, arc).plan()
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
