@@ -45,8 +45,8 @@ TAKES, TAKEN = 6, 2e-5
 """At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
 HELD, RISES_ON = 13, 0.5
 """Where ankles can't keep heels down in the push is looked at so many times; from there they rise by so much of what others rise."""
-LOOKS, TOUCHES = 120.0, 0.05
-"""How fast joints turn is looked at so often a second, over the whole push and for so long after touch-down [s]."""
+LOOKS, TOUCHES = 1.0 / 60.0, 0.07
+"""How fast joints turn is told from poses so far apart [s], over the whole push and for so long after touch-down [s]."""
 CLEARINGS = 3
 """Feet that would go through the floor in the air are lifted so often."""
 COARSE = 3
@@ -184,17 +184,28 @@ class Draft(Airborne):
         return roots, local, feet
 
     def fastest(self) -> np.ndarray:
-        """How fast (2, 2) [rad/s] knees and ankles turn at most of legs that push, until it leaves, and of those on which it comes down, upright, from then on."""
-        some = self._pushing(max(round(LOOKS * self.push.duration), 2) + 1)
-        after = np.arange(round(LOOKS * TOUCHES) + 1) / LOOKS
-        legs = [side for side in (0, 1) if self.start.single in (None, side)], [side for side in (0, 1) if self.way.lands in (None, side)]
-        return np.stack([self._turning(times, local, sides) for times, local, sides in zip((self.times[some], after), (self._posed(some)[1], self._touched(after)), legs)])
+        """How fast (2, 2) [rad/s] knees and ankles turn at most of legs that push, until it leaves, and of those on which it comes down from then on: told without the flight,
+        as if it left without a spin and came down upright."""
+        some, after = self._pushing(max(round(2.0 * self.push.duration / LOOKS), 2) + 1), np.arange(0.0, TOUCHES, 0.5 * LOOKS)
+        return self._turning((self.times[some], after), (self._posed(some)[1], self._touched(after)))
 
-    def _turning(self, times: np.ndarray, local: np.ndarray, sides: list[int]) -> np.ndarray:
-        """How fast (2,) [rad/s] knees and ankles of legs on these sides turn at most between every other of poses (M, J, 3, 3) at times (M,) [s]."""
-        joints = self.body.hip[sides][:, None] + [1, 2]
-        turned = vectors(np.swapaxes(local[:-2, joints], -1, -2) @ local[2:, joints])
-        return (np.linalg.norm(turned, axis=-1) / (times[2:] - times[:-2])[:, None, None]).max((0, 1))
+    def played(self, made: Plan) -> np.ndarray:
+        """The same of the finished plan."""
+        some = [(made.times >= begins - 1e-9) & (made.times <= ends) for begins, ends in ((self.off, self.leave + LOOKS), (self.down - LOOKS, self.down + TOUCHES))]
+        return self._turning(tuple(made.times[these] for these in some), tuple(made.local[these] for these in some))
+
+    def _turning(self, times, local) -> np.ndarray:
+        """How fast (2, 2) [rad/s] knees and ankles turn at most in poses (M, J, 3, 3) at times (M,) [s], of legs that push in the first and of those on which it comes down in the
+        second."""
+        out = np.zeros((2, 2))
+        for found, when, posed, only in zip(out, times, local, (self.start.single, self.way.lands)):
+            joints = self.body.hip[[side for side in (0, 1) if only in (None, side)]][:, None] + [1, 2]
+            later = np.searchsorted(when, when + LOOKS - 1e-9)
+            first = np.flatnonzero(later < len(when))
+            if len(first):
+                turned = vectors(np.swapaxes(posed[first][:, joints], -1, -2) @ posed[later[first]][:, joints])
+                found[:] = (np.linalg.norm(turned, axis=-1) / (when[later[first]] - when[first])[:, None, None]).max((0, 1))
+        return out
 
     def _along_the_floor(self) -> None:
         """Centre of mass and force as the path's course has them along the floor."""

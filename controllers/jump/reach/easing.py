@@ -13,48 +13,59 @@ import numpy as np
 
 from ...body import yaw
 from ..body import FLAT, Start
-from ..motion import Path
+from ..motion import Path, Plan
 from ..planner import Draft
 
-WANTED = np.array([16.3, 19.2])
-"""How fast knees and ankles turn at most [rad/s]: a little less than the fastest of recorded jumps, since bodies are not quite upright as they come down."""
+LIMITS, WANTED = np.array([16.6, 19.6]), np.array([16.0, 19.0])
+"""Knees and ankles that turn faster than this are too fast [rad/s], and what is wanted of them then."""
 BENDS, HEELS, SOFTENS, REACHES = (0.03, 1.0), 1.0, 2.0, 1.2
 """For each share by which a joint is too fast: by so much more [rad] a knee is bent as it leaves, beside the first; heels are up; knees are bent as it touches down, which takes
 less of a leap, too; and by which share less it reaches ahead with feet that come down behind it."""
+SPARES = np.array([0.5, 0.5, 1.0, 0.0])
+"""And so much of that where it is too much for the body."""
 MOST = np.array([0.5, 0.3, 0.8, 0.7])
 """By so much at most."""
-TRIES = 3
+TRIES = 2
 """So many paths are tried beside the first."""
 
 
-def eased(start: Start, way: Path, another: Callable[[np.ndarray], tuple[Start, Path, str]], begun: Callable[[Start, Path], Draft]) -> Draft:
-    """The leap from a start along a path, or along one near it whose joints turn no faster than WANTED; where there is none, along that whose joints are least too fast.
-    another: the start of who leaps eased so (4,), his path, and why it can't be gone, if so. begun: a leap from a start along a path."""
-    best = begun(start, way)
-    if start.springs or way.hops:  # whose legs are those of recorded hops
-        return best
-    fast = best.fastest() / WANTED - 1.0
+def eased(start: Start, way: Path, another: Callable[[np.ndarray], tuple[Start, Path, str]], begun: Callable[[Start, Path], Draft]) -> list[Plan]:
+    """The leap from a start along a path, and, where its joints turn too fast, one along a path near it before that whose joints do less. another: the start of who
+    leaps eased so (4,), his path, and why it can't be gone, if so. begun: a leap from a start along a path."""
+    first = begun(start, way)
+    made = first.plan()
+    fast = first.played(made) / LIMITS - 1.0
+    if start.springs or way.hops or not (fast > 0.0).any():  # hoppers' legs are those of recorded hops
+        return [made]
+    # the flight, on which a little depends how fast joints are, is that of the first
+    shares = LIMITS * (1.0 + fast) / np.maximum(first.fastest(), 1.0) / WANTED
+    fast, best = LIMITS * (1.0 + fast) / WANTED - 1.0, None
+    base, least, lacks = start.eased, _lacks(fast), float(_lacks(fast).sum())
     step = _step(fast, way, start.runs)
     for _ in range(TRIES):
         if not step.any():
             break
-        start, way, why = another(np.clip(best.start.eased + step, -MOST, MOST))
+        start, way, why = another(np.clip(base + step, -MOST, MOST))
         if why:  # it takes too much of the body: less, and none of what takes more of a leap
-            step *= [0.5, 0.5, 1.0, 0.0]
+            step *= SPARES
             continue
         draft = begun(start, way)
-        found = draft.fastest() / WANTED - 1.0
-        if _lacks(found) < _lacks(fast):
-            best, fast = draft, found
-            step = _step(fast, way, start.runs)
-        else:
-            step *= 0.5
-    return best
+        fast = shares * draft.fastest() - 1.0
+        found = _lacks(fast)
+        if found.sum() < lacks:
+            best, lacks = draft, float(found.sum())
+        better = np.repeat(found <= least, 2)  # what slows it as it leaves and as it touches down has little to do with each other
+        base, step = np.where(better, start.eased, base), np.where(better, _step(fast, way, start.runs), 0.5 * step)
+        least = np.minimum(found, least)
+    if best is None:
+        return [made]
+    other = best.plan()
+    return [other, made] if _lacks(best.played(other) / LIMITS - 1.0).sum() < _lacks(first.played(made) / LIMITS - 1.0).sum() else [made]
 
 
-def _lacks(fast: np.ndarray) -> float:
-    """How much too fast joints are that are so by shares (2, 2), see `Draft.fastest`."""
-    return float((np.maximum(fast, 0.0)**2).sum())
+def _lacks(fast: np.ndarray) -> np.ndarray:
+    """How much too fast (2,) joints are in the push and as it touches down that are so by shares (2, 2), see `Draft.fastest`."""
+    return (np.maximum(fast, 0.0)**2).sum(1)
 
 
 def _step(fast: np.ndarray, way: Path, runs: bool) -> np.ndarray:

@@ -13,7 +13,7 @@ from ...contract import level
 from ...navigation import floor_at
 from ..body import FLAT, Physique, Start
 from ..motion import Path, Plan, rolled, rolls, room
-from ..planner import Draft, begun
+from ..planner import begun
 from ..prior import Prior
 from .arcs import HEIGHTS, Arc, Arcs, How, following
 from .easing import eased
@@ -119,13 +119,18 @@ class Reach(Arcs):
 
     def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, float | None]:
         """The plan along an arc; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
-        made, why = self._down(self._eased(start, place, floor, around, arc).plan(), around)
-        why = why or wrong(self.physique, made)
-        hit = None if why else touch(self.physique, made, around)
-        return (None, why, None) if why else (None, hit.reason, hit.deep) if hit is not None else (made, "", None)
+        why, deep = "", None
+        for made in self._eased(start, place, floor, around, arc):
+            made, why = self._down(made, around)
+            why = why or wrong(self.physique, made)
+            hit = None if why else touch(self.physique, made, around)
+            if not why and hit is None:
+                return made, "", None
+            why, deep = (why, None) if hit is None else (hit.reason, hit.deep)
+        return None, why, deep
 
-    def _eased(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> Draft:
-        """The leap along an arc, or along one near it whose legs turn no faster than people's."""
+    def _eased(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> list[Plan]:
+        """The leap along an arc, and before it one near it whose legs turn no faster than people's, if its do: see `eased`."""
         def another(more: np.ndarray) -> tuple[Start, Path, str]:
             easier = replace(start, haste=arc.how.haste, eased=more)
             found = self.arc(easier, place, floor, around, arc.how)
@@ -150,7 +155,7 @@ class Reach(Arcs):
         way = arc.path
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = self._eased(start, place, floor, around, arc).plan()
+        made = self._eased(start, place, floor, around, arc)[-1]
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
