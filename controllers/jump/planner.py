@@ -19,7 +19,7 @@ PUSH_RATE = 240.0
 """Poses a second during the push."""
 GATHERS = 0.2
 """Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
-SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
+SWINGS, FADES = (15.5, 18.0, 9.0), 2.0 * np.log(2.0) / np.e
 """But none of its joints turns faster than the first as recorded ones do, nor by more than what is then left of the second as it comes to them, but with the third
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
 ARMS = 14.0
@@ -45,12 +45,14 @@ TAKES, TAKEN = 6, 2e-5
 """At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
 HELD, RISES_ON = 13, 0.5
 """Where ankles can't keep heels down in the push is looked at so many times; from there they rise by so much of what others rise."""
-LOOKS, TOUCHES = 1.0 / 60.0, 0.07
+LOOKS, TOUCHES = 1.0 / 72.0, 0.07
 """How fast joints turn is told from poses so far apart [s], over the whole push and for so long after touch-down [s]."""
 CLEARINGS = 3
 """Feet that would go through the floor in the air are lifted so often."""
 COARSE = 3
 """Until then, only every third pose is made."""
+NONE = np.zeros(3)
+"""No spin."""
 PLACED = 0.02
 """A foot that still comes down as its body winds up stands once it is so near to its place [m], at standard height."""
 
@@ -84,6 +86,7 @@ class Draft(Airborne):
         self.lifts = np.zeros((LIFT_ROWS, 2, EACH))
         super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()))
         self._prepare_ground()
+        self.flown = np.zeros((3, 3))  # with which spin it leaves, see `_stand`, and how far its pelvis is turned as it comes down, and how fast
 
     def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:
         """Keys (K, LEGS) of the carriage until touch-down, arms swung less far until take-off where they have less time than recorded ones."""
@@ -103,6 +106,7 @@ class Draft(Airborne):
         self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)
+        self.flown = np.stack([spin, *self._comes_down()])
         after, landed, heels, through = self._land()
         way, mass, g = self.way, self.physique.mass, self.gravity
         contacts = np.zeros((len(self.times) + len(self.flying) - 1 + len(after), 4), bool)
@@ -175,19 +179,20 @@ class Draft(Airborne):
         first = int(np.searchsorted(self.times, self.off))
         return np.unique(np.linspace(first, len(self.times) - 1, count).round().astype(int))
 
-    def _posed(self, some: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Roots (M, 3), local rotations (M, J, 3, 3) and feet (M, 2, 8) of samples (M,) of wind-up and push, as the body is posed over its feet."""
+    def _posed(self, some: np.ndarray, spin: np.ndarray = NONE) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Roots (M, 3), local rotations (M, J, 3, 3) and feet (M, 2, 8) of samples (M,) of wind-up and push, as the body is posed over its feet that leaves with a
+        spin (3,)."""
         roots, local, feet = np.empty((len(some), 3)), self.local[some], self.feet[some]
         feet[:, :, 4] = self.pitches[some]
-        ground_kernel(self.body, self.flex, self.angles[some], self.joints, self.offsets[some], self.turns[some], self.centres[some], feet,
-                      self.centres[some[0]] + self.start.root - self.start.centre, roots, local)
+        ground_kernel(self.body, self.flex, self.angles[some], self.joints, self.offsets[some], turns(self.nudge[some] * spin) @ self.turns[some], self.centres[some],
+                      feet, self.centres[some[0]] + self.start.root - self.start.centre, roots, local)
         return roots, local, feet
 
-    def fastest(self) -> np.ndarray:
-        """How fast (2, 2) [rad/s] knees and ankles turn at most of legs that push, until it leaves, and of those on which it comes down from then on: told without the flight,
-        as if it left without a spin and came down upright."""
+    def fastest(self, flown: np.ndarray) -> np.ndarray:
+        """How fast (2, 2) [rad/s] knees and ankles turn at most of legs that push, until it leaves, and of those on which it comes down from then on: told without its flight,
+        which is like that of another leap, `Draft.flown` (3, 3)."""
         some, after = self._pushing(max(round(2.0 * self.push.duration / LOOKS), 2) + 1), np.arange(0.0, TOUCHES, 0.5 * LOOKS)
-        return self._turning((self.times[some], after), (self._posed(some)[1], self._touched(after)))
+        return self._turning((self.times[some], after), (self._posed(some, flown[0])[1], self._touched(after, *flown[1:])))
 
     def played(self, made: Plan) -> np.ndarray:
         """The same of the finished plan."""

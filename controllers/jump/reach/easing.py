@@ -23,9 +23,9 @@ BENDS, HEELS, SOFTENS, REACHES = (0.03, 1.0), 1.0, 2.0, 1.2
 less of a leap, too; and by which share less it reaches ahead with feet that come down behind it."""
 SPARES = np.array([0.5, 0.5, 1.0, 0.0])
 """And so much of that where it is too much for the body."""
-MOST = np.array([0.5, 0.3, 0.8, 0.7])
+MOST = np.array([0.5, 0.3, 0.8, 0.6])
 """By so much at most."""
-TRIES = 2
+TRIES = 3
 """So many paths are tried beside the first."""
 
 
@@ -37,11 +37,9 @@ def eased(start: Start, way: Path, another: Callable[[np.ndarray], tuple[Start, 
     fast = first.played(made) / LIMITS - 1.0
     if start.springs or way.hops or not (fast > 0.0).any():  # hoppers' legs are those of recorded hops
         return [made]
-    # the flight, on which a little depends how fast joints are, is that of the first
-    shares = LIMITS * (1.0 + fast) / np.maximum(first.fastest(), 1.0) / WANTED
     fast, best = LIMITS * (1.0 + fast) / WANTED - 1.0, None
     base, least, lacks = start.eased, _lacks(fast), float(_lacks(fast).sum())
-    step = _step(fast, way, start.runs)
+    step = _step(fast, way, base)
     for _ in range(TRIES):
         if not step.any():
             break
@@ -50,12 +48,12 @@ def eased(start: Start, way: Path, another: Callable[[np.ndarray], tuple[Start, 
             step *= SPARES
             continue
         draft = begun(start, way)
-        fast = shares * draft.fastest() - 1.0
+        fast = draft.fastest(first.flown) / WANTED - 1.0  # whose flight is much like the first
         found = _lacks(fast)
         if found.sum() < lacks:
             best, lacks = draft, float(found.sum())
         better = np.repeat(found <= least, 2)  # what slows it as it leaves and as it touches down has little to do with each other
-        base, step = np.where(better, start.eased, base), np.where(better, _step(fast, way, start.runs), 0.5 * step)
+        base, step = np.where(better, start.eased, base), np.where(better, _step(fast, way, start.eased), 0.5 * step)
         least = np.minimum(found, least)
     if best is None:
         return [made]
@@ -68,12 +66,12 @@ def _lacks(fast: np.ndarray) -> np.ndarray:
     return (np.maximum(fast, 0.0)**2).sum(1)
 
 
-def _step(fast: np.ndarray, way: Path, runs: bool) -> np.ndarray:
-    """By how much (4,) `Start.eased` is to change of who leaps along a path with joints that are too fast by shares (2, 2), see `Draft.fastest`. runs: his foot is
-    under him as it pushes, and leaves as it does."""
-    (knee, ankle), touches = np.maximum(fast, 0.0) * [[not runs], [True]]
+def _step(fast: np.ndarray, way: Path, base: np.ndarray) -> np.ndarray:
+    """By how much (4,) `Start.eased`, which is base (4,), is to change of who leaps along a path with joints that are too fast by shares (2, 2), see `Draft.fastest`."""
+    (knee, ankle), touches = np.maximum(fast, 0.0)
     flat = way.velocity * FLAT
     ahead = float(flat @ yaw(way.heading)[:, 2]) / max(float(np.linalg.norm(flat)), 1e-9)
-    lands = float(touches.max())
     heels = max(ahead, 0.0) * knee if knee > ankle else -ankle  # aside and backward they bring nothing nearer
-    return np.array([BENDS[0] * (knee > 0.0) + BENDS[1] * knee, HEELS * heels, SOFTENS * max(knee, lands), REACHES * max(-ahead, 0.0) * lands])
+    lands = SOFTENS * float(touches.max())
+    nearer = max(lands - (MOST[2] - base[2]), 0.0) / SOFTENS  # than knees can do, where it comes down backward
+    return np.array([BENDS[0] * (knee > 0.0) + BENDS[1] * knee, HEELS * heels, max(SOFTENS * knee, lands), REACHES * max(-ahead, 0.0) * nearer])
