@@ -19,7 +19,7 @@ PUSH_RATE = 240.0
 """Poses a second during the push."""
 GATHERS = 0.2
 """Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
-SWINGS, FADES = (15.5, 18.0, 9.0), 2.0 * np.log(2.0) / np.e
+SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
 """But none of its joints turns faster than the first as recorded ones do, nor by more than what is then left of the second as it comes to them, but with the third
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
 ARMS = 14.0

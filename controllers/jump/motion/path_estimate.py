@@ -21,9 +21,12 @@ from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = 0.85, 15.5, 0.11
+SOFT = 0.85, 15.5, 0.07, 0.11
 """Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
-knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
+knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height, or the fourth where that is
+told."""
+TILTED = 0.7
+"""A runner, who passes over his feet as legs give, lands lower by so much of that."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 TURN_SETTLES = 0.25
@@ -153,7 +156,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     heights, crouch, passing = upright, 0.0, start.velocity * FLAT
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
-        height = max(min(heights.touch(trail * along, trail * across) - soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
+        height = max(min(heights.touch(trail * along, trail * across) - (TILTED if start.runs else 1.0) * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
@@ -173,7 +176,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         found = pushing.take_off(leave, land, velocity, flight)
         passing = found.passing
         before, lacks = lacks, np.array([
-            *found.leave, (1.0 - start.eased[3]) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(_given(velocity + flight * gravity, trail * towards, height), body, start.eased[2])]) - guess
+            *found.leave, (1.0 - start.eased[3]) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]) if start.runs else _given(velocity + flight * gravity, trail * towards, height), body, start.eased[2])]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation
@@ -247,4 +250,4 @@ def softened(fall: float, body: BodyTables, more: float = 0.0) -> float:
     """
     bone = 0.5 * (body.thigh + body.shank)
     bent = math.asin(min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)) + 0.5 * more
-    return float(np.clip(2.0 * bone * (TOUCH_REACH - math.cos(bent)), 0.0, SOFT[2] * body.size))
+    return float(np.clip(2.0 * bone * (TOUCH_REACH - math.cos(bent)), 0.0, SOFT[3 if more else 2] * body.size))

@@ -25,6 +25,8 @@ SPARES = np.array([0.5, 0.5, 1.0, 0.0])
 """And so much of that where it is too much for the body."""
 MOST = np.array([0.5, 0.3, 0.8, 0.6])
 """By so much at most."""
+HARDEST = 4.4
+"""Who falls faster needs all of his legs to stop [m/s]."""
 TRIES = 3
 """So many paths are tried beside the first."""
 
@@ -35,7 +37,7 @@ def eased(start: Start, way: Path, another: Callable[[np.ndarray], tuple[Start, 
     first = begun(start, way)
     made = first.plan()
     fast = first.played(made) / LIMITS - 1.0
-    if start.springs or way.hops or not (fast > 0.0).any():  # hoppers' legs are those of recorded hops
+    if start.springs or way.hops or -way.falling[1] > HARDEST or not (fast > 0.0).any():  # hoppers' legs are those of recorded hops
         return [made]
     fast, best = LIMITS * (1.0 + fast) / WANTED - 1.0, None
     base, least, lacks = start.eased, _lacks(fast), float(_lacks(fast).sum())
