@@ -25,9 +25,8 @@ SLOWER = 1.0, 1.3, 1.6, 2.0
 """A body on two feet takes so many times as long to wind up, until its soles are enough."""
 WITHIN = 0.01
 """Soles are enough if the pressure lies no farther than this outside them [m], at standard height."""
-AGAIN, SETTLED, STEPS = 4, 2e-3, (0.3, 2.0)
-"""How high it leaves and where heels rise follow from where it goes: that is found so often again, until it leaves no higher or lower by more than this [m] for it.
-Of what it does, it goes by shares within these."""
+AGAIN = 2
+"""How high it leaves and where heels rise follow from where it goes: that is found so often again."""
 ASTRAY = 0.5
 """No soles are enough for who must leave so far from where it was estimated [m], at standard height."""
 HOPELESS = 0.12
@@ -51,18 +50,12 @@ def grounded(physique: Physique, start: Start, way: Path, floor: float) -> Path:
         slower = replace(way, wind_up=scale * way.wind_up)
         if scale > 1.0 and (sinking(slower, start, np.linspace(0.0, slower.wind_up, KNOTS))[2][:, 1] < (1.0 - LIGHTEST) * way.gravity[1]).any():
             break
-        course, before, share = _course(physique, start, slower, planted, floor, None), None, 1.0
+        course = _course(physique, start, slower, planted, floor, None)
         for _ in range(AGAIN if course.outside < HOPELESS * physique.size else 0):
             if not np.linalg.norm(course.place[-1] - way.leave[[0, 2]]) < ASTRAY * physique.size:
                 course = course._replace(outside=np.inf)
                 break
-            lacks = _top(physique, start, slower, planted, course) - slower.leave[1]
-            if before is not None:
-                if abs(lacks) < SETTLED:
-                    break
-                share = float(np.clip(share * before / (before - lacks), *STEPS)) if before != lacks and not start.runs else share
-            before = lacks
-            slower = _left(slower, course, slower.leave[1] + share * lacks)
+            slower = _left(physique, start, slower, planted, course)
             course = _course(physique, start, slower, planted, floor, course)
         if best is None or course.outside < best[1].outside - WITHIN * physique.size:
             best = slower, course
@@ -114,24 +107,19 @@ def _guess(start: Start, way: Path, floor: float) -> Iterator[np.ndarray]:
     return (np.ascontiguousarray(np.stack([np.interp(times, known, part[:, k]) for k in (0, 2)], 1)) for part in (pressed, centres))
 
 
-def _top(physique: Physique, start: Start, way: Path, planted: np.ndarray, course: Course) -> float:
-    """How high [m] its legs reach as it leaves where the course does."""
+def _left(physique: Physique, start: Start, way: Path, planted: np.ndarray, course: Course) -> Path:
+    """The path that leaves where the course does, as high as its legs then reach."""
     leave = way.leave.copy()
     leave[[0, 2]] = course.place[-1]
     assert way.push is not None  # `grounded` has looked
     if not start.runs:
-        return top(physique, start, way.keys[2 * BETWEEN, :LEGS], start.pushing(planted), start.heading, leave, way.velocity, way.push.duration)
-    assert start.single is not None  # who runs pushes off one foot
-    tall, ball = STRIDE * measures(physique).leave(0.0), planted[start.single, :3]
-    before, after = (over(tall, float(np.linalg.norm((place - ball) * FLAT))) for place in (way.leave, leave))
-    return leave[1] + after - before
-
-
-def _left(way: Path, course: Course, high: float) -> Path:
-    """The path that leaves where the course does, so high [m], or a quarter as high over its lowest point as it did."""
-    leave = way.leave.copy()
-    leave[[0, 2]] = course.place[-1]
-    leave[1] = max(high, way.low[1] + 0.25 * (way.leave[1] - way.low[1]))
+        leave[1] = top(physique, start, way.keys[2 * BETWEEN, :LEGS], start.pushing(planted), start.heading, leave, way.velocity, way.push.duration)
+    else:
+        assert start.single is not None  # who runs pushes off one foot
+        tall, ball = STRIDE * measures(physique).leave(0.0), planted[start.single, :3]
+        before, after = (over(tall, float(np.linalg.norm((place - ball) * FLAT))) for place in (way.leave, leave))
+        leave[1] += after - before
+    leave[1] = max(leave[1], way.low[1] + 0.25 * (way.leave[1] - way.low[1]))
     return _on(replace(way, leave=leave), course)
 
 

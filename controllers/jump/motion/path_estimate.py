@@ -25,8 +25,8 @@ SOFT = 0.85, 15.5, 0.07, 0.11
 """Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
 knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height, or the fourth where that is
 told."""
-TILTED = 0.7
-"""A runner, who passes over his feet as legs give, lands lower by so much of that."""
+TILTED, HARD = 0.7, (4.4, 5.4)
+"""A runner, who passes over his feet as legs give, lands lower by so much of that, and so does who falls faster [m/s], by and by, and needs his legs to stop."""
 LEAST_AIRTIME = 0.30
 """Shorter flights look like stumbling [s]; on Earth, at standard height."""
 TURN_SETTLES = 0.25
@@ -152,16 +152,17 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
     keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
     stretched = np.array([dear, 1.0, dear])
-    lacks, relaxed = None, 0.5  # half the way: the whole one may swing about
+    fall, lacks, relaxed = 0.0, None, 0.5  # half the way: the whole one may swing about
     heights, crouch, passing = upright, 0.0, start.velocity * FLAT
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
-        height = max(min(heights.touch(trail * along, trail * across) - (TILTED if start.runs else 1.0) * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
+        height = max(min(heights.touch(trail * along, trail * across) - (TILTED if start.runs else np.interp(fall, HARD, (1.0, TILTED))) * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
             (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
+        fall = g * flight - float(velocity[1])
         features = [prior.features(speed, ahead, pace, size, start.runs)
                     for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
         swings = prior.swings(flight * np.sqrt(g / 9.81), pace, size, start.runs)
