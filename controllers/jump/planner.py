@@ -6,34 +6,17 @@ follow from where the feet are, and in the air the turning of the whole body fol
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, standing, striding_feet, turns, vectors
-from .motion import (CLEARS, FADE, FREE, GROUND_RATE, HEEL, LIFT_ROWS, MOMENT, SAME, Airborne, Path, Plan, RUNNERS_HEEL, depths, faded, flight_kernel, ground_kernel, heels_rise, heels_up,
-                     lifted, lifts, lowest, settling, sinking, spread)
+from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
+from .motion import HEEL, SAME, Path, Plan, depths, flight_kernel, lifts, spread
 from .prior import BETWEEN, EACH, LEGS
+from .pushing import STRAIGHTEST, Pushing
 
-PUSH_RATE = 240.0
-"""Poses a second during the push."""
-GATHERS = 0.2
-"""Half-life with which a runner's free leg comes to how recorded ones are, as a share of the time until take-off."""
-SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
-"""But none of its joints turns faster than the first as recorded ones do, nor by more than what is then left of the second as it comes to them, but with the third
-[rad/s] at least; which is at most so much of what it lacked over the half-life."""
-ARMS = 14.0
-"""Arms are swung no faster than this [rad/s] before take-off, as recorded ones in leaps off one foot."""
-SPRINGING = 8.0
-"""And no faster than this [rad/s] by who springs off from a landing."""
-CLEARED, SOON = 12, 0.12
-"""At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
 SWINGS_ON = 0.15
 """So long at most [s] legs go on in the air as the push swung them, and begin to give before they touch down."""
-STRAIGHTEST = 0.06
-"""Knees in the air are bent by this at least [rad]."""
 ROUNDS, CLOSE = 8, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 MOST_TURN, MOST_GAIN = 0.7, 2.5
@@ -43,70 +26,33 @@ BEYOND = 1.7
 """How far the legs reach beyond how a body just came down, at first: it turns about half as far back."""
 TAKES, TAKEN = 6, 2e-5
 """At most so many spins at take-off are tried until it gives the momentum that was found, to this, over mass and height squared [1/s]."""
-HELD, RISES_ON = 13, 0.5
-"""Where ankles can't keep heels down in the push is looked at so many times; from there they rise by so much of what others rise."""
-LOOKS, TOUCHES = 1.0 / 72.0, 0.07
-"""How fast joints turn is told from poses so far apart [s], over the whole push and for so long after touch-down [s]."""
-CLEARINGS = 3
-"""Feet that would go through the floor in the air are lifted so often."""
+CLEARINGS = 8
+"""Feet that would go through the floor in the air are lifted so often at most."""
 COARSE = 3
 """Until then, only every third pose is made."""
-NONE = np.zeros(3)
-"""No spin."""
 PLACED = 0.02
 """A foot that still comes down as its body winds up stands once it is so near to its place [m], at standard height."""
 
 
-def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Plan:
-    """The whole jump from `start`, off a floor at height `floor` [m], along a path to a `place` (3,) [m].
+def begun(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Draft:
+    """A jump from `start`, off a floor at height `floor` [m], along a path to a `place` (3,) [m], as far as the floor has to do with it; `Draft.plan` makes the rest.
 
     Checks nothing: see `reach`.
     """
-    return begun(physique, start, way, place, floor).plan()
-
-
-def begun(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Draft:
-    """The same jump as far as the floor has to do with it; `Draft.plan` makes the rest."""
     place = np.asarray(place, float)
     landing = (landing_feet(place, start.lands, physique.tables, start.lands_on) if way.lands is None
                else striding_feet(place, start.lands, physique.tables, way.lands, start.lands_on))
     return Draft(physique, start, way, start.planted(floor, physique.tables), landing)
 
 
-class Draft(Airborne):
+class Draft(Pushing):
     """One plan in the making: what its parts share."""
 
-    def __init__(self, physique: Physique, start: Start, way: Path, planted: np.ndarray, landing: np.ndarray):
-        assert way.push is not None  # a fall has none, and is no `Draft`
-        self.planted, self.off, self.push = planted, way.wind_up, way.push
-        leave = self.off + self.push.duration
-        self.sinks = max(self.off - way.dip, 0.0)  # nobody bows who has not begun to go down
-        self.events = np.array([self.sinks, self.off, leave, leave + way.airtime])
-        self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
-        self.lifts = np.zeros((LIFT_ROWS, 2, EACH))
-        super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()))
-        self._prepare_ground()
-        self.flown = np.zeros((3, 3))  # with which spin it leaves, see `_stand`, and how far its pelvis is turned as it comes down, and how fast
-
-    def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:
-        """Keys (K, LEGS) of the carriage until touch-down, arms swung less far until take-off where they have less time than recorded ones."""
-        off = 2 * BETWEEN
-        if start.low is not None:  # straight through: no time is left to swing them back first
-            share = self.due[:off + 1, None] / self.due[off]
-            keys[:off + 1, 3:] = keys[0, 3:] + share**2 * (3.0 - 2.0 * share) * (keys[off, 3:] - keys[0, 3:])
-        swung = keys[:off + 1, 3:].reshape(off + 1, 2, 4)[..., :3]
-        fastest = float((np.linalg.norm(np.diff(swung, axis=0), axis=-1) / np.maximum(np.diff(self.due[:off + 1]), 1e-9)[:, None]).max())
-        most = SPRINGING if start.low is not None else ARMS if start.runs else math.inf
-        share = min(most / max(fastest, 1e-9), 1.0)
-        keys[:off, 3:] = keys[off, 3:] + share * (keys[:off, 3:] - keys[off, 3:])
-        return keys
-
     def plan(self) -> Plan:
-        """Everything else, in order."""
+        """The whole jump: all that is left to do, in order."""
         self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)
-        self.flown = np.stack([spin, *self._comes_down()])
         after, landed, heels, through = self._land()
         way, mass, g = self.way, self.physique.mass, self.gravity
         contacts = np.zeros((len(self.times) + len(self.flying) - 1 + len(after), 4), bool)
@@ -126,144 +72,6 @@ class Draft(Airborne):
             np.concatenate([self.velocities, way.velocity + g * flying[:, None], landed[3]]),
             mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
             contacts, self.off, self.leave, self.down, self.down + self.lowest, self.down + through, self.landing, self.momentum.copy(), way)
-
-    def _prepare_ground(self) -> None:
-        """Wind-up and push: times, centre of mass, forces, feet, and how everything is carried."""
-        way, start = self.way, self.start
-        before = np.linspace(0.0, self.off, max(int(np.ceil(self.off * GROUND_RATE)), 3) + 1)
-        pushing = np.linspace(0.0, self.push.duration, max(int(np.ceil(PUSH_RATE * self.push.duration)), 8) + 1)[1:]
-        c, v, a = sinking(way, start, before)
-        gone, speed = self.push.moved(pushing, way.passing)
-        self.times = np.concatenate([before, self.off + pushing])
-        self.centres, self.velocities = np.concatenate([c, way.low + gone]), np.concatenate([v, speed])
-        self.forces = np.concatenate([a - self.gravity, self.push.force(pushing)])
-        self._along_the_floor()
-        self.angles = self.carriage(np.maximum(self.times, self.sinks))
-        self._differ(self.angles[0], (self.carriage(max(MOMENT, self.sinks)) - self.angles[0]) / MOMENT)
-        self.offsets = self._left_over(self.times)
-        root = vectors(start.rotations[0] @ self._upright(self.angles[:1, 0])[0].T)
-        self.turns = turns(faded(root, start.rates[0], FADE, self.times)) @ self._upright(self.angles[:, 0], self.times)
-        share = np.clip((self.times - self.off) / self.push.duration, 0.0, 1.0)
-        rising = heels_rise(start, self.planted, self.centres, share, self.push.duration)
-        late = np.clip((share - rising) / (1.0 - rising), 0.0, 1.0)
-        self.nudge = (share**2 * (share - 1.0))[:, None] * self.push.duration
-        self.feet = standing(len(self.times), start.slope)
-        self.feet[..., 5] += (start.haste < 2) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
-        self.feet[..., :5] = settling(start, self.planted, self.body, self.times, self.off, self.push.duration)
-        risen = heels_up(start, self.planted, way.leave, self.push.duration, self.body) * late**2
-        self.feet[..., 4] += risen[:, None]
-        self.pitches = self.feet[..., 4].copy()
-        self.roots = np.empty((len(self.times), 3))
-        self.local = np.tile(np.eye(3), (len(self.times), self.count, 1, 1))
-        if start.single is not None:
-            swing = 1 - start.single
-            self.feet[:, swing, 5] = FREE
-            self.local[:, self.legs[4 * swing:4 * swing + 4]] = self._knee_drive(swing)
-        else:
-            self._hold_heels()
-
-    def _hold_heels(self) -> None:
-        """Let heels that ankles can't keep down when the body is low stay up, and rise on from there, as a runner's do: one that came down in the push would straighten
-        the knee the faster."""
-        some = self._pushing(HELD)
-        forced = self._posed(some)[2][:, :, 4]
-        for side, highest in enumerate(forced.argmax(0)):
-            up, first, ends = forced[highest, side], some[highest], self.pitches[-1, side]
-            if up > self.pitches[first, side]:
-                late = (self.times[first:] - self.times[first]) / max(self.times[-1] - self.times[first], 1e-9)
-                ends = max(ends, min(up + RISES_ON * ends, RUNNERS_HEEL[1]))
-                self.pitches[first:, side] = np.maximum(self.pitches[first:, side], up + late**2 * (ends - up))
-
-    def _pushing(self, count: int) -> np.ndarray:
-        """About so many samples (M,) of the push, from its first to its last."""
-        first = int(np.searchsorted(self.times, self.off))
-        return np.unique(np.linspace(first, len(self.times) - 1, count).round().astype(int))
-
-    def _posed(self, some: np.ndarray, spin: np.ndarray = NONE) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Roots (M, 3), local rotations (M, J, 3, 3) and feet (M, 2, 8) of samples (M,) of wind-up and push, as the body is posed over its feet that leaves with a
-        spin (3,)."""
-        roots, local, feet = np.empty((len(some), 3)), self.local[some], self.feet[some]
-        feet[:, :, 4] = self.pitches[some]
-        ground_kernel(self.body, self.flex, self.angles[some], self.joints, self.offsets[some], turns(self.nudge[some] * spin) @ self.turns[some], self.centres[some],
-                      feet, self.centres[some[0]] + self.start.root - self.start.centre, roots, local)
-        return roots, local, feet
-
-    def fastest(self, flown: np.ndarray) -> np.ndarray:
-        """How fast (2, 2) [rad/s] knees and ankles turn at most of legs that push, until it leaves, and of those on which it comes down from then on: told without its flight,
-        which is like that of another leap, `Draft.flown` (3, 3)."""
-        some, after = self._pushing(max(round(2.0 * self.push.duration / LOOKS), 2) + 1), np.arange(0.0, TOUCHES, 0.5 * LOOKS)
-        return self._turning((self.times[some], after), (self._posed(some, flown[0])[1], self._touched(after, *flown[1:])))
-
-    def played(self, made: Plan) -> np.ndarray:
-        """The same of the finished plan."""
-        some = [(made.times >= begins - 1e-9) & (made.times <= ends) for begins, ends in ((self.off, self.leave + LOOKS), (self.down - LOOKS, self.down + TOUCHES))]
-        return self._turning(tuple(made.times[these] for these in some), tuple(made.local[these] for these in some))
-
-    def _turning(self, times, local) -> np.ndarray:
-        """How fast (2, 2) [rad/s] knees and ankles turn at most in poses (M, J, 3, 3) at times (M,) [s], of legs that push in the first and of those on which it comes down in the
-        second."""
-        out = np.zeros((2, 2))
-        for found, when, posed, only in zip(out, times, local, (self.start.single, self.way.lands)):
-            joints = self.body.hip[[side for side in (0, 1) if only in (None, side)]][:, None] + [1, 2]
-            later = np.searchsorted(when, when + LOOKS - 1e-9)
-            first = np.flatnonzero(later < len(when))
-            if len(first):
-                turned = vectors(np.swapaxes(posed[first][:, joints], -1, -2) @ posed[later[first]][:, joints])
-                found[:] = (np.linalg.norm(turned, axis=-1) / (when[later[first]] - when[first])[:, None, None]).max((0, 1))
-        return out
-
-    def _along_the_floor(self) -> None:
-        """Centre of mass and force as the path's course has them along the floor."""
-        course = self.way.course
-        assert course is not None  # a path with a push has one before it is planned
-        places = hermite(course.times, course.place, course.velocity, self.times)
-        pressed = np.stack([np.interp(self.times, course.times, part) for part in course.pressed.T], 1)
-        high = self.centres[:, 1] - (self.planted[:, 1].mean() - self.body.sole)
-        self.centres[:, [0, 2]] = places
-        self.forces[:, [0, 2]] = (self.forces[:, 1] / high)[:, None] * (places - pressed)
-        self.velocities[:, [0, 2]] = np.stack([np.interp(self.times, course.times, part) for part in course.velocity.T], 1)
-
-    def _knee_drive(self, side: int) -> np.ndarray:
-        """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: as recorded, from how it is."""
-        ids = self.legs[4 * side:4 * side + 4]
-        start, rows = vectors(self.start.rotations[ids]), np.zeros((2 * BETWEEN + 1, 4, 3))
-        rows[:, :EACH, 0] = self.way.keys[:2 * BETWEEN + 1, LEGS + side * EACH:LEGS + (side + 1) * EACH]
-        due = self.due[:2 * BETWEEN + 1]
-        fastest = float(np.abs(np.diff(rows[:, :EACH, 0], axis=0) / np.diff(due)[:, None]).max())
-        # whoever has less time swings it less far, each joint between how it would begin and how it would end so that it begins as it is; but the knee is
-        # bent as far as recorded ones, so that the foot clears the floor
-        share = 1.0 if self.start.haste > 1 else min(SWINGS[0] / max(fastest, 1e-6), 1.0)
-        early, late = (rows[k] + (rows - rows[k]) * share for k in (0, -1))
-        apart = np.where(np.abs(late[0] - early[0]) > 1e-9, late[0] - early[0], 1e-9)
-        shifted = np.clip((start - early[0]) / apart, 0.0, 1.0)
-        shifted[1] = 1.0
-        rows = early + shifted * (late - early)
-        slopes, lacks = monotone(due, rows), start - rows[0]
-        lasts = GATHERS * self.leave
-        if self.start.haste < 2:
-            lasts = max(lasts, FADES * float(np.abs(lacks[:EACH, 0]).max()) / max(SWINGS[1] - fastest, SWINGS[2]))
-        swung = hermite(due, rows, slopes, self.times) + faded(lacks, self.start.rates[ids] - slopes[0], lasts, self.times)
-        swung[:, 1, 0] = np.maximum(swung[:, 1, 0], STRAIGHTEST)
-        some = np.unique(np.linspace(0, len(swung) - 1, CLEARED).round().astype(int))
-        more = self._lifted(side, swung, some)
-        swung[:, :EACH, 0] += hermite(self.times[some], more, monotone(self.times[some], more), self.times) if more.any() else 0.0
-        return turns(swung)
-
-    def _lifted(self, side: int, swung: np.ndarray, some: np.ndarray) -> np.ndarray:
-        """By how much more (M, EACH) [rad] a swing leg that turns by swung (N, 4, 3) bends in samples (M,), lest its foot be in the floor as the body goes down: no
-        sooner than it can from where it is."""
-        floor, low = self.planted[0, 1] - self.body.sole, float(lowest(self.physique, side, self.start.root[None], self.start.rotations[None])[0])
-        room = CLEARS * self.physique.size
-        clears = min(low - floor, room) + max(room - low + floor, 0.0) * np.minimum(self.times[some] / SOON, 1.0)
-        return lifted(self.physique, side, floor, swung[some], clears, self.angles[some], self.offsets[some], self.turns[some], self.centres[some], self.feet[some], self.start.root)
-
-    def _stand(self, spin: np.ndarray, first: int) -> None:
-        """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""
-        turned = turns(self.nudge[first:] * spin) @ self.turns[first:]
-        root = np.array(self.start.root if first == 0 else self.roots[first], float)
-        self.feet[first:, :, 4] = self.pitches[first:]
-        ground_kernel(self.body, self.flex, self.angles[first:], self.joints, self.offsets[first:], turned,
-                      self.centres[first:], self.feet[first:], root, self.roots[first:], self.local[first:])
 
     def _fly(self) -> np.ndarray:
         """Find the spin (3,) at take-off with which the body lands upright, and fly with it.

@@ -182,24 +182,6 @@ class Airborne:
         bent = vectors(posed[:, self.legs])
         return posed[0], np.clip(MEET[0] / step * (bent[1] - bent[0]), -MEET[1], MEET[1])
 
-    def _comes_down(self) -> tuple[np.ndarray, np.ndarray]:
-        """How far (3,) [rad] its pelvis is turned from upright as it touches down, and how fast (3,) [rad/s] it turns."""
-        return vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0], np.inf)[0].T), vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
-
-    def _touched(self, after: np.ndarray, turned: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """The local rotations (M, J, 3, 3) so long (M,) [s] after it touched down, its pelvis turned (3,) [rad] from upright and turning at a rate (3,) [rad/s] then."""
-        angles, feet = self.carriage(self.down + after), standing(len(after), self.start.lands_on)
-        feet[..., :5], feet[..., 4] = self.landing, self._toes_down(after)[:, None]
-        self._free(feet)
-        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
-        if self.way.lands is not None:
-            local[:, self.swings] = self.swung(after)
-        centres = self.absorbs.motion(after)[0]
-        ground_kernel(self.body, self.flex, angles, self.joints, self._left_over(self.down + after),
-                      turns(faded(turned, rate, STEADY, after)) @ self._upright(angles[:, 0], np.inf), centres, feet,
-                      centres[0] - [0.0, 0.05, 0.0], roots, local)
-        return local
-
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,
         velocity and acceleration; whether the heels (M, 2) stand; when it walks on."""
@@ -211,7 +193,8 @@ class Airborne:
         feet[..., 4] = self._toes_down(after)[:, None]
         self._free(feet)
         upright = self._upright(angles[:, 0], np.inf)
-        turned = turns(faded(*self._comes_down(), STEADY, after)) @ upright
+        rate = vectors(self.air[-1, 0] @ self.air[-2, 0].T) / self.flying[1]
+        turned = turns(faded(vectors(self.air[-1, 0] @ self._upright(self.air_angles[-1:, 0], np.inf)[0].T), rate, STEADY, after)) @ upright
         roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
         if self.way.lands is not None:
             local[:, self.swings] = self.swung(after)

@@ -57,7 +57,7 @@ def heels_up(start: Start, planted: np.ndarray, leave: np.ndarray, pushes: float
     if start.runs:
         return RUNNERS_HEEL[1] * min((1.0 - RUNNERS_HEEL[0]) * pushes / RUNS_FOR, 1.0)
     hips, foot = leave - [0.0, HIPS * body.size, 0.0], start.pushing(planted).mean(0)
-    return min((start.heel_up + float(start.eased[1])) * min(pushes / SHORT_PUSH, 1.0), max(NEARER * float(nearest_kernel(body, hips, foot)), LEAST_UP))
+    return min(start.heel_up * min(pushes / SHORT_PUSH, 1.0), max(NEARER * float(nearest_kernel(body, hips, foot)), LEAST_UP))
 
 
 def heels_down(centres: np.ndarray, feet: np.ndarray, body: BodyTables, flex: np.ndarray | float) -> np.ndarray:

@@ -156,7 +156,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     heights, crouch, passing = upright, 0.0, start.velocity * FLAT
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
-        height = max(min(heights.touch(trail * along, trail * across) - (TILTED if start.runs else np.interp(fall, HARD, (1.0, TILTED))) * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
+        tilted = TILTED if start.runs else float(np.interp(fall, HARD, (1.0, TILTED)))
+        height = max(min(heights.touch(trail * along, trail * across) - tilted * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
@@ -164,7 +165,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         velocity = take_off_velocity(leave, land, flight, gravity)
         fall = g * flight - float(velocity[1])
         features = [prior.features(speed, ahead, pace, size, start.runs)
-                    for speed in (float(velocity[1]), g * flight - float(velocity[1]))]
+                    for speed in (float(velocity[1]), fall)]
         swings = prior.swings(flight * np.sqrt(g / 9.81), pace, size, start.runs)
         angles = [_low(prior.row(number * BETWEEN, some, runner, swings), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
@@ -176,8 +177,10 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
             pushing = Running(physique, start, heights, balls, floor, gravity)
         found = pushing.take_off(leave, land, velocity, flight)
         passing = found.passing
+        given = fall if start.runs else _given(velocity + flight * gravity, trail * towards, height)
         before, lacks = lacks, np.array([
-            *found.leave, (1.0 - start.eased[3]) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)), softened(g * flight - float(velocity[1]) if start.runs else _given(velocity + flight * gravity, trail * towards, height), body, start.eased[2])]) - guess
+            *found.leave, min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
+            softened(given, body, float(start.eased[1]))]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation

@@ -92,12 +92,8 @@ def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, 
         share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
         reach = min(reach, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
     down = heels_up(start, feet, guess, pushes, body) - float(uphill(feet, start.slope).mean())
-    return stretched(physique, angles, feet, down, eased(start, reach), heading, guess) + lifted
-
-
-def eased(start: Start, reach: float) -> float:
-    """How straight legs are that would be so straight, as shares of their length, of who leaves on knees that are bent more, see `Start.eased`."""
-    return math.cos(math.acos(reach) + 0.5 * float(start.eased[0]))
+    reach = math.cos(math.acos(reach) + 0.5 * float(start.eased[0]))
+    return stretched(physique, angles, feet, down, reach, heading, guess) + lifted
 
 
 def straightest(speed: float, body: BodyTables, astray: float) -> float:
@@ -245,6 +241,4 @@ class Running:
 
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""
-        body = self.physique.tables
-        bent = (TAKE_OFF_REACH - eased(self.start, TAKE_OFF_REACH)) * (body.thigh + body.shank)
-        return self.floor + over(STRIDE * self.heights.leave(0.0) - bent, max(lead, 0.0))
+        return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0))

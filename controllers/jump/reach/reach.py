@@ -12,11 +12,11 @@ import numpy as np
 from ...contract import level
 from ...navigation import floor_at
 from ..body import FLAT, Physique, Start
-from ..motion import Path, Plan, rolled, rolls, room
-from ..planner import begun
+from ..motion import Plan, rolled, rolls, room
+from ..planner import Draft
 from ..prior import Prior
-from .arcs import HEIGHTS, Arc, Arcs, How, following
-from .easing import eased
+from .arcs import HEIGHTS, Arc, How, following
+from .easing import Easing
 from .feasibility import STEEP, meant, stopped, wrong
 from .seeking import PLAN, Pieces, counted, weighed, whole
 from .sweep import Touch, touch
@@ -45,7 +45,7 @@ class Found(NamedTuple):
     place: np.ndarray
 
 
-class Reach(Arcs):
+class Reach(Easing):
     """Looks for jumps of one body under one gravity.
 
     physique: whose body. gravity: (3,) [m/s²], straight down. prior: how people carry themselves.
@@ -92,12 +92,12 @@ class Reach(Arcs):
         arc = yield from following(arcs)
         while arc is not None:
             why, deep = arc.why, None
-            if not why:
+            for one, draft in [] if why else (yield from self.eased(start, place, floor, around, arc)):
                 yield PLAN
-                made, why, deep = self._made(start, place, floor, around, arc)
+                made, why, deep = self._made(draft, around)
                 if made is not None:
-                    return Found(made, arc, place), ""
-                count += 1
+                    return Found(made, one, place), ""
+            count += not arc.why
             told = told or why
             if count == tries:
                 break
@@ -114,28 +114,15 @@ class Reach(Arcs):
         if self.footing(start, place, floor, around):
             return None
         arc = self.arc(start, place, floor, around, how)
-        made = None if arc.why else self._made(start, place, floor, around, arc)[0]
+        made = None if arc.why else self._made(self.begun(start, place, floor, arc), around)[0]
         return None if made is None else Found(made, arc, place)
 
-    def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, float | None]:
-        """The plan along an arc; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
-        why, deep = "", None
-        for made in self._eased(start, place, floor, around, arc):
-            made, why = self._down(made, around)
-            why = why or wrong(self.physique, made)
-            hit = None if why else touch(self.physique, made, around)
-            if not why and hit is None:
-                return made, "", None
-            why, deep = (why, None) if hit is None else (hit.reason, hit.deep)
-        return None, why, deep
-
-    def _eased(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> list[Plan]:
-        """The leap along an arc, and before it one near it whose legs turn no faster than people's, if its do: see `eased`."""
-        def another(more: np.ndarray) -> tuple[Start, Path, str]:
-            easier = replace(start, haste=arc.how.haste, eased=more)
-            found = self.arc(easier, place, floor, around, arc.how)
-            return easier, found.path, found.why
-        return eased(replace(start, haste=arc.how.haste), arc.path, another, lambda some, way: begun(self.physique, some, way, place, floor))
+    def _made(self, draft: Draft, around: Sequence[Any]) -> tuple[Plan | None, str, float | None]:
+        """The plan of a leap; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
+        made, why = self._down(draft.plan(), around)
+        why = why or wrong(self.physique, made)
+        hit = None if why else touch(self.physique, made, around)
+        return (None, why, None) if why else (None, hit.reason, hit.deep) if hit is not None else (made, "", None)
 
     def _down(self, made: Plan, around: Sequence[Any]) -> tuple[Plan, str]:
         """A plan as it comes down: with a roll where that is so hard that people roll, if there is room; why it can't come down, if so."""
@@ -155,7 +142,7 @@ class Reach(Arcs):
         way = arc.path
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = self._eased(start, place, floor, around, arc)[-1]
+        made = self.begun(start, place, floor, arc).plan()
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
