@@ -25,6 +25,9 @@ SOFT = 0.85, 15.5, 0.07, 0.11
 """Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
 knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height, or the fourth where that is
 told."""
+BACKWARD = 0.4
+"""Feet that come down behind the body reach less far by this share: there ankles can't bend so that knees give softly. Not of
+who needs all of his reach, and leaves in haste."""
 TILTED, HARD = 0.7, (4.4, 5.4)
 """A runner, who passes over his feet as legs give, lands lower by so much of that, and so does who falls faster [m/s], by and by, and needs his legs to stop."""
 LEAST_AIRTIME = 0.30
@@ -179,7 +182,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         passing = found.passing
         given = fall if start.runs else _given(velocity + flight * gravity, trail * towards, height)
         before, lacks = lacks, np.array([
-            *found.leave, min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
+            *found.leave, (1.0 - BACKWARD * max(-along, 0.0) * (not start.haste)) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
             softened(given, body, float(start.eased[1]))]) - guess
         if np.abs(lacks).max() < SETTLED:
             break

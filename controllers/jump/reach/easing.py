@@ -22,12 +22,12 @@ WANTED = 0.97
 """By this share of it who leaps otherwise turns them."""
 BENDS, SOFTENS = (0.03, 1.0), 2.0
 """For each share by which a joint is too fast: by so much more [rad] a knee is bent as it leaves, beside the first; and as it touches down, which takes less of a leap, too."""
-MOST = np.array([0.5, 0.8])
+MOST = 0.5, 0.8
 """By so much at most [rad]."""
+SHARES = 1.0, 0.5
+"""If that takes too much of the body, by this share of it."""
 HARDEST = 4.4
 """Who falls faster needs all of his legs to stop [m/s]."""
-TRIES = 2
-"""So many paths are tried beside the first."""
 
 
 class Easing(Arcs):
@@ -42,25 +42,18 @@ class Easing(Arcs):
         usual = arc, self.begun(start, place, floor, arc)
         if start.single is not None or start.springs or arc.path.lands is not None or arc.path.hops or -arc.path.falling[1] > HARDEST:
             return [usual]  # legs that swing, hop or stop a fall are as they are
-        best, fast = usual, _too_fast(usual[1])
-        least, base = fast.copy(), np.zeros(2)
-        step = _step(fast)
-        for _ in range(TRIES):
-            if not step.any():
-                break
+        fast = _too_fast(usual[1])
+        if not fast.any():
+            return [usual]
+        bent = _bent(fast)
+        for share in SHARES:
             yield PATH
-            more = np.minimum(base + step, MOST)
-            tried = self.arc(start, place, floor, around, arc.how._replace(eased=(float(more[0]), float(more[1]))))
-            if tried.why:  # it takes too much of the body
-                step = 0.5 * step
-                continue
-            draft = self.begun(start, place, floor, tried)
-            fast = _too_fast(draft)
-            if _lacks(fast) < _lacks(least):
-                best, least, base, step = (tried, draft), fast, more, _step(fast)
-            else:
-                step = 0.5 * step
-        return [usual] if best is usual else [best, usual]
+            tried = self.arc(start, place, floor, around, arc.how._replace(eased=(share * bent[0], share * bent[1])))
+            if not tried.why:  # else it takes too much of the body
+                easier = tried, self.begun(start, place, floor, tried)
+                if _lacks(_too_fast(easier[1])) < _lacks(fast):
+                    return [easier, usual]
+        return [usual]
 
 
 def _too_fast(draft: Draft) -> np.ndarray:
@@ -74,7 +67,7 @@ def _lacks(fast: np.ndarray) -> float:
     return float((fast**2).sum())
 
 
-def _step(fast: np.ndarray) -> np.ndarray:
-    """By how much more (2,) [rad] knees are to be bent whose joints are too fast by shares (2, 2)."""
+def _bent(fast: np.ndarray) -> tuple[float, float]:
+    """By how much more [rad] knees are to be bent, see `How`, whose joints are too fast by shares (2, 2)."""
     knee, touches = float(fast[0, 0]), float(fast[1].max())
-    return np.array([BENDS[0] * (knee > 0.0) + BENDS[1] * knee, SOFTENS * max(knee, touches)])
+    return min(BENDS[0] * (knee > 0.0) + BENDS[1] * knee, MOST[0]), min(SOFTENS * max(knee, touches), MOST[1])
