@@ -34,22 +34,23 @@ PLACED = 0.02
 """A foot that still comes down as its body winds up stands once it is so near to its place [m], at standard height."""
 
 
-def begun(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Draft:
-    """A jump from `start`, off a floor at height `floor` [m], along a path to a `place` (3,) [m], as far as the floor has to do with it; `Draft.plan` makes the rest.
+def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Plan:
+    """The whole jump from `start`, off a floor at height `floor` [m], along a path to a `place` (3,) [m].
 
     Checks nothing: see `reach`.
     """
     place = np.asarray(place, float)
     landing = (landing_feet(place, start.lands, physique.tables, start.lands_on) if way.lands is None
                else striding_feet(place, start.lands, physique.tables, way.lands, start.lands_on))
-    return Draft(physique, start, way, start.planted(floor, physique.tables), landing)
+    planted = start.planted(floor, physique.tables)
+    return _Draft(physique, start, way, planted, landing).plan()
 
 
-class Draft(Pushing):
+class _Draft(Pushing):
     """One plan in the making: what its parts share."""
 
     def plan(self) -> Plan:
-        """The whole jump: all that is left to do, in order."""
+        """Everything that is left to do, in order."""
         self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)

@@ -1,4 +1,4 @@
-"""Wind-up and push of a leap: how a body stands, sinks and pushes itself off, and how fast its joints turn meanwhile."""
+"""Wind-up and push of a leap: how a body stands, sinks and pushes itself off, each moment of it ready to be posed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from ..body import yaw
 from .body import Physique, Start, hermite, monotone, standing, turns, vectors
 from .motion import (CLEARS, FADE, FREE, GROUND_RATE, LIFT_ROWS, MOMENT, RUNNERS_HEEL, Airborne, Path, faded, ground_kernel, heels_rise, heels_up, lifted, lowest, settling,
                      sinking)
@@ -29,10 +28,6 @@ HELD, RISES_ON = 13, 0.5
 """Where ankles can't keep heels down in the push is looked at so many times; from there they rise by so much of what others rise."""
 STRAIGHTEST = 0.06
 """Knees of legs that swing are bent by this at least [rad]."""
-LOOKS, LANDS = 1.0 / 72.0, 0.07
-"""How fast joints turn is told from poses so far apart [s], over the whole push and for so long after touch-down [s]."""
-SPIN = 1.5
-"""Bodies leave leaning back so much faster [rad/s], about, than they are carried in the push: told before their flight is known."""
 
 
 class Pushing(Airborne):
@@ -111,8 +106,9 @@ class Pushing(Airborne):
     def _hold_heels(self) -> None:
         """Let heels that ankles can't keep down when the body is low stay up, and rise on from there, as a runner's do: one that came down in the push would straighten
         the knee the faster."""
-        some = self._pushing(HELD)
-        forced = self._posed(some, np.zeros(3))[2][:, :, 4]
+        first = int(np.searchsorted(self.times, self.off))
+        some = np.unique(np.linspace(first, len(self.times) - 1, HELD).round().astype(int))
+        forced = self._pitches(some)
         for side, highest in enumerate(forced.argmax(0)):
             up, first, ends = forced[highest, side], some[highest], self.pitches[-1, side]
             if up > self.pitches[first, side]:
@@ -120,19 +116,12 @@ class Pushing(Airborne):
                 ends = max(ends, min(up + RISES_ON * ends, RUNNERS_HEEL[1]))
                 self.pitches[first:, side] = np.maximum(self.pitches[first:, side], up + late**2 * (ends - up))
 
-    def _posed(self, some: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Roots (M, 3), local rotations (M, J, 3, 3) and feet (M, 2, 8) of samples (M,) of wind-up and push, as the body is posed over its feet that leaves with a
-        spin (3,)."""
+    def _pitches(self, some: np.ndarray) -> np.ndarray:
+        """How far feet (M, 2) point down [rad] in samples (M,) of the push, as legs and ankles let the body stand over them."""
         roots, local, feet = np.empty((len(some), 3)), self.local[some], self.feet[some]
-        feet[:, :, 4] = self.pitches[some]
-        ground_kernel(self.body, self.flex, self.angles[some], self.joints, self.offsets[some], turns(self.nudge[some] * spin) @ self.turns[some], self.centres[some],
+        ground_kernel(self.body, self.flex, self.angles[some], self.joints, self.offsets[some], self.turns[some], self.centres[some],
                       feet, self.centres[some[0]] + self.start.root - self.start.centre, roots, local)
-        return roots, local, feet
-
-    def _pushing(self, count: int) -> np.ndarray:
-        """About so many samples (M,) of the push, from its first to its last."""
-        first = int(np.searchsorted(self.times, self.off))
-        return np.unique(np.linspace(first, len(self.times) - 1, count).round().astype(int))
+        return feet[:, :, 4]
 
     def _knee_drive(self, side: int) -> np.ndarray:
         """The swing leg's local rotations (N, 4, 3, 3) while the other pushes: as recorded, from how it is."""
@@ -175,30 +164,3 @@ class Pushing(Airborne):
         self.feet[first:, :, 4] = self.pitches[first:]
         ground_kernel(self.body, self.flex, self.angles[first:], self.joints, self.offsets[first:], turned,
                       self.centres[first:], self.feet[first:], root, self.roots[first:], self.local[first:])
-
-    def fastest(self) -> np.ndarray:
-        """How fast (2, 2) [rad/s] knees and ankles turn at most in the push, first, and after touch-down, of who pushes off both feet and lands on both: as it leaves with a usual
-        spin, and comes down upright."""
-        some, after = self._pushing(max(round(2.0 * self.push.duration / LOOKS), 2) + 1), np.arange(0.0, LANDS, 0.5 * LOOKS)
-        spin = -SPIN * yaw(self.start.heading)[:, 0]
-        return np.stack([self._turning(self.times[some], self._posed(some, spin)[1]), self._turning(after, self._touched(after))])
-
-    def _touched(self, after: np.ndarray) -> np.ndarray:
-        """The local rotations (M, J, 3, 3) of a body so long (M,) [s] after it touched down upright on both feet."""
-        angles, feet = self.carriage(self.down + after), standing(len(after), self.start.lands_on)
-        feet[..., :5], feet[..., 4] = self.landing, self._toes_down(after)[:, None]
-        roots, local = np.empty((len(after), 3)), np.tile(np.eye(3), (len(after), self.count, 1, 1))
-        centres = self.absorbs.motion(after)[0]
-        ground_kernel(self.body, self.flex, angles, self.joints, self._left_over(self.down + after), self._upright(angles[:, 0], np.inf), centres, feet,
-                      centres[0] - [0.0, 0.05, 0.0], roots, local)
-        return local
-
-    def _turning(self, times: np.ndarray, local: np.ndarray) -> np.ndarray:
-        """How fast (2,) [rad/s] knees and ankles turn at most in poses (M, J, 3, 3) at times (M,) [s]."""
-        joints = self.body.hip[:, None] + [1, 2]
-        later = np.searchsorted(times, times + LOOKS - 1e-9)
-        first = np.flatnonzero(later < len(times))
-        if not len(first):
-            return np.zeros(2)
-        turned = vectors(np.swapaxes(local[first][:, joints], -1, -2) @ local[later[first]][:, joints])
-        return (np.linalg.norm(turned, axis=-1) / (times[later[first]] - times[first])[:, None, None]).max((0, 1))

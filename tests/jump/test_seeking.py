@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jump, Jumping, Refused
-from gambol.controllers.jump.planner import Draft
-from gambol.controllers.jump.reach import SHARE, Seeking, whole
+from gambol.controllers.jump.reach import SHARE, Seeking, reach, whole
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box
@@ -52,8 +51,8 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
     jump, intent, state = someone.parts["jump"], Intent(leap=Leap(np.array(place)), around=things), someone.start()
     for _ in range(60 * crouches):
         state, _ = someone.step(state, Intent(aim=intent.leap, around=things), 1 / 60)
-    plans, plan = [], Draft.plan
-    monkeypatch.setattr(Draft, "plan", lambda draft: plans.append(1) or plan(draft))
+    plans, plan = [], reach.plan
+    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
     states = [state]
     for _ in range(60):
         before, state = state, someone.step(state, intent, 1 / 60)[0]

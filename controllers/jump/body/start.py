@@ -51,8 +51,7 @@ class Start:
     from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on. haste: 0 it leaves hardly
     faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
     and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
-    pitched against that ground. lands_on: (2,) how it rises where it lands. eased: (2,) by so much more than usual [rad] its knees are bent as
-    it leaves, and as it touches down.
+    pitched against that ground. lands_on: (2,) how it rises where it lands.
     """
 
     root: np.ndarray
@@ -74,7 +73,6 @@ class Start:
     slope: np.ndarray = field(default_factory=lambda: LEVEL)
     here: np.ndarray = field(default_factory=lambda: LEVEL)
     lands_on: np.ndarray = field(default_factory=lambda: LEVEL)
-    eased: np.ndarray = field(default_factory=lambda: np.zeros(2))
 
     def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
         """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""

@@ -4,7 +4,6 @@ wind-up over take-off to landing, and what stops a body from going there.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -21,10 +20,9 @@ from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = 0.85, 15.5, 0.07, 0.11
+SOFT = 0.85, 15.5, 0.07
 """Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
-knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height, or the fourth where that is
-told."""
+knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
 BACKWARD = 0.4
 """Feet that come down behind the body reach less far by this share: there ankles can't bend so that knees give softly. Not of
 who needs all of his reach, and leaves in haste."""
@@ -183,7 +181,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         given = fall if start.runs else _given(velocity + flight * gravity, trail * towards, height)
         before, lacks = lacks, np.array([
             *found.leave, (1.0 - BACKWARD * max(-along, 0.0) * (not start.haste)) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
-            softened(given, body, float(start.eased[1]))]) - guess
+            softened(given, body)]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
         if before is not None:  # Aitken's relaxation
@@ -250,11 +248,11 @@ def _given(velocity: np.ndarray, ahead: np.ndarray, height: float) -> float:
     return float(velocity @ leg / np.linalg.norm(leg))
 
 
-def softened(fall: float, body: BodyTables, more: float = 0.0) -> float:
-    """How much lower [m] a body touches down that comes down along its legs with `fall` [m/s], see SOFT, knees bent by so much more [rad] than for that.
+def softened(fall: float, body: BodyTables) -> float:
+    """How much lower [m] a body touches down that comes down along its legs with `fall` [m/s], see SOFT.
 
     A leg of two bones of length a whose knee is bent by θ gets shorter by a sin θ/2 for each radian.
     """
     bone = 0.5 * (body.thigh + body.shank)
-    bent = math.asin(min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)) + 0.5 * more
-    return float(np.clip(2.0 * bone * (TOUCH_REACH - math.cos(bent)), 0.0, SOFT[3 if more else 2] * body.size))
+    sine = min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)
+    return float(np.clip(2.0 * bone * (TOUCH_REACH - np.sqrt(1.0 - sine**2)), 0.0, SOFT[2] * body.size))

@@ -92,7 +92,6 @@ def top(physique: Physique, start: Start, angles: np.ndarray, feet: np.ndarray, 
         share = float(np.linalg.norm(astray)) / max(float(np.linalg.norm(velocity)), 1e-9)
         reach = min(reach, straightest(float((legs @ velocity / np.linalg.norm(legs, axis=1)).max()), body, share))
     down = heels_up(start, feet, guess, pushes, body) - float(uphill(feet, start.slope).mean())
-    reach = math.cos(math.acos(reach) + 0.5 * float(start.eased[0]))
     return stretched(physique, angles, feet, down, reach, heading, guess) + lifted
 
 

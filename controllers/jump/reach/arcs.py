@@ -31,17 +31,12 @@ STEEPEST = 0.4
 
 class How(NamedTuple):
     """What tells an arc from others to the same place: its airtime [s] or None for the usual one, arms down or not, legs drawn up or not, and in which
-    haste, see `Start`, and on knees that are bent by how much more [rad] as it leaves and as it touches down."""
+    haste, see `Start`."""
 
     airtime: float | None
     low_arms: bool
     tucked: bool
     haste: int
-    eased: tuple[float, float] = (0.0, 0.0)
-
-    def of(self, start: Start) -> Start:
-        """The start of who leaps so."""
-        return replace(start, haste=self.haste, eased=np.array(self.eased))
 
 
 class Arc(NamedTuple):
@@ -134,7 +129,7 @@ class Arcs:
 
     def arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], how: How) -> Arc:
         """One of them."""
-        start = how.of(start)
+        start = replace(start, haste=how.haste)
         way = grounded(self.physique, start, self.path(start, place, floor, how.airtime, how.low_arms, how.tucked), floor)
         return Arc(way, fault(self.physique, way, around, floor), how)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,10 +13,9 @@ from ...contract import level
 from ...navigation import floor_at
 from ..body import FLAT, Physique, Start
 from ..motion import Plan, rolled, rolls, room
-from ..planner import Draft
+from ..planner import plan
 from ..prior import Prior
-from .arcs import HEIGHTS, Arc, How, following
-from .easing import Easing
+from .arcs import HEIGHTS, Arc, Arcs, How, following
 from .feasibility import STEEP, meant, stopped, wrong
 from .seeking import PLAN, Pieces, counted, weighed, whole
 from .sweep import Touch, touch
@@ -44,7 +44,7 @@ class Found(NamedTuple):
     place: np.ndarray
 
 
-class Reach(Easing):
+class Reach(Arcs):
     """Looks for jumps of one body under one gravity.
 
     physique: whose body. gravity: (3,) [m/s²], straight down. prior: how people carry themselves.
@@ -91,12 +91,12 @@ class Reach(Easing):
         arc = yield from following(arcs)
         while arc is not None:
             why, deep = arc.why, None
-            for one, draft in [] if why else (yield from self.eased(start, place, floor, around, arc)):
+            if not why:
                 yield PLAN
-                made, why, deep = self._made(draft, around)
+                made, why, deep = self._made(start, place, floor, around, arc)
                 if made is not None:
-                    return Found(made, one, place), ""
-            count += not arc.why
+                    return Found(made, arc, place), ""
+                count += 1
             told = told or why
             if count == tries:
                 break
@@ -113,12 +113,12 @@ class Reach(Easing):
         if self.footing(start, place, floor, around):
             return None
         arc = self.arc(start, place, floor, around, how)
-        made = None if arc.why else self._made(self.begun(start, place, floor, arc), around)[0]
+        made = None if arc.why else self._made(start, place, floor, around, arc)[0]
         return None if made is None else Found(made, arc, place)
 
-    def _made(self, draft: Draft, around: Sequence[Any]) -> tuple[Plan | None, str, float | None]:
-        """The plan of a leap; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
-        made, why = self._down(draft.plan(), around)
+    def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, float | None]:
+        """The plan along an arc; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
+        made, why = self._down(plan(self.physique, replace(start, haste=arc.how.haste), arc.path, place, floor), around)
         why = why or wrong(self.physique, made)
         hit = None if why else touch(self.physique, made, around)
         return (None, why, None) if why else (None, hit.reason, hit.deep) if hit is not None else (made, "", None)
@@ -141,7 +141,7 @@ class Reach(Easing):
         way = arc.path
         if way.push is None or way.course is None or not np.isfinite(np.concatenate([way.low, way.leave, way.land, way.velocity, [way.course.outside]])).all():
             return None
-        made = self.begun(start, place, floor, arc).plan()
+        made = plan(self.physique, replace(start, haste=arc.how.haste), way, place, floor)
         return None if wrong(self.physique, made) else touch(self.physique, made, around)
 
     def nearest(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
