@@ -23,9 +23,9 @@ SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 SOFT = 0.85, 15.5, 0.07
 """Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
 knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
-BACKWARD = 0.4
-"""Feet that come down behind the body reach less far by this share: there ankles can't bend so that knees give softly. Not of
-who needs all of his reach, and leaves in haste."""
+BACKWARD, BELOW = 0.4, 0.4
+"""Feet that come down behind the body, lower by the second [m], at standard height, or more, reach less far by this share: there ankles can't bend so that knees give
+softly. Not of who needs all of his reach, and leaves in haste."""
 TILTED, HARD = 0.7, (4.4, 5.4)
 """A runner, who passes over his feet as legs give, lands lower by so much of that, and so does who falls faster [m/s], by and by, and needs his legs to stop."""
 LEAST_AIRTIME = 0.30
@@ -153,6 +153,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     least = (TURNED[1] - TURNED[0]) * abs(turn) / SPINS[0]  # in the air, to get round
     keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
     stretched = np.array([dear, 1.0, dear])
+    behind = 0.0 if start.haste else BACKWARD * max(-along, 0.0) * min(max((floor - float(goal[1])) / (BELOW * size), 0.0), 1.0)
     fall, lacks, relaxed = 0.0, None, 0.5  # half the way: the whole one may swing about
     heights, crouch, passing = upright, 0.0, start.velocity * FLAT
     for _ in range(ROUNDS):
@@ -180,7 +181,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         passing = found.passing
         given = fall if start.runs else _given(velocity + flight * gravity, trail * towards, height)
         before, lacks = lacks, np.array([
-            *found.leave, (1.0 - BACKWARD * max(-along, 0.0) * (not start.haste)) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
+            *found.leave, (1.0 - behind) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
             softened(given, body)]) - guess
         if np.abs(lacks).max() < SETTLED:
             break
