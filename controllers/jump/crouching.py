@@ -14,7 +14,7 @@ import numpy as np
 from ..body import Pose, yaw
 from ..contract import CharacterState, Leap
 from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, standing, turns, vectors
-from .motion import FADE, faded, ground_kernel
+from .motion import FADE, faded, ground_kernel, swivels
 from .prior import BETWEEN, LEGS
 from .reach import Onward, Reach
 from .starting import stands, turning
@@ -113,6 +113,7 @@ def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple
     feet = standing(1, start.slope)
     feet[..., :5] = memory.planted + faded(start.feet - memory.planted, start.feet_rates, FOOT_FADE, now)
     feet[..., 1] = np.maximum(feet[..., 1], memory.planted[:, 1])
+    feet[..., 8] = swivels(reach.physique, start, now)
     roots, local = np.empty((1, 3)), np.tile(np.eye(3), (1, len(skeleton), 1, 1))
     ground_kernel(body, FLEX * reach.physique.flexibility, after.place[None, 3:], carriage.joints_of(skeleton), left, turned.reshape(1, 3, 3),
                   after.place[None, :3], feet, np.array(root, float), roots, local)
