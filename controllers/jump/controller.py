@@ -253,7 +253,7 @@ class Jump(Reach, Controller):
         elif state.memory.time > state.memory.plan.take_off:
             state = self._followed(state, intent)
         if isinstance(state.memory, Crouching):
-            after = crouched(self, state, intent.leap or intent.aim, dt)
+            after = crouched(self, state, intent.leap or intent.aim, dt, intent.around)
             pose = self._drawn_in(after.pose, after.ground, intent.around, after.memory.time)
             return replace(after, pose=pose), pose
         jumping: Jumping = state.memory
