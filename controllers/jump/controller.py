@@ -21,6 +21,8 @@ from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
 from .starting import FEET, Jumping, astride, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
+LEVELS = 0.05
+"""Who may land beside a place lands as high or low as it lies, to so much [m]."""
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
 and somebody wants to walk."""
@@ -170,8 +172,11 @@ class Jump(Reach, Controller):
             if nearest is not None and found is not None and 0.0 < float((nearest - place) @ ahead) <= leap.slack:
                 return found
         else:
-            yield reason
-            nearest, _ = yield from self.nearby(*asked)
+            if leap.slack == 0.0:
+                yield reason
+            nearest, found = yield from self.nearby(*asked)
+            if nearest is not None and found is not None and np.linalg.norm(nearest - place) <= leap.slack and abs(nearest[1] - place[1]) <= LEVELS:
+                return found
         return reason, nearest, here
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:

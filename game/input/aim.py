@@ -18,6 +18,7 @@ from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import SETS_FEET
 from gambol.controllers.navigation import floor_at, in_world
 
+from .on_top import on_top
 from .run_up import AHEAD
 from .straight_ahead import UP
 from .wish import Wish, in_view
@@ -33,7 +34,7 @@ FARTHEST = 2.6
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
 SLACK = 0.3
-"""Who runs and would come too near for the ring lands at most so far beyond it [m]."""
+"""Who can't reach the ring lands at most so far from it [m]."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
 SINKS = 0.35
@@ -66,9 +67,9 @@ class Aim:
     heading: float | None = None
     spent: bool = False
 
-    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False) -> Aim:
+    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
-        the state is then that in which it will stand there."""
+        the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         if not wish.jump:
@@ -77,7 +78,7 @@ class Aim:
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
             sets = state.refused == SETS_FEET
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
-            pace = 0.0 if aloft else TURNS if sets or self._askew(state) else 1.0
+            pace = 0.0 if aloft else TURNS if sets or cramped or self._askew(state) else 1.0
             return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
@@ -138,7 +139,8 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
-        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK if self.moving else 0.0, heading=self.heading)
+        x, z = (x, z) if self.moving else on_top((x, z), floor, around)
+        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK, heading=self.heading)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""

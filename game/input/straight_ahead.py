@@ -29,6 +29,10 @@ STOPS = 0.6, 0.45
 """Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
 UP = 0.95
 """A leap lands no higher than this over the feet [m], and no lower than a step."""
+CLEARS = (STEP, 0.3), (0.32, 0.5)
+"""Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees would come against it."""
+BACK = 0.25
+"""He makes room for that who has so much of it behind him [m]."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
 
@@ -82,6 +86,23 @@ def _short(state: CharacterState, velocity: Sequence[float], around: Sequence[An
     here, ahead = np.asarray(state.ground[:2], float), np.asarray(velocity, float) / math.hypot(*velocity)
     x, z = here + max(met.last - SHORT[is_edge(here + met.far * ahead, met.floor, around)], 0.0) * ahead
     return float(x), float(z)
+
+
+def cramped(controller: Any, state: CharacterState, place: Sequence[float], around: Sequence[Any]) -> float:
+    """How much farther [m] somebody would have to be from what he wants to leap onto, whose ring lies at a place (2,) [m]; 0 where he is far enough, and where he has
+    no room to go back."""
+    here, floor, size = np.asarray(state.ground[:2], float), float(state.floor), controller.size
+    way = np.asarray(place, float) - here
+    ahead = way / max(float(np.hypot(*way)), 1e-9)
+    lacks = 0.0
+    for high, clear in CLEARS:
+        for far in np.arange(0.0, min(clear * size, float(np.hypot(*way))), FINE):
+            x, z = here + far * ahead
+            if high * size < floor_at(float(x), float(z), around, floor + UP) - floor:
+                lacks = max(lacks, clear * size - far)
+                break
+    behind = here - (BACK + lacks) * ahead
+    return lacks if lacks and room(behind, floor, around) > 0.0 and abs(floor_at(float(behind[0]), float(behind[1]), around, floor + STEP) - floor) < RISES else 0.0
 
 
 def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> bool:
