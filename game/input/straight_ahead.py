@@ -19,7 +19,7 @@ TOUCHES = 0.19
 BODY = 0.4, 1.0, 1.6
 """At these heights of it [m]."""
 SHORT = 0.12, 0.3
-"""He comes to rest so far before he would be too near to something solid, and before an edge [m]."""
+"""He comes to rest so far before he would be too near to something solid, and before an edge, or what he would leap onto [m]."""
 PACE, FINE = 0.1, 0.01
 """Places straight ahead are looked at so far apart [m], and the last that is free is found to so much [m]."""
 WIDE, FLAT = 0.5, 0.18
@@ -29,7 +29,7 @@ STOPS = 0.6, 0.45
 """Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
 UP = 0.95
 """A leap lands no higher than this over the feet [m], and no lower than a step."""
-CLEARS = (STEP, 0.3), (0.32, 0.5)
+CLEARS = (STEP, 0.3), (0.28, 0.5)
 """Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees would come against it."""
 BACK = 0.25
 """He makes room for that who has so much of it behind him [m]."""
@@ -41,7 +41,7 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
     where that is far away: farther than he looks, of which `share` counts, and so much `more` [m]."""
     met = _met(controller, state, velocity, around, share, more)
-    return None if met is None else _short(state, velocity, around, met)
+    return None if met is None else _short(state, velocity, around, met, True)
 
 
 def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
@@ -51,7 +51,7 @@ def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], 
         return None
     ahead = np.asarray(velocity, float) / math.hypot(*velocity)
     there, left = np.asarray(state.ground[:2], float) + (met.far + FLAT) * ahead, WIDE * np.array([ahead[1], -ahead[0]])
-    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(state, velocity, around, met)
+    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(state, velocity, around, met, False)
 
 
 class Met(NamedTuple):
@@ -81,11 +81,18 @@ def _met(controller: Any, state: CharacterState, velocity: Sequence[float], arou
     return None
 
 
-def _short(state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met) -> tuple[float, float]:
-    """Where x, z [m] to come to rest before what one comes to straight on."""
+def _short(state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met, leaps: bool) -> tuple[float, float]:
+    """Where x, z [m] to come to rest before what one comes to straight on. leaps: with a leap in mind."""
     here, ahead = np.asarray(state.ground[:2], float), np.asarray(velocity, float) / math.hypot(*velocity)
-    x, z = here + max(met.last - SHORT[is_edge(here + met.far * ahead, met.floor, around)], 0.0) * ahead
+    there = here + met.far * ahead
+    x, z = here + max(met.last - SHORT[is_edge(there, met.floor, around) or leaps and leapt(there, ahead, met.floor, around)], 0.0) * ahead
     return float(x), float(z)
+
+
+def leapt(there: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
+    """Whether what keeps a body from a place (2,) lies ahead (2,) of that, and is so high that he would need room to leap onto it."""
+    x, z = there + TOUCHES * ahead
+    return bool(floor_at(float(x), float(z), around, floor + UP) > floor + CLEARS[1][0])
 
 
 def cramped(controller: Any, state: CharacterState, place: Sequence[float], around: Sequence[Any]) -> float:
