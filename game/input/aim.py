@@ -55,7 +55,7 @@ class Aim:
 
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
-    [m] in the world where somebody who moved let go of the ring. heading: [rad] in which to land, None where nobody said so.
+    [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -72,27 +72,34 @@ class Aim:
         the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
+        x, z = self._there(state)
+        stays = not self.moving and (cramped or self.place is not None)
+        offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
         if not wish.jump:
             if self.aiming:
-                x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place)
             sets = state.refused == SETS_FEET
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
             pace = 0.0 if aloft else TURNS if sets or cramped or self._askew(state) else 1.0
-            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt)
+            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
-        moving, heading = speed > MOVING, None
+        moving, heading, place = speed > MOVING, None, None
         if moving:
             far = AHEAD[0] + AHEAD[1] * speed
             offset = (far * float(velocity[0]) / speed, far * float(velocity[1]) / speed)
         else:
             pushed = in_view(wish.move, camera_yaw)
-            x, z = (self.offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
+            x, z = (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
             shrink = min(1.0, FARTHEST / max(math.hypot(x, z), 1e-9))
             offset = (x * shrink, z * shrink)
+            place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, None, heading)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading)
+
+    def _there(self, state: CharacterState) -> tuple[float, float]:
+        """Where x, z [m] the ring is in the world."""
+        return self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
 
     def _turned(self, wish: Wish, offset: tuple[float, float], camera_yaw: float, faces: float, dt: float) -> float | None:
         """The heading [rad] in which to land `dt` seconds later; a body that faces so keeps facing, or begins to turn from there or from the ring."""
@@ -138,7 +145,7 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
-        x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
+        x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top((x, z), floor, around)
         return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK, heading=self.heading)
 
