@@ -33,8 +33,8 @@ FARTHEST = 2.6
 """How far from a standing body the ring may be [m]."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
-SLACK = 0.3
-"""Who can't reach the ring lands at most so far from it [m]."""
+SLACK = 0.5, 0.3
+"""Who can't reach the ring lands at most so far from it [m], from a stand and on the move."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
 SINKS = 0.35
@@ -147,7 +147,7 @@ class Aim:
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top((x, z), floor, around)
-        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK, heading=self.heading)
+        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=self.heading)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""

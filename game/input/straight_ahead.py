@@ -29,7 +29,7 @@ STOPS = 0.6, 0.45
 """Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
 UP = 0.95
 """A leap lands no higher than this over the feet [m], and no lower than a step."""
-CLEARS = (STEP, 0.3), (0.28, 0.5)
+CLEARS = (STEP, 0.35), (0.28, 0.52)
 """Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees would come against it."""
 BACK = 0.25
 """He makes room for that who has so much of it behind him [m]."""

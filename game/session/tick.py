@@ -29,8 +29,8 @@ from .state import SessionState, Player
 
 KEPT = 30 * RATE
 """How many steps of the world one can go back ..."""
-GOES_BACK = 0.5
-"""So fast goes back who is too near to what he would leap onto [m/s]."""
+GOES_BACK, GLIDES, LITTLE, STANDS = 0.5, 0.3, 0.03, 0.2
+"""So fast goes back who is too near to what he would leap onto [m/s], until he comes far enough as he stops, in so long [s], to so much [m]; slower than the last [m/s] he stands."""
 CAST = 8
 """... with so many characters; with more, fewer."""
 
@@ -106,13 +106,17 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
 
 
 def _back(player: Player, character: Character, stands: CharacterState, props: Sequence[Prop]) -> tuple[float, float] | None:
-    """With which velocity (2,) [m/s] somebody goes back who aims from a stand at what he is too near to; None of everybody else."""
+    """With which velocity (2,) [m/s] somebody goes back who aims from a stand at what he is too near to, until he stands; None of everybody else."""
     aim = player.aim
     far = math.hypot(*aim.offset)
     if not aim.stands or far < NEAR or aloft(character.state):
         return None
     x, z = (-GOES_BACK * part / far for part in aim.offset)
-    return (x, z) if cramped(character.controller, stands, [float(stands.ground[k]) + aim.offset[k] for k in (0, 1)], props) else None
+    lacks = cramped(character.controller, stands, [float(stands.ground[k]) + aim.offset[k] for k in (0, 1)], props)
+    goes = float(np.hypot(character.state.velocity[0], character.state.velocity[2]))
+    if lacks > max(GLIDES * goes, LITTLE):
+        return x, z
+    return (0.0, 0.0) if aim.place is not None and goes > STANDS else None
 
 
 def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:
