@@ -19,7 +19,7 @@ TOUCHES = 0.19
 BODY = 0.4, 1.0, 1.6
 """At these heights of it [m]."""
 SHORT = 0.12, 0.3
-"""He comes to rest so far before he would be too near to something solid, and before an edge, or what he would leap onto [m]."""
+"""He comes to rest so far before he would be too near to something solid, and before an edge [m]."""
 PACE, FINE = 0.1, 0.01
 """Places straight ahead are looked at so far apart [m], and the last that is free is found to so much [m]."""
 WIDE, FLAT = 0.5, 0.18
@@ -41,7 +41,7 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
     where that is far away: farther than he looks, of which `share` counts, and so much `more` [m]."""
     met = _met(controller, state, velocity, around, share, more)
-    return None if met is None else _short(state, velocity, around, met, True)
+    return None if met is None else _short(controller, state, velocity, around, met, True)
 
 
 def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
@@ -51,7 +51,7 @@ def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], 
         return None
     ahead = np.asarray(velocity, float) / math.hypot(*velocity)
     there, left = np.asarray(state.ground[:2], float) + (met.far + FLAT) * ahead, WIDE * np.array([ahead[1], -ahead[0]])
-    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(state, velocity, around, met, False)
+    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(controller, state, velocity, around, met, False)
 
 
 class Met(NamedTuple):
@@ -81,33 +81,34 @@ def _met(controller: Any, state: CharacterState, velocity: Sequence[float], arou
     return None
 
 
-def _short(state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met, leaps: bool) -> tuple[float, float]:
+def _short(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met, leaps: bool) -> tuple[float, float]:
     """Where x, z [m] to come to rest before what one comes to straight on. leaps: with a leap in mind."""
     here, ahead = np.asarray(state.ground[:2], float), np.asarray(velocity, float) / math.hypot(*velocity)
-    there = here + met.far * ahead
-    x, z = here + max(met.last - SHORT[is_edge(there, met.floor, around) or leaps and leapt(there, ahead, met.floor, around)], 0.0) * ahead
+    far = met.last - SHORT[is_edge(here + met.far * ahead, met.floor, around)]
+    far -= lacking(here + far * ahead, ahead, met.floor, around, controller.size) if leaps else 0.0
+    x, z = here + max(far, 0.0) * ahead
     return float(x), float(z)
 
 
-def leapt(there: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
-    """Whether what keeps a body from a place (2,) lies ahead (2,) of that, and is so high that he would need room to leap onto it."""
-    x, z = there + TOUCHES * ahead
-    return bool(floor_at(float(x), float(z), around, floor + UP) > floor + CLEARS[1][0])
+def lacking(place: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any], size: float, within: float = math.inf) -> float:
+    """How much farther [m] a body of a size at a place (2,) on a floor [m] would have to be from what lies ahead (2,) of it, no farther than `within` [m], to leap onto that."""
+    lacks = 0.0
+    for high, clear in CLEARS:
+        for far in np.arange(0.0, min(clear * size, within), FINE):
+            x, z = place + far * ahead
+            if high * size < floor_at(float(x), float(z), around, floor + UP) - floor:
+                lacks = max(lacks, clear * size - far)
+                break
+    return lacks
 
 
 def cramped(controller: Any, state: CharacterState, place: Sequence[float], around: Sequence[Any]) -> float:
     """How much farther [m] somebody would have to be from what he wants to leap onto, whose ring lies at a place (2,) [m]; 0 where he is far enough, and where he has
     no room to go back."""
-    here, floor, size = np.asarray(state.ground[:2], float), float(state.floor), controller.size
+    here, floor = np.asarray(state.ground[:2], float), float(state.floor)
     way = np.asarray(place, float) - here
     ahead = way / max(float(np.hypot(*way)), 1e-9)
-    lacks = 0.0
-    for high, clear in CLEARS:
-        for far in np.arange(0.0, min(clear * size, float(np.hypot(*way))), FINE):
-            x, z = here + far * ahead
-            if high * size < floor_at(float(x), float(z), around, floor + UP) - floor:
-                lacks = max(lacks, clear * size - far)
-                break
+    lacks = lacking(here, ahead, floor, around, controller.size, float(np.hypot(*way)))
     behind = here - (BACK + lacks) * ahead
     return lacks if lacks and room(behind, floor, around) > 0.0 and abs(floor_at(float(behind[0]), float(behind[1]), around, floor + STEP) - floor) < RISES else 0.0
 
