@@ -68,7 +68,8 @@ def measure(count: int, seed: int) -> None:
             else:
                 told[why[-1] if why else "leapt elsewhere"] += 1
             deep.append(deepest(who, states, (box,))[0])
-        print(f"{kind}: {up} of {count // 2} get up; off {np.median(waits):.2f} s after they let go (at most {max(waits):.2f}); "
+        off = f"off {np.median(waits):.2f} s after they let go (at most {max(waits):.2f}); " if waits else ""
+        print(f"{kind}: {up} of {count // 2} get up; {off}"
               f"flesh more than 2 cm in the box in {np.sum(np.array(deep) > 0.02)}, {100 * max(deep):.1f} cm at most")
         for reason, times in told.most_common():
             print(f"    {times} × {reason}")
