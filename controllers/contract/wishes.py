@@ -46,7 +46,8 @@ class Leap:
     None for where it is now: straight up.
 
     ValueError for what is no number; a place, time or foot that nobody can leap to is for the controller to refuse.
-    airtime: [s], or None for the least effort. slack: a runner who comes too near for the place may land so much farther on [m].
+    airtime: [s], or None for the least effort. slack: who can't reach the place may land so far from it [m]: a runner
+    who comes too near for it farther on.
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
     on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or run on.
     how: along which arc it was found that it can be made, see `Controller.found`, which is tried first; None where that was not.

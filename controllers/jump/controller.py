@@ -19,8 +19,10 @@ from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
+from .starting import FEET, Jumping, astride, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
+LEVELS = 0.05
+"""Who may land beside a place lands as high or low as it lies, to so much [m]."""
 READY, HOLDS, OVER = 1.0, 1.5, 0.3
 """How well it bids when a jump is asked and possible; how firmly it holds on to one; once it is landed
 and somebody wants to walk."""
@@ -102,7 +104,8 @@ class Jump(Reach, Controller):
             fallen = fall(self.physique, self.start_of(state), None, intent.around, self.gravity)
             return replace(state, memory=Jumping.begun(fallen, state, intent.leap, "there was nothing to step on"))
         if intent.leap is None and intent.aim is not None:
-            return replace(state, memory=begun(self, self.start_of(state, around=intent.around), float(level(state.floor))))
+            start, floor = self.placed(state, around=intent.around)
+            return replace(state, memory=begun(self, start, floor), floor=floor)
         return None
 
     def plan(self, state: CharacterState, intent: Intent) -> Plan:
@@ -128,7 +131,8 @@ class Jump(Reach, Controller):
             return found.made
         if isinstance(seeking.after(steps - 1), str):  # it was found just now: no step makes two plans
             raise Refused("", onward=onward)
-        found = self.again(found.arc.how, self.start_of(state, leap, intent.around), found.place, float(level(state.floor)), leap.airtime, intent.around)
+        start, floor = self.placed(state, leap, intent.around)
+        found = self.again(found.arc.how, start, found.place, floor, leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
             raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
         return found.made
@@ -168,8 +172,11 @@ class Jump(Reach, Controller):
             if nearest is not None and found is not None and 0.0 < float((nearest - place) @ ahead) <= leap.slack:
                 return found
         else:
-            yield reason
-            nearest, _ = yield from self.nearby(*asked)
+            if leap.slack == 0.0:
+                yield reason
+            nearest, found = yield from self.nearby(*asked)
+            if nearest is not None and found is not None and np.linalg.norm(nearest - place) <= leap.slack and abs(nearest[1] - place[1]) <= LEVELS:
+                return found
         return reason, nearest, here
 
     def refusal(self, state: CharacterState, intent: Intent) -> str:
@@ -193,7 +200,7 @@ class Jump(Reach, Controller):
             raise Refused(f"the heading must be a finite number of radians, or None, got {leap.heading!r}")
         if leap.on not in (None, *FEET):
             raise Refused(f"a leap lands on 'left', 'right' or 'both' to hop on, or None to stand, got {leap.on!r}")
-        start, floor = self.start_of(state, leap, around), float(level(state.floor))
+        start, floor = self.placed(state, leap, around)
         here = self.middle(start, floor)
         return start, meant(here if leap.place is None else leap.place, leap.airtime), floor, here
 
@@ -228,10 +235,15 @@ class Jump(Reach, Controller):
 
     def start_of(self, state: CharacterState, leap: Leap | None = None, around: Sequence[Any] = ()) -> Start:
         """What a jump needs to know of a state, of how a leap shall land, and of the ground among boxes and pillars around."""
+        return self.placed(state, leap, around)[0]
+
+    def placed(self, state: CharacterState, leap: Leap | None = None, around: Sequence[Any] = ()) -> tuple[Start, float]:
+        """The same, and how high the floor is [m] off which it goes: under the lower foot of who stands astride an edge."""
         known(state)
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
-        start = turning(rebounding(start, memory.plan, memory.time) if isinstance(memory, Jumping) and memory.rebounds else start, leap)
-        return on_ground(start, state, around)
+        if isinstance(memory, Jumping):
+            return on_ground(turning(rebounding(start, memory.plan, memory.time) if memory.rebounds else start, leap), state, around), float(level(state.floor))
+        return astride(self.physique, on_ground(turning(start, leap), state, around), state)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""
@@ -246,7 +258,7 @@ class Jump(Reach, Controller):
         elif state.memory.time > state.memory.plan.take_off:
             state = self._followed(state, intent)
         if isinstance(state.memory, Crouching):
-            after = crouched(self, state, intent.leap or intent.aim, dt)
+            after = crouched(self, state, intent.leap or intent.aim, dt, intent.around)
             pose = self._drawn_in(after.pose, after.ground, intent.around, after.memory.time)
             return replace(after, pose=pose), pose
         jumping: Jumping = state.memory

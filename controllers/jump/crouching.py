@@ -7,16 +7,18 @@ limbs and feet settle from how they were, as in a jump.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ..body import Pose, yaw
 from ..contract import CharacterState, Leap
 from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, standing, turns, vectors
-from .motion import FADE, faded, ground_kernel
+from .motion import FADE, faded, ground_kernel, swivels
 from .prior import BETWEEN, LEGS
-from .reach import Onward, Reach
+from .reach import Onward, Reach, deepest, near
 from .starting import stands, turning
 
 RATE = 10.0
@@ -25,6 +27,8 @@ INSIDE, FAR = 0.8, 0.6
 """Who aims farther than the second [m], at standard height, leans ahead by this share of half the soles; who aims nearer, less, and as the jump begins."""
 RAISED = 0.14
 """A heel that is raised by less stands still [rad]."""
+SHARES = np.linspace(1.0, 0.0, 6)
+"""Who would come against something crouches by the largest of these shares of how far he would, lying no deeper in it than he does as he stands."""
 RISEN, SLOW = 0.01, 0.05
 """A body stands again that is so near to standing [m] and so slow [m/s]."""
 
@@ -71,8 +75,8 @@ def begun(reach: Reach, start: Start, floor: float) -> Crouching:
                      np.concatenate([start.acceleration, still]), _upright(reach, start, planted, floor))
 
 
-def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float) -> Crouching:
-    """The same crouch for another leap; None stands up. What is no place counts as no other."""
+def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float, around: Sequence[Any] = ()) -> Crouching:
+    """The same crouch for another leap, as deep as boxes and pillars around leave room for; None stands up. What is no place counts as no other."""
     if leap is None:
         return replace(memory, leap=None, goal=_upright(reach, memory.start, memory.planted, floor))
     if leap.same(memory.leap):
@@ -93,12 +97,24 @@ def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float) -> C
     still = replace(still, centre=(way.stance + lead) * FLAT + [0.0, way.low[1], 0.0])
     way = reach.path(still, place, floor, leap.airtime)  # how deep depends a little on where it waits
     wanted = np.concatenate([still.centre * FLAT + [0.0, way.low[1], 0.0], way.keys[BETWEEN, :LEGS]])
-    return replace(memory, leap=leap, goal=wanted) if np.isfinite(wanted).all() else memory
+    return replace(memory, leap=leap, goal=_clear(reach, memory, goal, wanted, around)) if np.isfinite(wanted).all() else memory
+
+
+def _clear(reach: Reach, memory: Crouching, upright: np.ndarray, wanted: np.ndarray, around: Sequence[Any]) -> np.ndarray:
+    """Where (14,) it waits that would wait at `wanted` (14,), or nearer to `upright` (14,) where something is in its way."""
+    things = near(reach.physique, wanted[None, :3], around)
+    if not things:
+        return wanted
+    ways = upright + SHARES[:, None] * (wanted - upright)
+    feet, still = np.repeat(memory.planted[None], len(ways), 0), np.zeros((len(ways), len(reach.physique.skeleton), 3))
+    roots, local, _ = _posed(reach, memory.start, ways, still, feet, np.zeros((len(ways), 2)), wanted[:3] - [0.0, 0.1, 0.0])
+    deep = deepest(reach.physique, roots, local, things)
+    return ways[int(np.argmax(deep <= deep[-1]))]
 
 
 def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple[Crouching, Pose, np.ndarray]:
     """The crouch dt seconds later, its pose, and whether (4,) heels and balls stand. root: (3,) [m] where the pelvis was."""
-    body, skeleton, start = reach.physique.tables, reach.physique.skeleton, memory.start
+    start = memory.start
     r = RATE * np.sqrt(-reach.gravity[1] / 9.81 / reach.physique.size)
     off = memory.place - memory.goal
     a, b = memory.rate + r * off, 0.5 * (memory.bend + 2.0 * r * memory.rate + r**2 * off)
@@ -106,24 +122,32 @@ def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple
     after = replace(memory, time=memory.time + dt, place=memory.goal + fade * way, rate=fade * (rate - r * way),
                     bend=fade * (bend - 2.0 * r * rate + r**2 * way))
     now = np.array([after.time])
-    left = faded(memory.offset, start.rates, FADE, now)
-    turned = turns(left[:, 0]) @ yaw(start.heading) @ turns(after.place[3:4] * [1.0, 0.0, 0.0])
-    left[:, 0] = 0.0
-    left[:, (body.hip[:, None] + np.arange(4)).ravel()] = 0.0
-    feet = standing(1, start.slope)
-    feet[..., :5] = memory.planted + faded(start.feet - memory.planted, start.feet_rates, FOOT_FADE, now)
+    feet = memory.planted + faded(start.feet - memory.planted, start.feet_rates, FOOT_FADE, now)
     feet[..., 1] = np.maximum(feet[..., 1], memory.planted[:, 1])
-    roots, local = np.empty((1, 3)), np.tile(np.eye(3), (1, len(skeleton), 1, 1))
-    ground_kernel(body, FLEX * reach.physique.flexibility, after.place[None, 3:], carriage.joints_of(skeleton), left, turned.reshape(1, 3, 3),
-                  after.place[None, :3], feet, np.array(root, float), roots, local)
+    roots, local, down = _posed(reach, start, after.place[None], faded(memory.offset, start.rates, FADE, now), feet, swivels(reach.physique, start, now), root)
     stands = np.ones(4, bool)
-    stands[::2] = feet[0, :, 4] < RAISED
+    stands[::2] = down[0] < RAISED
     return after, Pose(roots[0], local[0]), stands
 
 
-def crouched(reach: Reach, state: CharacterState, leap: Leap | None, dt: float) -> CharacterState:
+def _posed(reach: Reach, start: Start, places: np.ndarray, left: np.ndarray, feet: np.ndarray, swivel: np.ndarray, root: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Poses (N, 3), (N, J, 3, 3) of a body carried so (N, 14) over feet (N, 2, 5), its knees turned about its legs by swivel (N, 2) [rad], `left` (N, J, 3) [rad] of how it
+    began; and how far its feet point down (N, 2) [rad]. root: (3,) [m] about where the pelvis is."""
+    body, skeleton = reach.physique.tables, reach.physique.skeleton
+    turned = turns(left[:, 0]) @ yaw(start.heading) @ turns(places[:, 3:4] * [1.0, 0.0, 0.0])
+    left[:, 0] = 0.0
+    left[:, (body.hip[:, None] + np.arange(4)).ravel()] = 0.0
+    stand = standing(len(places), start.slope)
+    stand[..., :5], stand[..., 8] = feet, swivel
+    roots, local = np.empty((len(places), 3)), np.tile(np.eye(3), (len(places), len(skeleton), 1, 1))
+    ground_kernel(body, FLEX * reach.physique.flexibility, np.ascontiguousarray(places[:, 3:]), carriage.joints_of(skeleton), left, np.ascontiguousarray(turned),
+                  np.ascontiguousarray(places[:, :3]), stand, np.array(root, float), roots, local)
+    return roots, local, stand[..., 4]
+
+
+def crouched(reach: Reach, state: CharacterState, leap: Leap | None, dt: float, around: Sequence[Any] = ()) -> CharacterState:
     """The state of somebody who crouches dt seconds later, for a leap, or standing up. The ground frame stays where the feet are."""
-    memory: Crouching = aimed(reach, state.memory, leap, float(state.floor))
+    memory: Crouching = aimed(reach, state.memory, leap, float(state.floor), around)
     memory, pose, contacts = moved(reach, memory, state.pose.root, dt)
     return replace(state, velocity=np.zeros(3), pose=pose, contacts=contacts, memory=replace(memory, stood=stands(state)))
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from .body import Physique, Start, hermite, monotone, standing, turns, vectors
 from .motion import (CLEARS, FADE, FREE, GROUND_RATE, LIFT_ROWS, MOMENT, RUNNERS_HEEL, Airborne, Path, faded, ground_kernel, heels_rise, heels_up, lifted, lowest, settling,
-                     sinking)
+                     sinking, swivels)
 from .prior import BETWEEN, EACH, LEGS
 
 PUSH_RATE = 240.0
@@ -80,6 +80,7 @@ class Pushing(Airborne):
         self.feet = standing(len(self.times), start.slope)
         self.feet[..., 5] += (start.haste < 2) * np.clip(self.times / max(self.off, 1e-9), 0.0, 1.0)[:, None]
         self.feet[..., :5] = settling(start, self.planted, self.body, self.times, self.off, self.push.duration)
+        self.feet[..., 8] = swivels(self.physique, start, self.times)
         risen = heels_up(start, self.planted, way.leave, self.push.duration, self.body) * late**2
         self.feet[..., 4] += risen[:, None]
         self.pitches = self.feet[..., 4].copy()

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, contact_points, forward_kinematics, wrap, yaw
-from ..contract import CharacterState, Leap
+from ..contract import CharacterState, Leap, level
 from ..navigation import floor_at, slope_at
-from .body import FLAT, Physique, Start, soles, vectors
+from .body import FLAT, Physique, Start, raised, soles, vectors
 from .motion import PLANT, Plan
 from .reach import Onward
 
@@ -134,6 +134,16 @@ def on_ground(start: Start, state: CharacterState, around: Sequence[Any]) -> Sta
     heights = floor + sloping.rise(start.feet[:, :3])
     even = all(abs(floor_at(ball[0], ball[2], around, high + UNEVEN) - high) < UNEVEN for ball, high in zip(start.feet, heights))
     return sloping if even else start
+
+
+def astride(physique: Physique, start: Start, state: CharacterState) -> tuple[Start, float]:
+    """The same start of one whose feet stand on floors of their own, as astride an edge, and how high the lower of these is [m]; who pushes off one foot has but one."""
+    floor = float(level(state.floor))
+    if start.single is not None:
+        return start, floor
+    over = start.feet[:, 1] - (floor + raised(physique.tables, start.slope) + start.rise(start.feet[:, :3]))
+    over = np.where(np.asarray(state.contacts).reshape(2, 2)[:, 1] & (np.abs(over) > UNEVEN), over, 0.0)
+    return (replace(start, levels=over - over.min()) if over.any() else start), floor + float(over.min())
 
 
 def rebounding(start: Start, made: Plan, time: float) -> Start:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..body import forward_kinematics, wrap, yaw
-from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, swivelled_kernel, turns, vectors
-from ..jump.motion import FADE, faded, ground_kernel
+from ..body import yaw
+from ..jump.body import FLEX, FOOT_FADE, Physique, Start, carriage, hermite, measures, monotone, turns, vectors
+from ..jump.motion import FADE, faded, ground_kernel, swivels
 from .capture import DROPS, Way
 from .passing import out_of_way, past_kernel
 from .swaying import RATE
@@ -56,7 +56,7 @@ def stumble(physique: Physique, start: Start, way: Way, free: np.ndarray, respon
     feet, standing, levels = _feet(start, way, free, body, times)
     centres, velocities = _centres(physique, start, way, feet, standing, levels, times)
     feet = np.concatenate([feet, np.zeros((len(times), 2, 3))], -1)  # the ground is level where one was struck
-    feet[..., 8] = _swivelled(physique, start, times)
+    feet[..., 8] = swivels(physique, start, times)
     angles, aside = _carriage(start, way, response, times, (height / size - 1.0) / (CHEST - 1.0))
     offsets, turned = _left_over(physique, start, angles[0], times)
     joints = carriage.joints_of(physique.skeleton)
@@ -205,17 +205,6 @@ def _carriage(start: Start, way: Way, response: np.ndarray, times: np.ndarray, h
     angles[:, 10] += 0.6 * spread
     angles[:, :2] = carriage.STAND[:2] + (angles[:, :2] - carriage.STAND[:2]) * (0.4 + 0.6 * lean)
     return angles, aside
-
-
-def _swivelled(physique: Physique, start: Start, times: np.ndarray) -> np.ndarray:
-    """What is left (N, 2) [rad] of how far the knees were turned about their legs from where they point of themselves."""
-    was = []
-    for ago in (0.0, 1.0 / RATE):
-        local = turns(-ago * start.rates) @ start.rotations
-        placed = forward_kinematics(physique.skeleton, np.zeros(3), local)
-        was.append([swivelled_kernel(physique.tables, side, start.feet[side, 3] - ago * start.feet_rates[side, 3], *placed) for side in range(2)])
-    now, before = np.array(was)
-    return faded(now, wrap(now - before) * RATE, FADE, times)
 
 
 def _left_over(physique: Physique, start: Start, angles: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -105,7 +105,8 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     seen = previewed(jump, state, leap, solid)
     if leap.place is None:
         return seen
-    start, floor = _pushing(jump, jump.start_of(state, leap, solid)), float(state.floor)
+    start, floor = jump.placed(state, leap, solid)
+    start = _pushing(jump, start)
     if aim.moving:
         return _running(jump, start, leap, floor, solid, seen, before, crew) if sweeps else seen
     runs = bool(np.linalg.norm(start.velocity[[0, 2]]) >= RUNNING)
@@ -164,7 +165,8 @@ def _swept(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[P
 
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
     """A jump as it would be made from a state, among solid props."""
-    start, floor = _pushing(jump, jump.start_of(state, leap, solid)), float(state.floor)
+    start, floor = jump.placed(state, leap, solid)
+    start = _pushing(jump, start)
     stand = jump.middle(start, floor)
     place = stand if leap.place is None else np.asarray(leap.place, float)
     way, why = jump.survey(start, place, floor, leap.airtime, solid)

@@ -5,7 +5,7 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from .aim import PATIENCE, Aim
+from .aim import NEAR, PATIENCE, Aim
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
                       player_of, wheel_wish, wishes)
@@ -17,12 +17,12 @@ from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, shared, user_file
 from .run_up import BRAKES, RUNS, THINKS, WAITED, RunUp, braked, last_chance, leaps, ring
 from .script import Script
-from .straight_ahead import agility, before, headlong, rises
+from .straight_ahead import agility, before, cramped, headlong, rises
 from .wish import STEPS, Wish, push
 
 __all__ = [
     "BRAKES", "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
-    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
-    "before", "braked", "button_label", "dead_zone", "drivers", "headlong", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
+    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "NEAR", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
+    "before", "braked", "button_label", "cramped", "dead_zone", "drivers", "headlong", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
     "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "shared", "user_file", "wheel_wish", "wishes",
 ]

@@ -18,6 +18,7 @@ from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import SETS_FEET
 from gambol.controllers.navigation import floor_at, in_world
 
+from .on_top import on_top
 from .run_up import AHEAD
 from .straight_ahead import UP
 from .wish import Wish, in_view
@@ -32,8 +33,8 @@ FARTHEST = 2.6
 """How far from a standing body the ring may be [m]."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
-SLACK = 0.3
-"""Who runs and would come too near for the ring lands at most so far beyond it [m]."""
+SLACK = 0.5, 0.3
+"""Who can't reach the ring lands at most so far from it [m], from a stand and on the move."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
 SINKS = 0.35
@@ -54,7 +55,7 @@ class Aim:
 
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
-    [m] in the world where somebody who moved let go of the ring. heading: [rad] in which to land, None where nobody said so.
+    [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -66,32 +67,39 @@ class Aim:
     heading: float | None = None
     spent: bool = False
 
-    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False) -> Aim:
+    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
-        the state is then that in which it will stand there."""
+        the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
+        x, z = self._there(state)
+        stays = not self.moving and (cramped or self.place is not None)
+        offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
         if not wish.jump:
             if self.aiming:
-                x, z = (float(state.ground[k]) + self.offset[k] for k in (0, 1))
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else None)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place)
             sets = state.refused == SETS_FEET
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
-            pace = 0.0 if aloft else TURNS if sets or self._askew(state) else 1.0
-            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt)
+            pace = 0.0 if aloft else TURNS if sets or cramped or self._askew(state) else 1.0
+            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
-        moving, heading = speed > MOVING, None
+        moving, heading, place = speed > MOVING, None, None
         if moving:
             far = AHEAD[0] + AHEAD[1] * speed
             offset = (far * float(velocity[0]) / speed, far * float(velocity[1]) / speed)
         else:
             pushed = in_view(wish.move, camera_yaw)
-            x, z = (self.offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
+            x, z = (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
             shrink = min(1.0, FARTHEST / max(math.hypot(x, z), 1e-9))
             offset = (x * shrink, z * shrink)
+            place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, None, heading)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading)
+
+    def _there(self, state: CharacterState) -> tuple[float, float]:
+        """Where x, z [m] the ring is in the world."""
+        return self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
 
     def _turned(self, wish: Wish, offset: tuple[float, float], camera_yaw: float, faces: float, dt: float) -> float | None:
         """The heading [rad] in which to land `dt` seconds later; a body that faces so keeps facing, or begins to turn from there or from the ring."""
@@ -137,8 +145,9 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
-        x, z = self.place or (float(state.ground[0]) + self.offset[0], float(state.ground[1]) + self.offset[1])
-        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK if self.moving else 0.0, heading=self.heading)
+        x, z = self._there(state)
+        x, z = (x, z) if self.moving else on_top((x, z), floor, around)
+        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=self.heading)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""

@@ -19,7 +19,7 @@ from gambol.controllers.navigation import STEP, floor_at, in_world, room
 from gambol.controllers.navigation.thinking import Thought
 from gambol.controllers.supervisor import Asked
 
-from .straight_ahead import RISES, SHORT, UP, agility, is_edge, touches
+from .straight_ahead import RISES, SHORT, UP, agility, is_edge, lacking, touches
 
 LOOK, EVERY = 2.0, 0.15
 """He looks so far ahead [s], longer if his legs are slower than people's, and so often [s]: a run is stopped in 1.4 s at most."""
@@ -112,7 +112,7 @@ def _played(controller: Any, state: CharacterState, asks: Callable[[], Asks], ar
         if now.active == "jump" or touches(way[-1], floor, around):
             number, why = leaps(controller, state, asks(), around, dt, len(way) - 1, place=place)
             last, edge = blocked or (len(way) - 1, now.active == "jump")
-            return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge), why=why)
+            return RunUp(number) if number else RunUp(0, _before(np.array(way), last, edge, float(state.floor), around, controller.size), why=why)
     return RunUp(max(round(EVERY / dt), 1))
 
 
@@ -212,8 +212,13 @@ def _beyond(footfall: Footfall, blocked: np.ndarray, floor: float, around: Seque
             yield Leap(np.array([x, high, z]))
 
 
-def _before(way: np.ndarray, last: int, edge: bool) -> tuple[float, float]:
-    """Where (x, z) [m] on a way (N, 2) to come to rest before its place `last`."""
+def _before(way: np.ndarray, last: int, edge: bool, floor: float, around: Sequence[Any], size: float) -> tuple[float, float]:
+    """Where (x, z) [m] on a way (N, 2) to come to rest before its place `last`, with room to leap onto what lies there."""
     gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way[:last + 1], axis=0).T))])
+
+    def on(far: float) -> np.ndarray:
+        return np.array([np.interp(far, gone, way[:last + 1, k]) for k in (0, 1)])
     at = max(gone[-1] - SHORT[edge], 0.0)
-    return float(np.interp(at, gone, way[:last + 1, 0])), float(np.interp(at, gone, way[:last + 1, 1]))
+    ahead = way[last] - on(at)
+    x, z = on(max(at - lacking(on(at), ahead / max(float(np.hypot(*ahead)), 1e-9), floor, around, size), 0.0))
+    return float(x), float(z)

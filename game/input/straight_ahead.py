@@ -29,6 +29,10 @@ STOPS = 0.6, 0.45
 """Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
 UP = 0.95
 """A leap lands no higher than this over the feet [m], and no lower than a step."""
+CLEARS = (STEP, 0.35), (0.28, 0.52)
+"""Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees would come against it."""
+BACK = 0.25
+"""He makes room for that who has so much of it behind him [m]."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
 
@@ -37,7 +41,7 @@ def before(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     """Where x, z [m] somebody who goes on with a velocity (2,) [m/s] in the world is to come to rest, so that he runs into nothing and over no edge; None
     where that is far away: farther than he looks, of which `share` counts, and so much `more` [m]."""
     met = _met(controller, state, velocity, around, share, more)
-    return None if met is None else _short(state, velocity, around, met)
+    return None if met is None else _short(controller, state, velocity, around, met, True)
 
 
 def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
@@ -47,7 +51,7 @@ def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], 
         return None
     ahead = np.asarray(velocity, float) / math.hypot(*velocity)
     there, left = np.asarray(state.ground[:2], float) + (met.far + FLAT) * ahead, WIDE * np.array([ahead[1], -ahead[0]])
-    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(state, velocity, around, met)
+    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(controller, state, velocity, around, met, False)
 
 
 class Met(NamedTuple):
@@ -77,11 +81,36 @@ def _met(controller: Any, state: CharacterState, velocity: Sequence[float], arou
     return None
 
 
-def _short(state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met) -> tuple[float, float]:
-    """Where x, z [m] to come to rest before what one comes to straight on."""
+def _short(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], met: Met, leaps: bool) -> tuple[float, float]:
+    """Where x, z [m] to come to rest before what one comes to straight on. leaps: with a leap in mind."""
     here, ahead = np.asarray(state.ground[:2], float), np.asarray(velocity, float) / math.hypot(*velocity)
-    x, z = here + max(met.last - SHORT[is_edge(here + met.far * ahead, met.floor, around)], 0.0) * ahead
+    far = met.last - SHORT[is_edge(here + met.far * ahead, met.floor, around)]
+    far -= lacking(here + far * ahead, ahead, met.floor, around, controller.size) if leaps else 0.0
+    x, z = here + max(far, 0.0) * ahead
     return float(x), float(z)
+
+
+def lacking(place: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any], size: float, within: float = math.inf) -> float:
+    """How much farther [m] a body of a size at a place (2,) on a floor [m] would have to be from what lies ahead (2,) of it, no farther than `within` [m], to leap onto that."""
+    lacks = 0.0
+    for high, clear in CLEARS:
+        for far in np.arange(0.0, min(clear * size, within), FINE):
+            x, z = place + far * ahead
+            if high * size < floor_at(float(x), float(z), around, floor + UP) - floor:
+                lacks = max(lacks, clear * size - far)
+                break
+    return lacks
+
+
+def cramped(controller: Any, state: CharacterState, place: Sequence[float], around: Sequence[Any]) -> float:
+    """How much farther [m] somebody would have to be from what he wants to leap onto, whose ring lies at a place (2,) [m]; 0 where he is far enough, and where he has
+    no room to go back."""
+    here, floor = np.asarray(state.ground[:2], float), float(state.floor)
+    way = np.asarray(place, float) - here
+    ahead = way / max(float(np.hypot(*way)), 1e-9)
+    lacks = lacking(here, ahead, floor, around, controller.size, float(np.hypot(*way)))
+    behind = here - (BACK + lacks) * ahead
+    return lacks if lacks and room(behind, floor, around) > 0.0 and abs(floor_at(float(behind[0]), float(behind[1]), around, floor + STEP) - floor) < RISES else 0.0
 
 
 def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> bool:

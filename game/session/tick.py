@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import BRAKES, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, headlong, landing, last_chance, leaps, leaving, push, ring, rises
+from ..input import BRAKES, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, headlong, landing, last_chance, leaps, leaving, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -29,6 +29,8 @@ from .state import SessionState, Player
 
 KEPT = 30 * RATE
 """How many steps of the world one can go back ..."""
+GOES_BACK, GLIDES, LITTLE, STANDS = 0.5, 0.3, 0.03, 0.2
+"""So fast goes back who is too near to what he would leap onto [m/s], until he comes far enough as he stops, in so long [s], to so much [m]; slower than the last [m/s] he stands."""
 CAST = 8
 """... with so many characters; with more, fewer."""
 
@@ -72,7 +74,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         jump = jump_of(character.controller)
         stands = state if jump is None else landing(jump, state)  # in the air one aims from where one will land
         held = replace(wish, strafe=wish.strafe or player.pilot.locked)
-        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state)) if jump is not None else player.aim
+        back = _back(player, character, stands, moment.after.props)
+        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
@@ -87,8 +90,9 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         known = run_up or RunUp()
         players[-1] = replace(players[-1], run_up=known)
         # how long it can be in the air is not asked before somebody aims: on a first start that is still being compiled
-        leap, ready = (None, None) if jump is None or not aim.wants else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
+        leap, ready = (None, None) if jump is None or not aim.wants or back is not None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
         command = command if known.leap is None else replace(command, velocity=known.velocity)
+        command = command if back is None or not aim.stands else replace(command, velocity=back)
         intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,
                          aim=known.leap or (ready if known.thought is None else Leap(ring(state, props))),
                          strike=push(player.camera.yaw, wish) if player.pushed else None)
@@ -99,6 +103,20 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
     intents += [Intent() if one.follows is None else Intent(points=held, turns=turns) for one in moment.after.characters[len(intents):]]
     world, intents = polite(moment, intents)
     return replace(moment, before=moment.after, after=world.step(intents), players=tuple(players), phase=0, passers=passers)
+
+
+def _back(player: Player, character: Character, stands: CharacterState, props: Sequence[Prop]) -> tuple[float, float] | None:
+    """With which velocity (2,) [m/s] somebody goes back who aims from a stand at what he is too near to, until he stands; None of everybody else."""
+    aim = player.aim
+    far = math.hypot(*aim.offset)
+    if not aim.stands or far < NEAR or aloft(character.state):
+        return None
+    x, z = (-GOES_BACK * part / far for part in aim.offset)
+    lacks = cramped(character.controller, stands, [float(stands.ground[k]) + aim.offset[k] for k in (0, 1)], props)
+    goes = float(np.hypot(character.state.velocity[0], character.state.velocity[2]))
+    if lacks > max(GLIDES * goes, LITTLE):
+        return x, z
+    return (0.0, 0.0) if aim.place is not None and goes > STANDS else None
 
 
 def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:

@@ -106,10 +106,17 @@ def test_nobody_leaps_back_to_what_his_run_up_has_gone_past(library, pace):
     assert all(s.active == "locomotion" for s in states) and script.refused[0].endswith("its run-up ended 1.2 m away")
 
 
+def test_who_was_braked_before_a_box_has_room_to_leap_onto_it_from_where_he_rests(library):
+    """No footfall of his run was one to leap from."""
+    who = person(library.tuned(Settings(idle=0.0)))
+    states, script = led(who, (box(6.0, 0.6),), (Move(1.2, (3.4, 0.0, 0.0)), Move(5.0, (3.4, 0.0, 0.0), jump=Jump((0.0, 0.6, 6.6))), Move(0.2)), 6.3)
+    assert not script.refused and states[-1].floor == pytest.approx(0.6, abs=0.01) and any(np.hypot(*s.velocity[[0, 2]]) < 0.1 for s in states[120:])
+
+
 def test_what_kept_a_runner_from_leaping_is_told_not_what_keeps_him_where_he_stands(library):
     """He is braked, as no footfall was one to leap from; asked at rest, he is told of a leap from there, which nobody meant."""
     who = person(library.tuned(Settings(idle=0.0)))
-    states, script = led(who, (box(6.0, 0.6),), (Move(1.2, (3.4, 0.0, 0.0)), Move(4.0, (3.4, 0.0, 0.0), jump=Jump((0.0, 0.6, 6.6))), Move(0.2)), 5.3)
+    states, script = led(who, (box(6.0, 0.9),), (Move(1.2, (3.4, 0.0, 0.0)), Move(4.0, (3.4, 0.0, 0.0), jump=Jump((0.0, 0.9, 6.6))), Move(0.2)), 5.3)
     assert all(s.active == "locomotion" for s in states) and "from this run" in script.refused[0] and script.refused[0].endswith("m away")
 
 

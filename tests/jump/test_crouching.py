@@ -10,7 +10,9 @@ from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Crouching, Jump, Jumping, Physique
 from gambol.controllers.navigation import gap
+from gambol.controllers.struck import flesh
 from gambol.controllers.supervisor import Supervisor
+from gambol.game.scene import Box
 
 from conftest import ahead
 
@@ -144,3 +146,20 @@ def test_who_crouches_beside_a_box_draws_his_arms_in(person):
     arms = [person.skeleton.index(name) for name in ("RightForeArm", "RightHand")]
     placed = np.array([forward_kinematics(person.skeleton, s.pose.root, s.pose.rotations)[0][arms] for s in states])
     assert gap(placed.reshape(-1, 3), box).min() > 0.0
+
+
+@pytest.mark.parametrize(("high", "heading"), [(0.45, 0.0), (0.45, 0.5), (0.6, 0.0), (0.9, 0.5)])
+def test_it_crouches_no_deeper_than_a_box_before_it_leaves_room_for(jump, person, high, heading):
+    """Who has walked up to a box and aims at its top bends no knee into it; and leaps onto it if that can be."""
+    things, walks = (Box((0.0, 0.5 * high, 2.0), (6.0, high, 2.0)),), np.array([1.0, 0.0, 0.0])
+    begins = person.start((-1.5 * np.sin(heading), 1.0 - 1.5 * np.cos(heading), heading))
+    stands = led(person, [Intent(walks, around=things)] * 150 + [Intent(around=things)] * 150, begins)[-1]
+    top = Leap(np.array([stands.ground[0], high, 1.5]))
+    waits, free = (led(person, [Intent(aim=top, around=around)] * 70, stands) for around in (things, ()))
+
+    def deepest(states):
+        points, thick = flesh(jump.physique, *forward_kinematics(jump.skeleton, np.stack([s.pose.root for s in states]).astype(float),
+                                                                 np.stack([s.pose.rotations for s in states]).astype(float)))
+        return float((thick - gap(points.reshape(-1, 3), things[0]).reshape(points.shape[:-1])).max())
+    assert deepest(waits) < 0.02 < 0.08 < deepest(free)
+    assert 0.02 < waits[0].pose.root[1] - waits[-1].pose.root[1] < free[0].pose.root[1] - free[-1].pose.root[1] - 0.03

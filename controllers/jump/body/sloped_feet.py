@@ -33,9 +33,9 @@ def uphill(feet: np.ndarray, slope: np.ndarray) -> np.ndarray:
 
 
 def standing(count: int, slope: np.ndarray) -> np.ndarray:
-    """Rows (count, 2, 8) of feet for `planted_pose.leg_kernel`, to be filled in: heels free to rise, on ground that rises by slope (2,) [m/m]."""
-    feet = np.ones((count, 2, 8))
-    feet[..., 6:] = slope
+    """Rows (count, 2, 9) of feet for `planted_pose.leg_kernel`, to be filled in: heels free to rise, on ground that rises by slope (2,) [m/m], knees not turned aside."""
+    feet = np.ones((count, 2, 9))
+    feet[..., 6:8], feet[..., 8] = slope, 0.0
     return feet
 
 

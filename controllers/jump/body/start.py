@@ -51,7 +51,7 @@ class Start:
     from. onto: how it lands to hop on, 0 left foot, 1 right, 2 both; None to stand there or run on. haste: 0 it leaves hardly
     faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
     and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
-    pitched against that ground. lands_on: (2,) how it rises where it lands.
+    pitched against that ground. lands_on: (2,) how it rises where it lands. levels: (2,) how high each foot stands over the lower one's floor [m], as astride an edge.
     """
 
     root: np.ndarray
@@ -73,6 +73,7 @@ class Start:
     slope: np.ndarray = field(default_factory=lambda: LEVEL)
     here: np.ndarray = field(default_factory=lambda: LEVEL)
     lands_on: np.ndarray = field(default_factory=lambda: LEVEL)
+    levels: np.ndarray = field(default_factory=lambda: LEVEL)
 
     def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
         """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""
@@ -114,9 +115,9 @@ class Start:
         return self.heading + TURNED[0] * (self.turn or 0.0)
 
     def planted(self, floor: float, body: BodyTables) -> np.ndarray:
-        """Where the feet (2, 5) come to stand on a floor [m]: flat, and as far on as carries them."""
+        """Where the feet (2, 5) come to stand, the lower on a floor [m]: flat, and as far on as carries them."""
         feet = self.feet + self.feet_rates * (FOOT_FADE / (2.0 * np.log(2.0)))
-        feet[:, 1], feet[:, 4] = floor + raised(body, self.slope) + self.rise(feet[:, :3]), 0.0
+        feet[:, 1], feet[:, 4] = floor + self.levels + raised(body, self.slope) + self.rise(feet[:, :3]), 0.0
         return feet
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ...body import yaw
 from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, standing, turns, vectors
 from ..prior import BETWEEN, EACH, LEGS
-from .footing import faded
+from .footing import FADE, MOMENT, faded
 from .ground_kernels import FREE, carry_on_kernel, ground_kernel
 from .landing import TIME, absorb
 from .looking import Look
@@ -39,8 +39,6 @@ HEEL = 0.03
 """A heel that is raised by more has left the floor [rad]."""
 MEET = 0.5, 14.0
 """How much of the speed that the ground bends them with legs have as they touch down, and at most [rad/s]."""
-FADE = 0.14
-"""Half-life with which the start's pose gives way to the jump's [s]."""
 STEADY = 0.12
 """Half-life with which the pelvis loses the turn it landed with [s]."""
 LOWEST = 0.06, 0.45
@@ -51,8 +49,6 @@ LEANS, LEANT = (1.8, 0.2), np.array([0.2, 0.5, 0.8, 1.0, 1.0, 0.8, 0.55, 0.3, 0.
 """Who sinks deeper than the second [m] leans farther forward by the first [rad/m], lest the heels rise; and which share of that, from row to row."""
 UP = 0.98
 """Trunk and arms are as in standing once the body has come up so much of the way."""
-MOMENT = 1e-4
-"""How fast angles turn joints is told from poses so far apart [s]."""
 SAME = 1e-3
 """The legs reach for a body turned to within this of how it lands [rad]."""
 

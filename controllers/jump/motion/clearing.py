@@ -30,7 +30,7 @@ def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, arc: np.nda
     for root, pose, places, facing in zip(roots, local, positions, turned):
         place_kernel(body, root, pose, places, facing)
     corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)
-    floors = [feet[:, 1].mean() - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, [0, 2]].mean(0), way) for feet, way in ((left, slope), (landing, lands_on))]
+    floors = [feet[:, None, 1] - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, None, [0, 2]], way) for feet, way in ((left, slope), (landing, lands_on))]
     away = np.linalg.norm(corners[..., [0, 2]] - left[:, None, [0, 2]], axis=-1)
     early = ((np.arange(len(roots)) < 0.5 * len(roots)) & (arc[:, 1] >= arc[0, 1]))[:, None, None]
     floor = np.where((away < FROM * body.size) & early, floors[0], np.minimum(*floors))

@@ -6,10 +6,14 @@ import math
 
 import numpy as np
 
-from ...body import HALF_SOLE, hull_kernel, settle, yaw
+from ...body import HALF_SOLE, forward_kinematics, hull_kernel, settle, wrap, yaw
 from ...compiled import kernel
-from ..body import FOOT_FADE, BodyTables, Start, nearest_kernel
+from ..body import FOOT_FADE, BodyTables, Physique, Start, nearest_kernel, swivelled_kernel, turns
 
+FADE = 0.14
+"""Half-life with which the start's pose gives way to the jump's [s]."""
+MOMENT = 1e-4
+"""How fast angles turn joints is told from poses so far apart [s]."""
 STANDS = 0.02
 """What is higher over the floor than this [m], at standard height, does not stand."""
 HIPS = 0.09
@@ -35,6 +39,17 @@ def settling(start: Start, planted: np.ndarray, body: BodyTables, times: np.ndar
     heels = np.sin(np.maximum(-feet[..., 4], 0.0)) * (body.toe[2] - body.heel[2])  # lower than balls by this
     feet[..., 1] = np.maximum(feet[..., 1], planted[:, 1] + heels)
     return feet
+
+
+def swivels(physique: Physique, start: Start, times: np.ndarray) -> np.ndarray:
+    """What is left (N, 2) [rad] at times (N,) [s] of how far the knees were turned about their legs from where they point of themselves."""
+    was = []
+    for ago in (0.0, MOMENT):
+        local = turns(-ago * start.rates) @ start.rotations
+        placed = forward_kinematics(physique.skeleton, np.zeros(3), local)
+        was.append([swivelled_kernel(physique.tables, side, start.feet[side, 3] - ago * start.feet_rates[side, 3], *placed) for side in range(2)])
+    now, before = np.array(was)
+    return faded(now, wrap(now - before) / MOMENT, FADE, times)
 
 
 def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np.ndarray, lasts: float) -> float:

@@ -72,11 +72,12 @@ def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, fl
     half = np.linspace(0.0, until, 2 * KNOTS - 1)
     down, pushing = half[half < way.wind_up], half[half >= way.wind_up] - way.wind_up
     sunk, _, bent = sinking(way, start, down)
-    height = np.concatenate([sunk[:, 1], way.low[1] + way.push.moved(pushing, 0.0 * way.passing)[0][:, 1]]) - floor
+    height = np.concatenate([sunk[:, 1], way.low[1] + way.push.moved(pushing, 0.0 * way.passing)[0][:, 1]])
     force = np.concatenate([bent[:, 1] - way.gravity[1], way.push.force(pushing)[:, 1]])
     times, (guess, place) = half[::2], _guess(start, way, floor)
     share = np.clip((times - way.wind_up) / way.push.duration, 0.0, 1.0)
-    centres = np.insert(place if before is None else before.place, 1, height[::2] + floor, axis=1)
+    centres = np.insert(place if before is None else before.place, 1, height[::2], axis=1)
+    height -= floor + start.levels.mean()
     feet = settling(start, planted, physique.tables, times, way.wind_up, way.push.duration)
     flat = np.ones(feet.shape[:2], bool)
     if start.single is not None:  # whose hips are under his mass; who crouches on two feet sits back, heels down

@@ -24,6 +24,9 @@ GRID, FARTHEST = 0.02, 10.0
 """The nearest place is sought so finely [m], and no farther away than nobody leaps on Earth [m]."""
 BACK = 1.0, 0.85, 0.6
 """A place that is offered instead of another is planned, too: if something would be touched there, less far on the way."""
+SHORT, EVEN = (0.15, 0.3), 0.02
+"""Who stands, and can't reach a place higher or lower, is offered one on the same floor first, to so much [m], that is so much nearer [m]: on the way there the floor may
+lie anywhere."""
 KEPT = 32
 """So many plans are known for a while: who asks whether a leap can be made makes it soon."""
 DEAR = 8
@@ -163,6 +166,14 @@ class Reach(Arcs):
             if len(around):
                 there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
             return not (yield from self.surveyed(start, there, floor, airtime, around, HEIGHTS[:1]))[1]
+        stands = start.single is None and math.hypot(start.velocity[0], start.velocity[2]) < WALKS
+        for back in SHORT if len(around) and stands and abs(place[1] - floor) > EVEN else ():
+            way = (place - self.middle(start, floor)) * FLAT
+            there = place - back / max(float(np.linalg.norm(way)), 1e-9) * way
+            if abs(floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6) - place[1]) < EVEN:
+                planned = (yield from self.planned(start, there, floor, airtime, around))[0]
+                if planned is not None:
+                    return there, planned
         found, deep = None, place[1] < floor and not len(around)  # who can't get as deep is told how deep he can get there
         for there in ([place * FLAT + [0.0, floor, 0.0]] if deep else []) + list(self.easy(start, floor)) + list(self.carried(start, floor)):
             if (yield from reached(there)):

@@ -51,36 +51,53 @@ class Touch(NamedTuple):
 def touch(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | None:
     """What a body would hit in a plan, where it would lie deepest in it; None if nothing. What it touches as it begins, it may touch
     as much all along."""
-    things = [thing for thing in around if not hasattr(thing, "place")]
-    if not things:
+    if all(hasattr(thing, "place") for thing in around):
         return None
     last = min(made.duration, made.through)
     chosen = np.unique(np.searchsorted(made.times, np.arange(0.0, last, 1.0 / RATE)))
     chosen = chosen[chosen < len(made.times)]
-    skeleton, size = physique.skeleton, physique.size
-    positions, turned = forward_kinematics(skeleton, made.roots[chosen], made.local[chosen])
+    positions, turned = forward_kinematics(physique.skeleton, made.roots[chosen], made.local[chosen])
     centre = centre_of_mass(physique.anatomy, positions, turned)
-    things = [thing for thing in things if gap(centre, thing).min() < NEAR * size]
+    things = near(physique, centre, around)
     if not things:
         return None
-    ends = end_positions(skeleton, positions, turned)
-    parts = [("feet", sole_corners(skeleton, positions, turned), 0.0)]
-    for part, first, second, end, radius in _bones(skeleton):
-        begin, stop = positions[:, first], ends[:, second] if end else positions[:, second]
-        count = max(int(np.ceil(float(np.linalg.norm(stop[0] - begin[0])) / (SPACED * size))), 1) + 1
-        parts.append((part, begin[:, None] + np.linspace(0.0, 1.0, count)[:, None] * (stop - begin)[:, None], radius * size))
-    widths = [places.shape[1] for _, places, _ in parts]
-    every = np.concatenate([places for _, places, _ in parts], 1)
+    names, widths, every, thick = _places(physique, positions, turned)
     every = np.concatenate([every[:1], np.stack([0.5 * (every[:-1] + every[1:]), every[1:]], 1).reshape(-1, *every.shape[1:])])
-    thick = np.repeat([radius - GRAZE for _, _, radius in parts], widths)
-    thick[:widths[0]] = -SOLES * size
     for thing in things:
         deep = thick - gap(every.reshape(-1, 3), thing).reshape(len(every), -1)
         deep -= np.maximum(deep[0], 0.0)
         if deep.max() > 0.0:
             moment, place = np.unravel_index(int(deep.argmax()), deep.shape)
-            part = parts[int(np.searchsorted(np.cumsum(widths), place, "right"))][0]
+            part = names[int(np.searchsorted(np.cumsum(widths), place, "right"))]
             ahead = float(np.linalg.norm((every[moment, place] - every[0, place])[[0, 2]]))
             pose = chosen[(moment + 1) // 2]
             return Touch(f"its {part} would hit something {ahead:.1f} m ahead", made.roots[pose], made.local[pose], every[moment, place], float(deep[moment, place]))
     return None
+
+
+def deepest(physique: Physique, roots: np.ndarray, local: np.ndarray, around: Sequence[Any]) -> np.ndarray:
+    """How deep (N,) [m] bodies in poses (N, 3), (N, J, 3, 3) lie in what stands about, beyond what they may graze; 0 where nowhere."""
+    positions, turned = forward_kinematics(physique.skeleton, roots, local)
+    _, _, every, thick = _places(physique, positions, turned)
+    deep = np.zeros(len(every))
+    for thing in around:
+        deep = np.maximum(deep, (thick - gap(every.reshape(-1, 3), thing).reshape(every.shape[:-1])).max(-1))
+    return deep
+
+
+def near(physique: Physique, centres: np.ndarray, around: Sequence[Any]) -> list[Any]:
+    """What of the things around a body can touch whose mass centre comes by places (N, 3) [m]."""
+    return [thing for thing in around if not hasattr(thing, "place") and gap(centres, thing).min() < NEAR * physique.size]
+
+
+def _places(physique: Physique, positions: np.ndarray, turned: np.ndarray) -> tuple[list[str], list[int], np.ndarray, np.ndarray]:
+    """Of placed bodies (N, J, 3), (N, J, 3, 3): names of parts, how many places each has, all places (N, P, 3), and how thick (P,) [m] the body is there."""
+    skeleton, size = physique.skeleton, physique.size
+    ends = end_positions(skeleton, positions, turned)
+    parts = [("feet", sole_corners(skeleton, positions, turned), -SOLES * size)]
+    for part, first, second, end, radius in _bones(skeleton):
+        begin, stop = positions[:, first], ends[:, second] if end else positions[:, second]
+        count = max(int(np.ceil(float(np.linalg.norm(stop[0] - begin[0])) / (SPACED * size))), 1) + 1
+        parts.append((part, begin[:, None] + np.linspace(0.0, 1.0, count)[:, None] * (stop - begin)[:, None], radius * size - GRAZE))
+    widths = [places.shape[1] for _, places, _ in parts]
+    return [part for part, _, _ in parts], widths, np.concatenate([places for _, places, _ in parts], 1), np.repeat([thick for _, _, thick in parts], widths)

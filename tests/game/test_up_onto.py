@@ -1,0 +1,89 @@
+"""Hands that walk up to a box and leap onto it: they make room for the leap first, and rings lie where both feet fit."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gambol.controllers.jump import Jumping
+from gambol.controllers.navigation import floor_at, gap
+from gambol.controllers.person import person
+from gambol.controllers.struck import flesh
+from gambol.controllers.body import forward_kinematics
+from gambol.game.input.on_top import ASIDE, SOLES, on_top
+from gambol.game.input.straight_ahead import CLEARS, before, cramped
+from gambol.game.input.wish import Wish
+from gambol.game.scene.scene import Box
+from gambol.game.session.state import begin
+from gambol.game.session.tick import Timeline
+from gambol.game.world.world import DT, Character, World
+
+
+@pytest.fixture(scope="module")
+def somebody():
+    return person()
+
+
+def box(high, far=1.4):
+    return Box((0.0, 0.5 * high, far + 1.0), (3.0, high, 2.0))
+
+
+def led(who, things, hands, start=(0.0, 0.0, 0.0)):
+    """The states of somebody led by hands, (seconds, how far the stick is ahead, whether the key is held), and where he aimed in each."""
+    line, states, aims = Timeline(begin(World((Character("A", who, who.start(start)),), things), 1)), [], []
+    for seconds, ahead, held in hands:
+        for _ in range(round(seconds / DT)):
+            line.advance((Wish(move=(0.0, ahead), jump=held).rounded(),))
+            states.append(line.now.after.characters[0].state)
+            aims.append(line.now.players[0].aim)
+    return states, aims
+
+
+def deepest(who, states, thing):
+    body = who.parts["jump"].physique
+    placed = forward_kinematics(body.skeleton, np.stack([s.pose.root for s in states]).astype(float), np.stack([s.pose.rotations for s in states]).astype(float))
+    points, thick = flesh(body, *placed)
+    return float((thick - gap(points.reshape(-1, 3), thing).reshape(points.shape[:2])).max())
+
+
+@pytest.mark.parametrize("high", [0.3, 0.42, 0.53])
+def test_who_has_walked_up_to_a_box_goes_back_a_step_and_leaps_onto_it(somebody, high):
+    thing = box(high)
+    states, aims = led(somebody, (thing,), [(2.6, 1.0, False), (0.6, 0.0, False), (0.7, 1.0, True), (3.0, 0.0, False)])
+    rested = states[round(3.2 / DT) - 1]
+    off = next(s for s in states if isinstance(getattr(s.memory, "memory", None), Jumping))
+    assert 1.4 - rested.ground[1] < CLEARS[1][1], "he has come nearer than one leaps from"
+    assert off.ground[1] < rested.ground[1] - 0.02 or high <= CLEARS[1][0] + 0.05
+    assert states[-1].floor == pytest.approx(high, abs=0.01) and deepest(somebody, states, thing) < 0.03
+    held = [aim.place for aim in aims if aim.place is not None and not aim.aiming]
+    assert held and np.ptp(np.array(held), axis=0).max() < 0.02, "the ring stays where hands left it as he goes back"
+
+
+def test_who_holds_the_leap_as_he_walks_comes_to_rest_with_room_for_it(somebody):
+    state = somebody.start((0.0, 0.0, 0.0))
+    rests = {high: 0.9 - before(somebody, state, (0.0, 1.3), (box(high, 0.9),))[1] for high in (1.6, 0.5, 0.3)}
+    assert rests[1.6] < CLEARS[1][1] - 0.05 and rests[0.5] == pytest.approx(CLEARS[1][1], abs=0.02) and rests[0.3] == pytest.approx(CLEARS[1][1], abs=0.02)
+
+
+@pytest.mark.parametrize(("high", "far", "lacks"), [(0.2, 0.2, 0.0), (0.26, 0.2, 0.15), (0.26, 0.4, 0.0), (0.5, 0.3, 0.22), (0.5, 0.6, 0.0), (1.2, 0.3, 0.0)])
+def test_how_much_room_is_wanting(somebody, high, far, lacks):
+    """Onto treads, and where nothing can be leapt onto, none is needed."""
+    things = (box(high, far),)
+    state = somebody.start((0.0, 0.0, 0.0))
+    assert cramped(somebody, state, (0.0, far + 0.4), things) == pytest.approx(lacks, abs=0.011)
+    behind = (*things, Box((0.0, 1.0, -0.4), (3.0, 2.0, 0.2)))
+    assert cramped(somebody, state, (0.0, far + 0.4), behind) == 0.0, "there is no room to go back"
+    assert cramped(somebody, state, (0.0, -1.0), things) == 0.0, "it lies behind him"
+
+
+@given(st.floats(-2.2, 2.2), st.floats(0.8, 4.0), st.floats(0.1, 0.9))
+def test_a_ring_lies_where_both_feet_fit_and_near_to_where_hands_left_it(x, z, high):
+    things = (box(high),)
+    place = on_top((x, z), 0.0, things)
+    assert np.hypot(place[0] - x, place[1] - z) <= ASIDE + 1e-6
+    turned = np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)
+    heights = [floor_at(place[0] + SOLES * np.sin(a), place[1] + SOLES * np.cos(a), things) for a in turned]
+    assert np.ptp(heights) < 1e-9
+    if all(abs(floor_at(x + SOLES * np.sin(a), z + SOLES * np.cos(a), things) - floor_at(x, z, things)) < 1e-9 for a in turned):
+        assert place == (x, z)
+    assert on_top((x, z), 0.0, ()) == (x, z)
