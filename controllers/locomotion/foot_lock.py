@@ -75,7 +75,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     m.most = m.stairs = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
     if tops.shape[0] > 0:
-        follow_ground(m, body, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
+        follow_ground(m, body, legs.height, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
     else:
         leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)

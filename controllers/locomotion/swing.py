@@ -13,7 +13,6 @@ import math
 
 import numpy as np
 
-from ..body import spring_kernel
 from ..compiled import kernel
 from .beside_walls import out_of_walls
 from .cycles import EVENTS
@@ -25,20 +24,16 @@ SAMPLES = 10
 """At so many moments of its swing it is told where a foot will be."""
 SOONEST = 0.06
 """A way takes at least this long to its end [s]."""
-AHEAD = 0.2
-"""A foot begins to give way so long before it would come too near [s] …"""
-LEAD = 0.035
-"""… and fully as it would so much later [s] …"""
-HALFLIFE, BACK = 0.018, 0.045
-"""… with the first half-life [s], and comes back with the second …"""
-YIELDING = 0.15
-"""… once this share of its swing is over, since it leaves without a jump."""
+QUICKEST = 0.035
+"""A foot gives way in no less than this [s]."""
 WIDTH = 0.09
 """The room that is asked for between the centre lines of two feet side by side [m]; recorded walks have 0.07."""
 SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m]."""
+NONE = 5.0
+"""… and what is farther by so many times that needs none."""
 FADE = 0.1
-"""Before a foot's heel and beyond its toes the need for room fades over this length [m]."""
+"""A foot on the other's side is called back the less the farther it is before the other's heel or beyond its toes, up to this length [m]."""
 ASTRAY = 0.4
 """A foot this far on the other's side is not called back [m], from half of it on less and less."""
 STEEP = 0.08
@@ -67,100 +62,110 @@ def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, dt
         goal = m.land[foot, i] if i < 2 else 0.0
         x, v, a = offset[i] - goal, rate[i], push[i]
         offset[i], rate[i], push[i] = goal + smoothest(x, v, a, whole, s, 0), smoothest(x, v, a, whole, s, 1), smoothest(x, v, a, whole, s, 2)
-    wanted = np.empty(2)
-    _give_way(m, body, foot, ahead, speed_x + rate[0], speed_z + rate[1], height, wanted)
-    if tops.shape[0] > 0:
-        _keep_clear(m, body, foot, ahead, speed_x + rate[0], speed_z + rate[1], tops, floor, wanted)
+    push = np.empty(2)
+    _give_way(m, body, foot, ahead, speed_x + rate[0], speed_z + rate[1], height, tops, floor, push)
     aside, aside_rate = m.aside[foot], m.aside_rate[foot]
-    nearer = wanted[0] * aside[0] + wanted[1] * aside[1] < aside[0] ** 2 + aside[1] ** 2
     for i in range(2):
-        aside[i], aside_rate[i] = spring_kernel(aside[i], aside_rate[i], wanted[i], BACK if nearer else HALFLIFE, dt)
+        aside[i] += dt * (aside_rate[i] + 0.5 * dt * push[i])
+        aside_rate[i] += dt * push[i]
 
 
 @kernel
-def _give_way(m, body, foot, ahead, speed_x, speed_z, height, out):
-    """Write into `out` (2,) how far x, z in the world [m] a swinging foot gives way to the other one: as far as it must now and a
-    moment later, and of what it must later the more the sooner that is."""
-    there, here = np.empty((3, 2)), np.empty((3, 2))
-    out[0] = out[1] = 0.0
-    if m.turn != 0.0 and m.spot:  # as recorded, feet pass each other
+def _give_way(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, push):
+    """Write into `push` (2,) how a swinging foot's way aside x, z in the world is accelerated [m/s²]: by the least by which it is back as it lands, and by the least more
+    by which it is as far from the other foot, and from what is too high to step on, as it must be at each moment of its way, the soonest last.
+
+    From place x and speed v acceleration a, which falls evenly to nothing, leads to x + v t + a t² / 3 in t seconds: the least (of ∫ a²) that leads there.
+    """
+    there, here, out = np.empty((3, 2)), np.empty((3, 2)), np.empty(2)
+    aside, rate = m.aside[foot], m.aside_rate[foot]
+    left = max(ahead.until[foot], SOONEST)
+    for i in range(2):
+        push[i] = -(6.0 * aside[i] / left + 4.0 * rate[i]) / left
+    passes = not (m.turn != 0.0 and m.spot) and other_line(m, body, foot, there)  # on the spot feet pass each other as recorded
+    if not passes and tops.shape[0] == 0:
         return
-    if not other_line(m, body, foot, there):
-        return
-    side, most = 1.0 - 2.0 * foot, 0.0
-    for k in range(-2, SAMPLES):
-        share, low = _foretold(m, body, foot, ahead, k, speed_x, speed_z, here)
-        if share <= 0.0:
+    side = 1.0 - 2.0 * foot
+    for k in range(SAMPLES - 1, -3, -1):
+        later, low = _foretold(m, foot, ahead, k, speed_x, speed_z, height, here)
+        if later < 0.0:
             continue
-        need = share * need_of_room(there, here, side, FADE) * smooth((HIGH - low + height) / (HIGH - LOW))
-        if need > most:
-            most = need
-            own_side(there, here, side, out)
-    out[0] *= most
-    out[1] *= most
+        later = max(later, QUICKEST)
+        if passes:
+            other = ahead.beside[foot, k] if k >= 0 else there
+            need = need_of_room(other, here, side) * smooth((HIGH - low + height) / (HIGH - LOW))
+            if need > 0.0:
+                own_side(other, here, side, out)
+                _reach(aside, rate, push, later, out[0], out[1], need)
+        if tops.shape[0] > 0:
+            x = aside[0] + later * (rate[0] + later * push[0] / 3.0)
+            z = aside[1] + later * (rate[1] + later * push[1] / 3.0)
+            for i in range(3):
+                here[i, 0] += x
+                here[i, 1] += z
+            if out_of_walls(m, tops, floor, foot, here, out):
+                far = math.hypot(out[0], out[1]) + 1e-9
+                _reach(aside, rate, push, later, out[0] / far, out[1] / far, far + (x * out[0] + z * out[1]) / far)
 
 
 @kernel
-def _keep_clear(m, body, foot, ahead, speed_x, speed_z, tops, floor, out):
-    """Add to `out` (2,) how far x, z in the world [m] a swinging foot that gives way so far goes aside to pass what is too high to step on."""
-    here, aside, most = np.empty((3, 2)), np.empty(2), 0.0
-    x, z = out[0], out[1]
-    for k in range(-2, SAMPLES):
-        share, _ = _foretold(m, body, foot, ahead, k, speed_x, speed_z, here)
-        if share <= 0.0:
-            continue
-        for i in range(3):
-            here[i, 0] += x
-            here[i, 1] += z
-        if out_of_walls(m, tops, floor, foot, here, aside) and share * math.hypot(aside[0], aside[1]) > most:
-            most = share * math.hypot(aside[0], aside[1])
-            out[0], out[1] = x + share * aside[0], z + share * aside[1]
+def _reach(x, v, push, later, along_x, along_z, far):
+    """Add to `push` (2,) the least that leads as `far` [m] along a unit way x, z from place x (2,) and speed v (2,) in so many seconds."""
+    lacks = far - along_x * (x[0] + later * (v[0] + later * push[0] / 3.0)) - along_z * (x[1] + later * (v[1] + later * push[1] / 3.0))
+    if lacks > 0.0:
+        more = 3.0 * lacks / (later * later)
+        push[0] += more * along_x
+        push[1] += more * along_z
 
 
 @kernel
-def _foretold(m, body, foot, ahead, k, speed_x, speed_z, here):
+def _foretold(m, foot, ahead, k, speed_x, speed_z, height, here):
     """Write a swinging foot's centre line (3, 2) in the world as it will be without giving way: now and a moment later for k of −2 and −1, then at moment k of its
-    way. How much that counts, 0 where it does not, and how high [m] the foot is then."""
+    way. When that is [s], negative where there is no such moment, and how high [m] the foot is then."""
     if k < 0:  # as it is, and goes
-        outline_kernel(m, body, foot, here)
+        later = (k + 2) * QUICKEST
+        outline_kernel(m, foot, ahead, height, here)
         c, sine = math.cos(m.ground[2]), math.sin(m.ground[2])
         for i in range(3):
             x, z = here[i, 0], here[i, 1]
-            here[i, 0] = m.ground[0] + c * x + sine * z - m.aside[foot, 0] + (k + 2) * LEAD * speed_x
-            here[i, 1] = m.ground[1] - sine * x + c * z - m.aside[foot, 1] + (k + 2) * LEAD * speed_z
-        return min(swing_progress(m, foot) / YIELDING, 1.0), min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
+            here[i, 0] = m.ground[0] + c * x + sine * z - m.aside[foot, 0] + later * speed_x
+            here[i, 1] = m.ground[1] - sine * x + c * z - m.aside[foot, 1] + later * speed_z
+        return later, min(m.points[2 * foot, 1], m.points[2 * foot + 1, 1])
     s = ahead.shares[foot, k]
-    later = s * ahead.until[foot]
-    if s <= 0.0 or s >= 1.0 or later > AHEAD:
-        return 0.0, 0.0
-    line_ahead(m, body, foot, ahead, k, here)
-    return smooth(1.0 - later / AHEAD), min(ahead.way[foot, k, 0, 1], ahead.way[foot, k, 1, 1])
+    if s <= 0.0 or s >= 1.0:
+        return -1.0, 0.0
+    line_ahead(m, foot, ahead, k, height, here)
+    return s * ahead.until[foot], min(ahead.way[foot, k, 0, 1], ahead.way[foot, k, 1, 1])
 
 
 @kernel
-def line_ahead(m, body, foot, ahead, k, here):
+def line_ahead(m, foot, ahead, k, height, here):
     """Write a swinging foot's centre line (3, 2) in the world as it will be at moment k of its way, without giving way."""
-    heel, ball = ahead.way[foot, k, 0], ahead.way[foot, k, 1]
-    for i in range(2):
-        goal = m.land[foot, i]
-        here[1, i] = ball[2 * i] + goal + smoothest(m.offset[foot, i] - goal, m.offset_rate[foot, i], m.offset_push[foot, i],
-                                                    max(ahead.until[foot], SOONEST), ahead.shares[foot, k], 0)
-        here[0, i] = here[1, i] + heel[2 * i] - ball[2 * i]
-    with_toe(body, here)
+    heel, ball, toe, offset = ahead.way[foot, k, 0], ahead.way[foot, k, 1], ahead.way[foot, k, 2], ahead.vectors[0]
+    for i in range(3):
+        goal = m.land[foot, i] if i < 2 else 0.0
+        offset[i] = goal + smoothest(m.offset[foot, i] - goal, m.offset_rate[foot, i], m.offset_push[foot, i],
+                                     max(ahead.until[foot], SOONEST), ahead.shares[foot, k], 0)
+    c, s = math.cos(offset[2]), math.sin(offset[2])
+    x, z = heel[0] - ball[0], heel[2] - ball[2]
+    here[1, 0], here[1, 1] = ball[0] + offset[0], ball[2] + offset[1]
+    here[0, 0], here[0, 1] = here[1, 0] + c * x + s * z, here[1, 1] + c * z - s * x
+    x, z = toe[0] - ball[0], toe[2] - ball[2]
+    _lay_toe(m, foot, c * x + s * z, toe[1] - ball[1], c * z - s * x, ball[1] - height, here)
 
 
 @kernel
-def swept_line(m, body, foot, goes, until, share, here):
+def swept_line(m, body, foot, ahead, goes, share, height, here):
     """Write a swinging foot's centre line (3, 2) in the world as it will be after a share of its way, without giving way, where nothing foretells that: the smoothest way
-    from where heel and ball are, and how fast they go, to where they come down. goes: (4, 2) how fast the blend's points go [m/s]; until: when it comes down [s]."""
-    outline_kernel(m, body, foot, here)
+    from where heel and ball are, and how fast they go, to where they come down. goes: (4, 2) how fast the blend's points go [m/s]."""
+    outline_kernel(m, foot, ahead, height, here)
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     for k in range(2):
         x, z = here[k, 0], here[k, 1]
         here[k, 0], here[k, 1] = m.ground[0] + c * x + s * z - m.aside[foot, 0], m.ground[1] - s * x + c * z - m.aside[foot, 1]
         for i in range(2):
             goal = m.coming[foot, k, i] + m.land[foot, i]
-            here[k, i] = goal + smoothest(here[k, i] - goal, goes[2 * foot + k, i] + m.offset_rate[foot, i], 0.0, max(until, SOONEST), share, 0)
+            here[k, i] = goal + smoothest(here[k, i] - goal, goes[2 * foot + k, i] + m.offset_rate[foot, i], 0.0, max(ahead.until[foot], SOONEST), share, 0)
     with_toe(body, here)
 
 
@@ -191,7 +196,7 @@ def other_line(m, body, foot, out):
                 out[k, i] = m.coming[other, k, i] + m.land[other, i]
         with_toe(body, out)
         return True
-    outline_kernel(m, body, other, out)
+    standing_line(m, body, other, out)
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     for i in range(3):
         x, z = out[i, 0], out[i, 1]
@@ -209,11 +214,11 @@ def own_side(there, here, side, out):
 
 
 @kernel
-def need_of_room(there, here, side, fade):
+def need_of_room(there, here, side):
     """How far [m] a foot with centre line `here` (3, 2) must still go to that side (1 left, −1 right) of one with the line `there`."""
     need = 0.0
     for i in range(3):
-        need = max(need, _room(there, here[i], side, fade), _room(here, there[i], -side, fade))
+        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
     return need
 
 
@@ -237,8 +242,32 @@ def away_kernel(there, here, out):
 
 
 @kernel
-def outline_kernel(m, body, foot, out):
-    """A foot's centre line as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
+def outline_kernel(m, foot, ahead, height, out):
+    """A swinging foot's centre line as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
+    shown_kernel(m, 2 * foot, out[0])
+    shown_kernel(m, 2 * foot + 1, out[1])
+    toe, c, s = ahead.toe[foot], math.cos(m.offset[foot, 2]), math.sin(m.offset[foot, 2])
+    _lay_toe(m, foot, c * toe[0] + s * toe[2], toe[1], c * toe[2] - s * toe[0], m.points[2 * foot + 1, 1] - height, out)
+
+
+@kernel
+def _lay_toe(m, foot, x, y, z, high, line):
+    """Add the toe's end to a centre line (3, 2) of which heel and ball are known. x, y, z: from the blend's ball to it; it is bent up about the foot's lateral axis where
+    it would be lower than the foot is lifted (`foot_lock`), whose ball is so `high` [m] over where it rests."""
+    least = -max(high - m.lift[foot], 0.0)
+    if y < least:
+        fx, fz = line[1, 0] - line[0, 0], line[1, 1] - line[0, 1]
+        far = math.sqrt(fx * fx + fz * fz) + 1e-9
+        fx, fz = fx / far, fz / far
+        across = x * fz - z * fx
+        along = math.sqrt(max(x * x + y * y + z * z - across * across - least * least, 0.0))
+        x, z = along * fx + across * fz, along * fz - across * fx
+    line[2, 0], line[2, 1] = line[1, 0] + x, line[1, 1] + z
+
+
+@kernel
+def standing_line(m, body, foot, out):
+    """The centre line of a foot whose toes lie on the floor, as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
     shown_kernel(m, 2 * foot, out[0])
     shown_kernel(m, 2 * foot + 1, out[1])
     with_toe(body, out)
@@ -253,17 +282,21 @@ def with_toe(body, out):
 
 
 @kernel
-def _room(line, point, side, fade):
-    """How far [m] a point (2,) must still go to that side (1 left, −1 right) of a foot's line (3, 2)."""
+def _room(line, point, side):
+    """How far [m] a point (2,) must still go to that side (1 left, −1 right) of a foot's line (3, 2): until it is WIDTH from every place of it."""
     x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
     length = math.sqrt(x * x + z * z) + 1e-9
     x, z = x / length, z / length
     dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
     along, apart = dx * x + dz * z, side * (dx * z - dz * x)
-    room = SOFTNESS * math.log1p(math.exp((WIDTH - apart) / SOFTNESS))
+    beyond = max(-along, along - length, 0.0)
+    if apart > WIDTH + NONE * SOFTNESS or beyond > max(1.5 * WIDTH, FADE):
+        return 0.0
+    wide = math.sqrt(max(WIDTH * WIDTH - beyond * beyond, 0.0))
+    room = SOFTNESS * math.log1p(math.exp((wide - max(apart, 0.0)) / SOFTNESS)) * smooth(3.0 - 2.0 * beyond / WIDTH)
     if apart < 0.0:  # a foot that is far on the other side stays there
-        room *= smooth((ASTRAY + apart) / (0.5 * ASTRAY))
-    return smooth(1.0 - max(-along, along - length) / fade) * smooth(length / STEEP - 1.0) * room
+        room = (room - apart * smooth(1.0 - beyond / FADE)) * smooth((ASTRAY + apart) / (0.5 * ASTRAY))
+    return smooth(length / STEEP - 1.0) * room
 
 
 @kernel
