@@ -33,11 +33,11 @@ comes to stand, so that it does not creep in, and early as it leaves, walking an
 back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
-GRIP_RATE = 25.0
+GRIP_RATE = 35.0
 """How fast a grip may change [1/s]."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
-STEEPLY, FREED = 1.0, 0.015
+STEEPLY, FREED = 2.0, 0.015
 """A point that leaves its place is lifted by this share of how far it got, up to the second [m]."""
 HELD_AGAIN = 0.4
 """Over so much of a swing's time after it came down a point is still held, not yet about to leave."""

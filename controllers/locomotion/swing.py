@@ -20,13 +20,15 @@ from .foot_points import shown_kernel
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
-SAMPLES = 10
+SAMPLES = 16
 """At so many moments of its swing it is told where a foot will be."""
 SOONEST = 0.06
 """A way takes at least this long to its end [s]."""
 QUICKEST = 0.035
-"""A foot gives way in no less than this [s]."""
-WIDTH = 0.09
+"""A foot gives way in no less than this [s] …"""
+HARDEST = 150.0
+"""… and is pushed aside no harder than this [m/s²]."""
+WIDTH = 0.095
 """The room that is asked for between the centre lines of two feet side by side [m]; recorded walks have 0.07."""
 SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m]."""
@@ -65,7 +67,9 @@ def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, dt
     push = np.empty(2)
     _give_way(m, body, foot, ahead, speed_x + rate[0], speed_z + rate[1], height, tops, floor, push)
     aside, aside_rate = m.aside[foot], m.aside_rate[foot]
+    share = min(HARDEST / (math.hypot(push[0], push[1]) + 1e-9), 1.0)
     for i in range(2):
+        push[i] *= share
         aside[i] += dt * (aside_rate[i] + 0.5 * dt * push[i])
         aside_rate[i] += dt * push[i]
 
