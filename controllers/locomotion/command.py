@@ -23,7 +23,7 @@ PUSHES = (1.0, 0.7)
 """The share of their push that legs have on average, since they bear more and less, walking and running."""
 LEFT_OVER = 0.4
 """Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
-GRAVITY, SPARE = 9.81, 0.15
+GRAVITY, SPARE = 9.81, 0.0
 """Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
 QUICKENS = 0.06
 """Who stops comes to step as fast as he can with this half-life [s]."""

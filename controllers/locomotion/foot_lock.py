@@ -33,12 +33,12 @@ comes to stand, so that it does not creep in, and early as it leaves, walking an
 back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
-GRIP_RATE = 35.0
+GRIP_RATE = 30.0
 """How fast a grip may change [1/s]."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
-STEEPLY, FREED = 2.0, 0.015
-"""A point that leaves its place is lifted by this share of how far it got, up to the second [m]."""
+STEEPLY, FREED = 2.5, 0.02
+"""A point that leaves its place is lifted by so many times as far as it got, less and less and up to the second [m]."""
 HELD_AGAIN = 0.4
 """Over so much of a swing's time after it came down a point is still held, not yet about to leave."""
 LAND_HALFLIFE = 0.03
@@ -234,7 +234,7 @@ def _off_the_floor(m, k, foot, x, z):
         m.stood[k, 0], m.stood[k, 1] = x, z
         return 0.0
     progress = swing_progress(m, foot)
-    over = STEEPLY * min(math.hypot(x - m.stood[k, 0], z - m.stood[k, 1]), FREED)
+    over = FREED * (1.0 - math.exp(-STEEPLY / FREED * math.hypot(x - m.stood[k, 0], z - m.stood[k, 1])))
     return over * min(max(2.0 - 2.0 * progress, (progress - 1.0) / HELD_AGAIN, 0.0), 1.0)
 
 

@@ -28,7 +28,7 @@ QUICKEST = 0.035
 """A foot gives way in no less than this [s] …"""
 HARDEST = 150.0
 """… and is pushed aside no harder than this [m/s²]."""
-WIDTH = 0.095
+WIDTH = 0.09
 """The room that is asked for between the centre lines of two feet side by side [m]; recorded walks have 0.07."""
 SOFTNESS = 0.015
 """A foot begins to give way about this much before it comes too near [m]."""
