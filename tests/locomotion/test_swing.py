@@ -84,7 +84,7 @@ def test_in_steady_walks_the_way_of_the_blend_s_foot_is_foretold(locomotion):
         when = shares[n, foot, k] * until[n, foot] * FPS
         first = int(when)
         between = places[first, n] + (when - first) * (places[first + 1, n] - places[first, n])
-        off.append(np.abs(way[n, foot, k][:, [0, 2]] - between[2 * foot:2 * foot + 2]).max())
+        off.append(np.abs(way[n, foot, k, :2][:, [0, 2]] - between[2 * foot:2 * foot + 2]).max())
     assert len(off) > 10 and max(off) < 0.08 and np.median(off) < 0.03
 
 
