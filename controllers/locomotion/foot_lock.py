@@ -33,12 +33,12 @@ comes to stand, so that it does not creep in, and early as it leaves, walking an
 back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
-GRIP_RATE = 30.0
-"""How fast a grip may change [1/s]."""
+GRIP_RATE = 30.0, 25.0
+"""How fast a grip may change [1/s]: on a floor; and where things stand about, since a foot that stops sooner ends in a riser."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
-STEEPLY, FREED = 2.5, 0.02
-"""A point that leaves its place is lifted by so many times as far as it got, less and less and up to the second [m]."""
+STEEPLY, FREED = (2.5, 1.2), 0.02
+"""A point that leaves its place, walking and running, is lifted by so many times as far as it got, less and less and up to the second [m]."""
 HELD_AGAIN = 0.4
 """Over so much of a swing's time after it came down a point is still held, not yet about to leave."""
 LAND_HALFLIFE = 0.03
@@ -80,7 +80,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
-        take_hold(m, k, legs.height, dt)
+        take_hold(m, k, legs.height, GRIP_RATE[1 if tops.shape[0] > 0 else 0] * dt, dt)
     for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
@@ -125,8 +125,9 @@ def _lacks(hip, ankle, reach):
 
 
 @kernel
-def take_hold(m, k, height, dt):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low."""
+def take_hold(m, k, height, step, dt):
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. step: how far a
+    grip changes at most."""
     wanted = 1.0
     if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
@@ -142,7 +143,6 @@ def take_hold(m, k, height, dt):
         wanted = m.grip[k]
     if k % 2 and wanted > m.grip[k] and m.row_rate[LABELS_AT + k] < LEAVES and m.lent[k // 2] > LENT:
         wanted = m.grip[k]
-    step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
     below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
@@ -234,7 +234,7 @@ def _off_the_floor(m, k, foot, x, z):
         m.stood[k, 0], m.stood[k, 1] = x, z
         return 0.0
     progress = swing_progress(m, foot)
-    over = FREED * (1.0 - math.exp(-STEEPLY / FREED * math.hypot(x - m.stood[k, 0], z - m.stood[k, 1])))
+    over = FREED * (1.0 - math.exp(-STEEPLY[m.family] / FREED * math.hypot(x - m.stood[k, 0], z - m.stood[k, 1])))
     return over * min(max(2.0 - 2.0 * progress, (progress - 1.0) / HELD_AGAIN, 0.0), 1.0)
 
 
