@@ -3,8 +3,8 @@
 What is shown of it is the blend's foot and an offset, which goes to that of its foothold by the smoothest way that there
 is: minimum jerk, Flash and Hogan 1985, made anew in every step from the offset's place, speed and acceleration. Blends of
 turns and diagonals bring it nearer to the other foot than any recorded step, so that it gives way, early, since it is foretold
-where it will pass. How far it must go aside is told in both feet's own frames: smooth in their places, so
-that a foot glides along as by a wall.
+where both will be: by the least acceleration that takes it past the other foot, and past walls, and back as it lands. How far it must go aside is told in both
+feet's own frames: smooth in their places, so that a foot glides along as by a wall.
 """
 
 from __future__ import annotations
