@@ -34,7 +34,7 @@ back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
 GRIP_RATE = 30.0, 25.0
-"""How fast a grip may change [1/s]: on a floor; and where things stand about, since a foot that stops sooner ends in a riser."""
+"""How fast a grip may change [1/s]: where both feet are as high; and on stairs, since a foot that stops sooner ends in a riser."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 STEEPLY, FREED = (2.5, 1.2), 0.02
@@ -80,7 +80,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
-        take_hold(m, k, legs.height, GRIP_RATE[1 if tops.shape[0] > 0 else 0] * dt, dt)
+        take_hold(m, k, legs.height, GRIP_RATE[0 if m.base[0] == m.base[1] else 1] * dt, dt)
     for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
