@@ -12,7 +12,8 @@ from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command
 from .control_space import SCALE
 from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
-from .foothold import plan_footholds, room_to_plan, stride
+from .foothold import plan_footholds, stride
+from .foretold_way import room_to_plan
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
 from .halt import heed_halt

@@ -1,10 +1,9 @@
 """The way of a foot that swings: from where it is to where it comes down, past the other foot.
 
 What is shown of it is the blend's foot and an offset, which goes to that of its foothold by the smoothest way that there
-is: minimum jerk, Flash and Hogan 1985, made anew in every step from the offset's place, speed and acceleration. Blends of
+is (`minimum_jerk`), made anew in every step from the offset's place, speed and acceleration. Blends of
 turns and diagonals bring it nearer to the other foot than any recorded step, so that it gives way, early, since it is foretold
-where both will be: by the least acceleration that takes it past the other foot, and past walls, and back as it lands. How far it must go aside is told in both
-feet's own frames: smooth in their places, so that a foot glides along as by a wall.
+where both will be (`foretold_way`): by the least acceleration that takes it past the other foot, and past walls, and back as it lands.
 """
 
 from __future__ import annotations
@@ -16,7 +15,8 @@ import numpy as np
 from ..compiled import kernel
 from .beside_walls import out_of_walls
 from .cycles import EVENTS
-from .foot_points import shown_kernel
+from .foot_lines import lay_toe, need_of_room, outline_kernel, own_side, standing_line, with_toe
+from .minimum_jerk import smooth, smoothest
 
 SWING = (float(EVENTS["walk"][1]), float(EVENTS["run"][3]))
 """The share of the cycle for which a foot swings, walking and running: from its toe-off to its strike."""
@@ -28,18 +28,6 @@ QUICKEST = 0.035
 """A foot gives way in no less than this [s] …"""
 HARDEST = 150.0
 """… and is pushed aside no harder than this [m/s²]."""
-WIDTH = 0.09
-"""The room that is asked for between the centre lines of two feet side by side [m]; recorded walks have 0.07."""
-SOFTNESS = 0.015
-"""A foot begins to give way about this much before it comes too near [m]."""
-NONE = 5.0
-"""… and what is farther by so many times that needs none."""
-FADE = 0.1
-"""A foot on the other's side is called back the less the farther it is before the other's heel or beyond its toes, up to this length [m]."""
-ASTRAY = 0.4
-"""A foot this far on the other's side is not called back [m], from half of it on less and less."""
-STEEP = 0.08
-"""A foot that points down so steeply that its line is shorter than this from above [m] has no sides."""
 LOW, HIGH = 0.25, 0.45
 """A foot that swings higher than this above the floor passes freely, the more the higher [m]."""
 
@@ -155,7 +143,7 @@ def line_ahead(m, foot, ahead, k, height, here):
     here[1, 0], here[1, 1] = ball[0] + offset[0], ball[2] + offset[1]
     here[0, 0], here[0, 1] = here[1, 0] + c * x + s * z, here[1, 1] + c * z - s * x
     x, z = toe[0] - ball[0], toe[2] - ball[2]
-    _lay_toe(m, foot, c * x + s * z, toe[1] - ball[1], c * z - s * x, ball[1] - height, here)
+    lay_toe(m, foot, c * x + s * z, toe[1] - ball[1], c * z - s * x, ball[1] - height, here)
 
 
 @kernel
@@ -171,19 +159,6 @@ def swept_line(m, body, foot, ahead, goes, share, height, here):
             goal = m.coming[foot, k, i] + m.land[foot, i]
             here[k, i] = goal + smoothest(here[k, i] - goal, goes[2 * foot + k, i] + m.offset_rate[foot, i], 0.0, max(ahead.until[foot], SOONEST), share, 0)
     with_toe(body, here)
-
-
-@kernel
-def smoothest(x, v, a, whole, s, order):
-    """The smoothest way from place x, speed v and acceleration a to rest at 0 in `whole` seconds, after the share s of that
-    time: its place (order 0), speed (1) or acceleration (2)."""
-    v, a = v * whole, 0.5 * a * whole * whole
-    p, q, r = -10.0 * x - 6.0 * v - 3.0 * a, 15.0 * x + 8.0 * v + 3.0 * a, -6.0 * x - 3.0 * v - a
-    if order == 0:
-        return x + s * (v + s * (a + s * (p + s * (q + s * r))))
-    if order == 1:
-        return (v + s * (2.0 * a + s * (3.0 * p + s * (4.0 * q + s * 5.0 * r)))) / whole
-    return (2.0 * a + s * (6.0 * p + s * (12.0 * q + s * 20.0 * r))) / (whole * whole)
 
 
 @kernel
@@ -206,105 +181,3 @@ def other_line(m, body, foot, out):
         x, z = out[i, 0], out[i, 1]
         out[i, 0], out[i, 1] = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z
     return True
-
-
-@kernel
-def own_side(there, here, side, out):
-    """Write into `out` (2,) which way x, z a foot's own side is (1 left, −1 right), across the lines (3, 2) of both."""
-    x = there[1, 0] - there[0, 0] + here[1, 0] - here[0, 0]
-    z = there[1, 1] - there[0, 1] + here[1, 1] - here[0, 1]
-    size = math.sqrt(x * x + z * z) + 1e-9
-    out[0], out[1] = side * z / size, -side * x / size
-
-
-@kernel
-def need_of_room(there, here, side):
-    """How far [m] a foot with centre line `here` (3, 2) must still go to that side (1 left, −1 right) of one with the line `there`."""
-    need = 0.0
-    for i in range(3):
-        need = max(need, _room(there, here[i], side), _room(here, there[i], -side))
-    return need
-
-
-@kernel
-def away_kernel(there, here, out):
-    """Write into `out` (2,) the shortest way x, z by which a foot with centre line `here` (3, 2) comes no nearer than WIDTH to one
-    with the line `there`."""
-    least = 1e9
-    for k in range(4):
-        i = 2 * (k // 2)
-        point, line, sign = (here[i], there, 1.0) if k % 2 == 0 else (there[i], here, -1.0)
-        x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
-        dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
-        share = min(max((dx * x + dz * z) / (x * x + z * z + 1e-12), 0.0), 1.0)
-        dx, dz = sign * (dx - share * x), sign * (dz - share * z)
-        far = math.sqrt(dx * dx + dz * dz) + 1e-9
-        if far < least:
-            least = far
-            room = SOFTNESS * math.log1p(math.exp((WIDTH - far) / SOFTNESS)) / far
-            out[0], out[1] = room * dx, room * dz
-
-
-@kernel
-def outline_kernel(m, foot, ahead, height, out):
-    """A swinging foot's centre line as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
-    shown_kernel(m, 2 * foot, out[0])
-    shown_kernel(m, 2 * foot + 1, out[1])
-    toe, c, s = ahead.toe[foot], math.cos(m.offset[foot, 2]), math.sin(m.offset[foot, 2])
-    _lay_toe(m, foot, c * toe[0] + s * toe[2], toe[1], c * toe[2] - s * toe[0], m.points[2 * foot + 1, 1] - height, out)
-
-
-@kernel
-def _lay_toe(m, foot, x, y, z, high, line):
-    """Add the toe's end to a centre line (3, 2) of which heel and ball are known. x, y, z: from the blend's ball to it; it is bent up about the foot's lateral axis where
-    it would be lower than the foot is lifted (`foot_lock`), whose ball is so `high` [m] over where it rests."""
-    least = -max(high - m.lift[foot], 0.0)
-    if y < least:
-        fx, fz = line[1, 0] - line[0, 0], line[1, 1] - line[0, 1]
-        far = math.sqrt(fx * fx + fz * fz) + 1e-9
-        fx, fz = fx / far, fz / far
-        across = x * fz - z * fx
-        along = math.sqrt(max(x * x + y * y + z * z - across * across - least * least, 0.0))
-        x, z = along * fx + across * fz, along * fz - across * fx
-    line[2, 0], line[2, 1] = line[1, 0] + x, line[1, 1] + z
-
-
-@kernel
-def standing_line(m, body, foot, out):
-    """The centre line of a foot whose toes lie on the floor, as it is shown: heel, ball and toe's end (3, 2) in the ground frame."""
-    shown_kernel(m, 2 * foot, out[0])
-    shown_kernel(m, 2 * foot + 1, out[1])
-    with_toe(body, out)
-
-
-@kernel
-def with_toe(body, out):
-    """Add the toe's end to a centre line (3, 2) of which heel and ball are known."""
-    x, z = out[1, 0] - out[0, 0], out[1, 1] - out[0, 1]
-    share = body.toe_end[2] / max(math.sqrt(x * x + z * z), STEEP)
-    out[2, 0], out[2, 1] = out[1, 0] + share * x, out[1, 1] + share * z
-
-
-@kernel
-def _room(line, point, side):
-    """How far [m] a point (2,) must still go to that side (1 left, −1 right) of a foot's line (3, 2): until it is WIDTH from every place of it."""
-    x, z = line[2, 0] - line[0, 0], line[2, 1] - line[0, 1]
-    length = math.sqrt(x * x + z * z) + 1e-9
-    x, z = x / length, z / length
-    dx, dz = point[0] - line[0, 0], point[1] - line[0, 1]
-    along, apart = dx * x + dz * z, side * (dx * z - dz * x)
-    beyond = max(-along, along - length, 0.0)
-    if apart > WIDTH + NONE * SOFTNESS or beyond > max(1.5 * WIDTH, FADE):
-        return 0.0
-    wide = math.sqrt(max(WIDTH * WIDTH - beyond * beyond, 0.0))
-    room = SOFTNESS * math.log1p(math.exp((wide - max(apart, 0.0)) / SOFTNESS)) * smooth(3.0 - 2.0 * beyond / WIDTH)
-    if apart < 0.0:  # a foot that is far on the other side stays there
-        room = (room - apart * smooth(1.0 - beyond / FADE)) * smooth((ASTRAY + apart) / (0.5 * ASTRAY))
-    return smooth(length / STEEP - 1.0) * room
-
-
-@kernel
-def smooth(share):
-    """From 0 to 1, and level at both ends, as a share does; what is beyond them stays there."""
-    share = min(max(share, 0.0), 1.0)
-    return share * share * (3.0 - 2.0 * share)

@@ -15,7 +15,8 @@ from ..compiled import kernel
 from ..navigation.passing import STEP
 from .foot_points import shown_kernel
 from .memory import WALK
-from .swing import SAMPLES, line_ahead, smooth, swept_line
+from .minimum_jerk import smooth
+from .swing import SAMPLES, line_ahead, swept_line
 from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, under_kernel
 

@@ -6,8 +6,10 @@ from hypothesis import given, strategies as st
 
 from gambol.controllers.body.contact import feet_apart
 from gambol.controllers.compiled import kernel
-from gambol.controllers.locomotion.foothold import plan_footholds, room_to_plan
-from gambol.controllers.locomotion.swing import _reach, smoothest
+from gambol.controllers.locomotion.foothold import plan_footholds
+from gambol.controllers.locomotion.foretold_way import room_to_plan
+from gambol.controllers.locomotion.minimum_jerk import smoothest
+from gambol.controllers.locomotion.swing import _reach
 from playing import FPS, hold, play
 
 PLACE, SPEED, PUSH = st.floats(-0.5, 0.5), st.floats(-2, 2), st.floats(-20, 20)
