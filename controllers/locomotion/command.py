@@ -25,9 +25,9 @@ LEFT_OVER = 0.4
 """Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
 GRAVITY, SPARE = 9.81, 0.15
 """Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare; …"""
-FRICTION, TOGETHER, USUAL = 0.5, 8.0, 4.0
-"""… and no harder than leaves what the gait itself pushes the same way and theirs together, walking, below so much of what they bear, running below the second [m/s²]: of a person, who
-pushes by the third at most [m/s²]; who is stronger than that may do as much more. Who walks and stops slows down as his end is planned."""
+TOGETHER, USUAL = (5.5, 8.0), 4.0
+"""… and no harder than leaves what the gait itself pushes the same way and theirs together below these, walking and running [m/s²]: of a person, who pushes by the second at most [m/s²];
+who is stronger may do as much more."""
 QUICKENS = 0.06
 """Who stops comes to step as fast as he can with this half-life [s]."""
 ON_SPOT = 0.5
@@ -120,13 +120,10 @@ def _push(m, table, asked, most, dt, own):
     """The share (0 … 1) of the `most` that they push [m/s²] with which legs lead the command to what is asked (3,), halfway through a step: by what they bear, and how the gait itself
     speeds up and slows down meanwhile. own: (3,) scratch."""
     _accelerations(m, table, dt, own)
-    load = 1.0 + own[1] / GRAVITY
-    if m.stop > 0.0:
-        return min(max(load + SPARE, 0.0), 1.0)
     ahead, aside = asked[0] - m.command[0], asked[2] - m.command[2]
     along = (ahead * own[2] + aside * own[0]) / max(math.hypot(ahead, aside), 0.1)
-    room = (FRICTION * GRAVITY * load if m.family == WALK else TOGETHER) * max(most / USUAL, 1.0) - along
-    return min(max(min(load + SPARE, room / most), 0.0), 1.0)
+    room = TOGETHER[m.family] * max(most / USUAL, 1.0) - along
+    return min(max(min(1.0 + own[1] / GRAVITY + SPARE, room / most), 0.0), 1.0)
 
 
 @kernel
