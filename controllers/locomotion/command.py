@@ -24,10 +24,7 @@ PUSHES = (1.0, 0.7)
 LEFT_OVER = 0.4
 """Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
 GRAVITY, SPARE = 9.81, 0.15
-"""Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare; …"""
-TOGETHER, USUAL = (5.5, 8.0), 4.0
-"""… and no harder than leaves what the gait itself pushes the same way and theirs together below these, walking and running [m/s²]: of a person, who pushes by the second at most [m/s²];
-who is stronger may do as much more."""
+"""Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
 QUICKENS = 0.06
 """Who stops comes to step as fast as he can with this half-life [s]."""
 ON_SPOT = 0.5
@@ -65,7 +62,7 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     push = 1.0
     if not m.settled:  # and not at all while no foot stands
         stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
-        push = _push(m, table, p, most, dt, inner) if stands else 0.0
+        push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) if stands else 0.0
     plan_stop(m, settings, table, stance)
     m.quick += ((quickness(settings) if m.stop > 0.0 else 1.0) - m.quick) * (1.0 - 2.0 ** (-dt / QUICKENS))
     if m.waits:
@@ -116,33 +113,22 @@ def _take_up(command, rate, asked, settings, turning, push, mean, left, steep, d
 
 
 @kernel
-def _push(m, table, asked, most, dt, own):
-    """The share (0 … 1) of the `most` that they push [m/s²] with which legs lead the command to what is asked (3,), halfway through a step: by what they bear, and how the gait itself
-    speeds up and slows down meanwhile. own: (3,) scratch."""
-    _accelerations(m, table, dt, own)
-    ahead, aside = asked[0] - m.command[0], asked[2] - m.command[2]
-    along = (ahead * own[2] + aside * own[0]) / max(math.hypot(ahead, aside), 0.1)
-    room = TOGETHER[m.family] * max(most / USUAL, 1.0) - along
-    return min(max(min(1.0 + own[1] / GRAVITY + SPARE, room / most), 0.0), 1.0)
-
-
-@kernel
-def _accelerations(m, table, dt, out):
-    """How the blend's hips are accelerated (3,) halfway through a step: to the left, up and ahead [m/s²]."""
+def _load(m, table, dt):
+    """What legs bear halfway through a step, in body weights: from how the blend's hips rise and fall."""
     pace = cadence_kernel(m)
     angle = 2.0 * math.pi * (m.phase + 0.5 * dt * pace)
     c1, s1 = math.cos(angle), math.sin(angle)
-    out[0] = out[1] = out[2] = 0.0
+    total = 0.0
     for p in range(table.shape[0]):
-        w = m.weights[p] * (2.0 * math.pi * pace) ** 2
+        w = m.weights[p]
         if w <= 0.0:
             continue
         c, s = c1, s1
         for k in range(1, table.shape[1] - 1, 2):
             order = 0.5 * (k + 1)
-            for i in range(3):
-                out[i] -= w * order * order * (c * table[p, k, HIPS_AT + i] + s * table[p, k + 1, HIPS_AT + i])
+            total -= w * order * order * (c * table[p, k, HIPS_AT + 1] + s * table[p, k + 1, HIPS_AT + 1])
             c, s = c * c1 - s * s1, s * c1 + c * s1
+    return 1.0 + total * (2.0 * math.pi * pace) ** 2 / GRAVITY
 
 
 @kernel

@@ -38,14 +38,6 @@ def test_letting_go_of_the_run_key_throws_nobody_back(locomotion):
         assert np.abs(velocity[-40:, n, 2].mean() - 1.3) < 0.1
 
 
-def test_legs_push_less_while_the_gait_brakes_by_itself(locomotion):
-    """A run brakes as a foot strikes; who pushed as hard then as ever was slowed down by 6.5 m/s² by median, and by 8.1 m/s² as he stopped."""
-    for before, after, most in ((2.8, 1.3, 6.2), (3.0, 0.0, 7.9)):
-        motion, asked = changed(locomotion, (before, 0, 0), (after, 0, 0))
-        acceleration = np.linalg.norm(mass_centre(locomotion, motion)[1][..., [0, 2]], axis=-1)
-        assert np.median([acceleration[frame:, n].max() for n, frame in enumerate(asked)]) < most
-
-
 def test_a_runner_who_stops_does_not_run_backwards(locomotion):
     motion, asked = changed(locomotion, (3.0, 0, 0), (0, 0, 0))
     velocity, _ = mass_centre(locomotion, motion)
