@@ -33,8 +33,8 @@ comes to stand, so that it does not creep in, and early as it leaves, walking an
 back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
-GRIP_RATE = 25.0
-"""How fast a grip may change [1/s]."""
+GRIP_RATE = 30.0, 25.0
+"""How fast a grip may change [1/s]: where both feet are as high; and on stairs, since a foot that stops sooner ends in a riser."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 STEEPLY, FREED = (2.5, 1.2), 0.02
@@ -80,7 +80,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
-        take_hold(m, k, legs.height, dt)
+        take_hold(m, k, legs.height, GRIP_RATE[0 if m.base[0] == m.base[1] else 1] * dt, dt)
     for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
@@ -125,8 +125,9 @@ def _lacks(hip, ankle, reach):
 
 
 @kernel
-def take_hold(m, k, height, dt):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low."""
+def take_hold(m, k, height, step, dt):
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. step: how far a
+    grip changes at most."""
     wanted = 1.0
     if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
@@ -142,7 +143,6 @@ def take_hold(m, k, height, dt):
         wanted = m.grip[k]
     if k % 2 and wanted > m.grip[k] and m.row_rate[LABELS_AT + k] < LEAVES and m.lent[k // 2] > LENT:
         wanted = m.grip[k]
-    step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
     below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
