@@ -9,9 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
-from .motion import HEEL, SAME, Path, Plan, depths, flight_kernel, lifts, spread
+from .motion import HEEL, SAME, STRAIGHTEST, Path, Plan, Pushing, depths, flight_kernel, lifts, spread
 from .prior import BETWEEN, EACH, LEGS
-from .pushing import STRAIGHTEST, Pushing
 
 LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
 """How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""

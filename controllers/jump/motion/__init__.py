@@ -2,26 +2,25 @@
 the flight, the landing, and the fall of who is struck in the air; `plan` is what is played.
 """
 
-from .airborne import GROUND_RATE, HEEL, PLANT, SAME, Airborne
-from .clearing import ROWS as LIFT_ROWS
+from .airborne import HEEL, PLANT, SAME
 from .clearing import depths, lifts, spread
-from .descent import sinking
 from .edges import over_nothing, steps_over
 from .fall import fall, struck
-from .footing import FADE, MOMENT, RUNNERS_HEEL, faded, heels_rise, heels_up, settling, swivels
+from .footing import FADE, faded, settling, swivels
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
 from .grounded import grounded
 from .lying import BONES, FEET, TOUCHES, grounded_poses, places, sole_places
 from .path_estimate import SPINS, Course, Path, path
 from .plan import Plan, between_kernel
+from .pushing import STRAIGHTEST, Pushing
 from .rolling import SPACED as ROLL_SPACED
 from .rolling import rolled, rolls, room, tumbled
 from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "CLEARS", "FADE", "FEET", "FREE", "GROUND_RATE", "HEEL", "LIFT_ROWS", "MOMENT", "PLANT", "ROLL_SPACED", "RUNNERS_HEEL", "SAME", "SPINS", "TOUCHES", "Airborne", "Course", "Path", "Plan", "Push",
-    "between_kernel", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "heels_rise", "heels_up", "lifted", "lifts", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
-    "settling", "sinking", "sole_places", "spread", "steps_over", "struck", "swivels", "tumbled",
+    "BONES", "CLEARS", "FADE", "FEET", "FREE", "HEEL", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STRAIGHTEST",
+    "between_kernel", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "lifted", "lifts", "lowest", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "settling", "sole_places", "spread", "steps_over", "struck", "swivels", "tumbled",
 ]

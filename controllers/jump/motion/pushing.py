@@ -6,10 +6,15 @@ import math
 
 import numpy as np
 
-from .body import Physique, Start, hermite, monotone, standing, turns, vectors
-from .motion import (CLEARS, FADE, FREE, GROUND_RATE, LIFT_ROWS, MOMENT, RUNNERS_HEEL, Airborne, Path, faded, ground_kernel, heels_rise, heels_up, lifted, lowest, settling,
-                     sinking, swivels)
-from .prior import BETWEEN, EACH, LEGS
+from ..body import Physique, Start, hermite, monotone, standing, turns, vectors
+from ..prior import BETWEEN, EACH, LEGS
+from .airborne import GROUND_RATE, Airborne
+from .clearing import ROWS as LIFT_ROWS
+from .descent import sinking
+from .footing import FADE, MOMENT, RUNNERS_HEEL, faded, heels_rise, heels_up, settling, swivels
+from .ground_kernels import FREE, ground_kernel
+from .path_estimate import Path
+from .swinging import CLEARS, lifted, lowest
 
 PUSH_RATE = 240.0
 """Poses a second during the push."""
