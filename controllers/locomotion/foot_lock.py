@@ -81,11 +81,10 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
         take_hold(m, k, legs.height, dt)
-    for foot in range(2):  # both, since who swings passes where the other stands now
+    for foot in range(2):
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
-    for foot in range(2):
-        if m.grip[2 * foot] <= 0.0 and m.grip[2 * foot + 1] <= 0.0:
+        else:
             ball = 2 * foot + 1
             swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
