@@ -162,4 +162,6 @@ def test_who_has_got_up_on_a_platform_sets_his_feet_where_people_stand(somebody,
     assert roots[:, 1].min() < 0.75 and state.active == "locomotion", "he fell, and stands"
     assert np.linalg.norm((feet[-1, 0] - feet[-1, 1])[[0, 2]]) < 0.34
     up = next(n for n in range(len(roots) - 1, 0, -1) if roots[n, 1] < 0.4 + 0.8)
-    assert np.linalg.norm(np.diff(positions[up:], axis=0), axis=-1).max() < 3.0 * DT, "nothing jumps as he sets them there"
+    body = [j for j, name in enumerate(BODY.skeleton.names) if not name.endswith("Hand")]  # who stands idles with his hands, at 3 m/s now and then
+    assert np.linalg.norm(np.diff(positions[up:, body], axis=0), axis=-1).max() < 3.0 * DT, "nothing jumps as he sets them there"
+    assert np.linalg.norm(np.diff(positions[up:], 2, axis=0), axis=-1).max() < 0.03, "nor does a hand"
