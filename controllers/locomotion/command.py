@@ -12,8 +12,8 @@ from .control_space import SCALE
 from .kernel import HIPS_AT, clamp_kernel, inner_kernel
 from .last_stride import come_over, plan_stop, quickness, time_to_stop
 from .memory import RUN, WALK
+from .minimum_jerk import smooth
 from .root_motion import advance, briskness, cadence_kernel
-from .swing import smooth
 from .turning_back import pivots
 
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3

@@ -23,6 +23,7 @@ from .kernel import LABELS_AT
 from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .short_leg import give_way
+from .memory import WALK
 from .swing import SWING, swing_kernel, swing_progress
 from ..navigation.passing import STEP
 from .uneven_ground import RECOVERS, follow_ground, leave_level, lie_kernel, rise_ahead, touch
@@ -33,12 +34,13 @@ comes to stand, so that it does not creep in, and early as it leaves, walking an
 back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m]."""
-GRIP_RATE = 25.0
-"""How fast a grip may change [1/s]."""
+GRIP_RATE = 30.0, 25.0
+"""How fast a grip may change [1/s]: walking, where both feet are as high; and on stairs, where a foot that stops sooner ends in a riser, and running, since who runs pushes only while a foot
+grips."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
-STEEPLY, FREED = 1.0, 0.015
-"""A point that leaves its place is lifted by this share of how far it got, up to the second [m]."""
+STEEPLY, FREED = (2.5, 1.2), 0.02
+"""A point that leaves its place, walking and running, is lifted by so many times as far as it got, less and less and up to the second [m]."""
 HELD_AGAIN = 0.4
 """Over so much of a swing's time after it came down a point is still held, not yet about to leave."""
 LAND_HALFLIFE = 0.03
@@ -75,16 +77,17 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     m.most = m.stairs = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
     if tops.shape[0] > 0:
-        follow_ground(m, body, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
+        follow_ground(m, body, legs.height, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
     else:
         leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     for k in range(4):
-        take_hold(m, k, legs.height, dt)
-    for foot in range(2):
+        take_hold(m, k, legs.height, GRIP_RATE[0 if m.family == WALK and m.base[0] == m.base[1] else 1] * dt, dt)
+    for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
-        else:
+    for foot in range(2):
+        if m.grip[2 * foot] <= 0.0 and m.grip[2 * foot + 1] <= 0.0:
             ball = 2 * foot + 1
             swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
@@ -124,8 +127,9 @@ def _lacks(hip, ankle, reach):
 
 
 @kernel
-def take_hold(m, k, height, dt):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low."""
+def take_hold(m, k, height, step, dt):
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. step: how far a
+    grip changes at most."""
     wanted = 1.0
     if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
@@ -141,7 +145,6 @@ def take_hold(m, k, height, dt):
         wanted = m.grip[k]
     if k % 2 and wanted > m.grip[k] and m.row_rate[LABELS_AT + k] < LEAVES and m.lent[k // 2] > LENT:
         wanted = m.grip[k]
-    step = GRIP_RATE * dt
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
     below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
@@ -233,7 +236,7 @@ def _off_the_floor(m, k, foot, x, z):
         m.stood[k, 0], m.stood[k, 1] = x, z
         return 0.0
     progress = swing_progress(m, foot)
-    over = STEEPLY * min(math.hypot(x - m.stood[k, 0], z - m.stood[k, 1]), FREED)
+    over = FREED * (1.0 - math.exp(-STEEPLY[m.family] / FREED * math.hypot(x - m.stood[k, 0], z - m.stood[k, 1])))
     return over * min(max(2.0 - 2.0 * progress, (progress - 1.0) / HELD_AGAIN, 0.0), 1.0)
 
 

@@ -21,6 +21,17 @@ def foot_points(body, legs, positions, orientations, out):
 
 
 @kernel
+def toe_ends(body, legs, positions, orientations, out):
+    """From both balls of a pose to their toes' ends (2, 3), in its own frame."""
+    for foot in range(2):
+        t = legs.hip[foot] + 3
+        for i in range(3):
+            out[foot, i] = 0.0
+            for k in range(3):
+                out[foot, i] += orientations[t, i, k] * body.toe_end[k]
+
+
+@kernel
 def on_floor(m, out):
     """Where the blend's contact points are along the floor (4, 2): x, z in the world."""
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])

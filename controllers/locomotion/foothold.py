@@ -8,21 +8,20 @@ down beside it. The swing is the blend's, and leads smoothly to that place.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
 from .command import look_ahead, reached
 from .control_space import SCALE
+from .foot_lines import away_kernel, need_of_room, own_side, with_toe
 from .foot_points import foot_points
-from .kernel import COLUMNS, HIPS_AT, LANES, SCRATCH, pose_kernel, series_kernel
+from .foretold_way import foretell_way
+from .kernel import HIPS_AT, LANES, pose_kernel, series_kernel
 from .last_stride import bring_together, step_first
-from .root_motion import advance, locate, short_way, time_ahead
+from .root_motion import locate, time_ahead
 from .turning_back import pivots
 from .turning_step import END as TURNED, turn_ahead, turned_row
-from .swing import FADE, SAMPLES, SWING, away_kernel, need_of_room, other_line, own_side, with_toe
+from .swing import SWING, other_line
 
 BESIDE = 0.25
 """The most that a foot goes to its own side of where the blend has it [m]."""
@@ -33,39 +32,6 @@ REPLANS = 20.0
 so takes a push of three times as much [m/s²]."""
 SOONEST = 0.002
 """Nothing is looked up nearer than this [s]."""
-
-
-class Ahead(NamedTuple):
-    """Room for what is looked up of the time to come.
-
-    until: (2,) when each foot that swings comes down [s], 0 for one that should be down. way: (2, SAMPLES, 2, 3) where the blend's heels and balls
-    will be, x and z in the world and y over the floor, after `shares` (2, SAMPLES) of that time, 0 or less where that is
-    past or nothing is planned.
-    """
-
-    row: np.ndarray
-    weights: np.ndarray
-    local: np.ndarray
-    positions: np.ndarray
-    orientations: np.ndarray
-    scratch: np.ndarray
-    points: np.ndarray
-    barycentric: np.ndarray
-    vectors: np.ndarray
-    lines: np.ndarray
-    until: np.ndarray
-    shares: np.ndarray
-    way: np.ndarray
-    now: np.ndarray
-
-
-@kernel
-def room_to_plan(width, joints):
-    """That room, for a library as wide and a body of as many joints."""
-    return Ahead(np.empty(COLUMNS, np.float32), np.empty(width, np.float32), np.empty((joints, 3, 3), np.float32),
-                 np.empty((joints, 3), np.float32), np.empty((joints, 3, 3), np.float32), np.empty(SCRATCH, np.float32),
-                 np.empty((4, 3), np.float32), np.empty(4), np.empty((4, 3)), np.empty((2, 3, 2)),
-                 np.empty(2), np.empty((2, SAMPLES)), np.empty((2, SAMPLES, 2, 3)), np.empty((3, 2, 3)))
 
 
 @kernel
@@ -89,7 +55,7 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt
             later = max(ahead.until[foot], SOONEST)
             ahead.until[foot] = later
             _foresee(m, foot, later, settings, space, table, body, legs, ahead)
-            _foretell(m, foot, left, legs.paths, ahead)
+            foretell_way(m, body, foot, left, legs, ahead)
         x, z = m.land[foot, 0], m.land[foot, 1]
         m.land[foot, 0] = m.land[foot, 1] = 0.0
         bring_together(m, foot, legs.stance)
@@ -148,63 +114,6 @@ def _fading(m, hip, later, row):
 
 
 @kernel
-def _foretell(m, foot, left, paths, ahead):
-    """Write into ahead.way where the blend's foot will be until it comes down, `left` further in phase, and into ahead.shares when.
-
-    As the paths of the primitives have it at weights and along a way that lead evenly from now to then, and off it by as much as
-    it is now and will be then.
-    """
-    ground, now, end, at = ahead.vectors[0], ahead.now[0], ahead.now[1], ahead.now[2]
-    strike, whole = SWING[m.family] + 0.5 * foot, ahead.until[foot]
-    _along_paths(m.weights, ahead.weights, 0.0, paths, strike - left, foot, now)
-    _along_paths(m.weights, ahead.weights, 1.0, paths, strike, foot, end)
-    for k in range(2):
-        for i in range(3):
-            now[k, i] = m.points[2 * foot + k, i] - now[k, i]
-            end[k, i] = ahead.points[2 * foot + k, i] - end[k, i]
-    goes = ahead.vectors[1]  # the ground frame as it moves now, for all that time
-    for i in range(3):
-        goes[i] = m.ground[i]
-    advance(goes, m.velocity[0], m.velocity[1], m.velocity[2], whole)
-    turn, turned = short_way(goes[2] - m.ground[2]), short_way(ground[2] - goes[2])
-    for k in range(SAMPLES):
-        share = 1.0 - SWING[m.family] * (1.0 - (k + 0.5) / SAMPLES) / max(left, 1e-6)
-        ahead.shares[foot, k] = share
-        if share <= 0.0:
-            continue
-        _along_paths(m.weights, ahead.weights, share, paths, strike - (1.0 - share) * left, foot, at)
-        heading = m.ground[2] + share * turn + share * share * turned
-        x = m.ground[0] + share * (goes[0] - m.ground[0]) + share * share * (ground[0] - goes[0])
-        z = m.ground[1] + share * (goes[1] - m.ground[1]) + share * share * (ground[1] - goes[1])
-        c, s = math.cos(heading), math.sin(heading)
-        for p in range(2):
-            for i in range(3):
-                at[p, i] += now[p, i] + share * (end[p, i] - now[p, i])
-            ahead.way[foot, k, p, 0] = x + c * at[p, 0] + s * at[p, 2]
-            ahead.way[foot, k, p, 1] = at[p, 1]
-            ahead.way[foot, k, p, 2] = z - s * at[p, 0] + c * at[p, 2]
-
-
-@kernel
-def _along_paths(first, last, share, paths, phase, foot, out):
-    """Write where heel and ball (2, 3) of a foot are at a phase on the paths (P, PHASES, 4, 3) of primitives, at weights that have
-    gone that share of the way from the first to the last."""
-    at = (phase % 1.0) * paths.shape[1]
-    one = int(at) % paths.shape[1]
-    two, part = (one + 1) % paths.shape[1], at - int(at)
-    for k in range(2):
-        for i in range(3):
-            out[k, i] = 0.0
-    for p in range(paths.shape[0]):
-        w = first[p] + share * (last[p] - first[p])
-        if w > 0.0:
-            for k in range(2):
-                for i in range(3):
-                    a, b = paths[p, one, 2 * foot + k, i], paths[p, two, 2 * foot + k, i]
-                    out[k, i] += w * (a + part * (b - a))
-
-
-@kernel
 def _beside(m, body, foot, ahead, sides):
     """Add to m.land how far aside (2,) of where it is to come down a foot is set, so that it is a shoe's width from the other; and,
     where feet have sides, on its own."""
@@ -216,7 +125,7 @@ def _beside(m, body, foot, ahead, sides):
     with_toe(body, here)
     side = 1.0 - 2.0 * foot
     own_side(there, here, side, away)
-    need = min(need_of_room(there, here, side, FADE), BESIDE) if sides else 0.0
+    need = min(need_of_room(there, here, side), BESIDE) if sides else 0.0
     away[0], away[1] = need * away[0], need * away[1]
     for _ in range(1 + TRIES):
         for i in range(3):

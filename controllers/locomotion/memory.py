@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, SupportsFloat
 
 import numpy as np
 
-from ..body import compose, contact_height, contact_points, exp, forward_kinematics, relative
+from ..body import compose, contact_height, contact_points, end_positions, exp, forward_kinematics, relative
 from .fourier import evaluate
 from .kernel import COLUMNS
 from .library import HIPS, Library
@@ -73,8 +73,8 @@ def plain(settings: Settings) -> Settings:
 class Legs(NamedTuple):
     """What the step must know of body and library: joint numbers (hip: (2,), left and right;
     head: (2,), neck and head; shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive, and
-    where its contact points are along the floor (4, 2), x, z in the ground frame [m]; and where those of every primitive are at
-    phases of its cycle, paths (P, PATH, 4, 3), likewise."""
+    where its contact points are along the floor (4, 2), x, z in the ground frame [m]; and where heel, ball and toe's end of both feet of every
+    primitive are at phases of its cycle, paths (P, PATH, 6, 3), likewise."""
 
     hip: np.ndarray
     chest: int
@@ -102,11 +102,14 @@ def _stance(library: Library) -> np.ndarray:
 
 
 def _paths(library: Library) -> np.ndarray:
-    """Where heels and balls of every primitive are at PATH phases of its cycle (P, PATH, 4, 3) [m], in the ground frame."""
+    """Where heels, balls and toes' ends of every primitive are at PATH phases of its cycle (P, PATH, 6, 3) [m], left foot first, in the ground frame."""
     rows = evaluate(np.asarray(library.coefficients, float), np.arange(PATH) / PATH)
     local = library.reference @ exp(rows[..., :HIPS].reshape(*rows.shape[:2], -1, 3))
-    points = contact_points(library.skeleton, *forward_kinematics(library.skeleton, rows[..., HIPS:HIPS + 3], local))
-    return np.ascontiguousarray(points, np.float32)
+    placed = forward_kinematics(library.skeleton, rows[..., HIPS:HIPS + 3], local)
+    points, ends = contact_points(library.skeleton, *placed), end_positions(library.skeleton, *placed)
+    at = library.skeleton.end_index
+    feet = [np.stack([points[..., 2 * n, :], points[..., 2 * n + 1, :], ends[..., at[side + "Toe"], :]], -2) for n, side in enumerate(("Left", "Right"))]
+    return np.ascontiguousarray(np.concatenate(feet, -2), np.float32)
 
 
 def walks(memory: Any) -> bool:

@@ -12,13 +12,14 @@ from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command
 from .control_space import SCALE
 from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
-from .foothold import plan_footholds, room_to_plan, stride
+from .foothold import plan_footholds, stride
+from .foretold_way import room_to_plan
 from .gait_change import change_kernel
 from .gaze import gaze_kernel
 from .halt import heed_halt
 from .idle import add_idle, idle_kernel
 from .last_stride import until_together
-from .foot_points import foot_points, on_floor
+from .foot_points import foot_points, on_floor, toe_ends
 from .kernel import ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, series_kernel
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, cadence_kernel, follow_command, locate, tempo_kernel, to_world_kernel
@@ -92,6 +93,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         foot_points(body, legs, positions, orientations, m.points)
         stride(m, m.points, positions)
         if settings.footing:
+            toe_ends(body, legs, positions, orientations, ahead.toe)
             plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead, tops.shape[0] == 0, dt)
             place_feet(m, body, legs, ahead, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
         else:

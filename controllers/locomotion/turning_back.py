@@ -13,8 +13,8 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .first_stride import shift_left
 from .memory import WALK
+from .minimum_jerk import smooth
 from .root_motion import cadence_kernel, short_way
-from .swing import smooth
 from .turning_step import BEFORE, GOES, enter_turn
 
 BACK = 2.75

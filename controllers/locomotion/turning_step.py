@@ -18,9 +18,9 @@ from .cycles import EVENTS
 from .first_stride import shift_left
 from .kernel import COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, series_kernel
 from .library import Library
+from .minimum_jerk import smooth
 from .root_motion import SHORTEST, advance, short_way
 from .spline import spline_kernel
-from .swing import smooth
 
 WALKS, SPOT = 0, 1
 """Kinds of turns: into a walk, and on the spot."""

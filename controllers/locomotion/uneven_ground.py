@@ -15,7 +15,8 @@ from ..compiled import kernel
 from ..navigation.passing import STEP
 from .foot_points import shown_kernel
 from .memory import WALK
-from .swing import SAMPLES, line_ahead, smooth, swept_line
+from .minimum_jerk import smooth
+from .swing import SAMPLES, line_ahead, swept_line
 from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, under_kernel
 
@@ -47,7 +48,7 @@ TOUCHES, VOID = 0.035, 0.25
 
 
 @kernel
-def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
+def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
@@ -90,7 +91,7 @@ def follow_ground(m, body, ahead, goes, tops, floor, swing, dt):
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
-        over = _between(m, body, ahead, goes, tops, floor, foot, max(under[0], m.left[foot]), line)
+        over = _between(m, body, height, ahead, goes, tops, floor, foot, max(under[0], m.left[foot]), line)
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
         bearing = path
@@ -144,7 +145,7 @@ def _loose(m, tops, floor, foot, place, dt):
 
 
 @kernel
-def _between(m, body, ahead, goes, tops, floor, foot, highest, line):
+def _between(m, body, height, ahead, goes, tops, floor, foot, highest, line):
     """How high the ground lies at most between where a foot left and where it comes down, and below its way from now on from heel to tip, slopes apart,
     as far as it can be stepped over from `highest`: as far aside as it gives way. goes: (4, 2) how fast the blend's contact points go [m/s]; line: (3, 2) scratch."""
     ground, most = np.empty(3), -1e9
@@ -157,9 +158,9 @@ def _between(m, body, ahead, goes, tops, floor, foot, highest, line):
     for k in range(SAMPLES):
         if m.turn != 0.0 or 0.0 < ahead.shares[foot, k] < 1.0:
             if ahead.shares[foot, k] > 0.0:
-                line_ahead(m, body, foot, ahead, k, line)
+                line_ahead(m, foot, ahead, k, height, line)
             else:
-                swept_line(m, body, foot, goes, ahead.until[foot], (k + 0.5) / SAMPLES, line)
+                swept_line(m, body, foot, ahead, goes, (k + 0.5) / SAMPLES, height, line)
             for i in range(3):
                 line[i, 0] += m.aside[foot, 0] + SOON * m.aside_rate[foot, 0]
                 line[i, 1] += m.aside[foot, 1] + SOON * m.aside_rate[foot, 1]

@@ -6,8 +6,10 @@ from hypothesis import given, strategies as st
 
 from gambol.controllers.body.contact import feet_apart
 from gambol.controllers.compiled import kernel
-from gambol.controllers.locomotion.foothold import plan_footholds, room_to_plan
-from gambol.controllers.locomotion.swing import smoothest
+from gambol.controllers.locomotion.foothold import plan_footholds
+from gambol.controllers.locomotion.foretold_way import room_to_plan
+from gambol.controllers.locomotion.minimum_jerk import smoothest
+from gambol.controllers.locomotion.swing import _reach
 from playing import FPS, hold, play
 
 PLACE, SPEED, PUSH = st.floats(-0.5, 0.5), st.floats(-2, 2), st.floats(-20, 20)
@@ -84,7 +86,7 @@ def test_in_steady_walks_the_way_of_the_blend_s_foot_is_foretold(locomotion):
         when = shares[n, foot, k] * until[n, foot] * FPS
         first = int(when)
         between = places[first, n] + (when - first) * (places[first + 1, n] - places[first, n])
-        off.append(np.abs(way[n, foot, k][:, [0, 2]] - between[2 * foot:2 * foot + 2]).max())
+        off.append(np.abs(way[n, foot, k, :2][:, [0, 2]] - between[2 * foot:2 * foot + 2]).max())
     assert len(off) > 10 and max(off) < 0.08 and np.median(off) < 0.03
 
 
@@ -94,3 +96,23 @@ def _on_floor(memory):
     c, s = np.cos(heading), np.sin(heading)
     aside, ahead = memory["points"][..., 0], memory["points"][..., 2]
     return np.stack([x + c * aside + s * ahead, z - s * aside + c * ahead], -1)
+
+
+@pytest.mark.parametrize("turning", [2.0, -2.0])
+def test_both_feet_keep_as_far_apart_whichever_way_one_turns(locomotion, turning):
+    """The left foot gave way to where the right one had been a step ago: as the blend and the place of a foot part, in a run that turns, that was 3 cm off."""
+    motion = play(locomotion, changing(((2.4, 0, 0), (3.0, -0.4 * turning, 0)), (1.8, turning, 0), 24))
+    assert feet_apart(locomotion.skeleton, motion.positions, motion.orientations)[2 * FPS:].min() > 0.06
+
+
+def test_the_least_push_leads_as_far_in_time():
+    """Falling evenly to nothing, it leads there exactly; where one gets as far anyhow there is none."""
+    place, speed, push, later, dt = np.array([0.01, -0.02]), np.array([0.3, 0.1]), np.array([-4.0, 2.0]), 0.15, 1e-4
+    _reach(place, speed, push, later, 0.6, 0.8, 0.09)
+    before, (x, v) = push.copy(), (place.copy(), speed.copy())
+    for k in range(round(later / dt)):
+        a = push * (1.0 - (k + 0.5) * dt / later)
+        x, v = x + dt * v + 0.5 * dt * dt * a, v + dt * a
+    assert x @ [0.6, 0.8] == pytest.approx(0.09, abs=1e-5)
+    _reach(place, speed, push, later, 0.6, 0.8, 0.08)
+    np.testing.assert_array_equal(push, before)
