@@ -262,7 +262,11 @@ def at_rest(m, legs):
     if m.weights[legs.rest] < 0.98:
         return False
     for foot in range(2):
-        if math.hypot(m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 1]) > (BESIDE + 0.01 if m.waits else CLOSE) or m.lift[foot] > 0.003:
+        x, z = m.offset[foot, 0] + m.aside[foot, 0], m.offset[foot, 1] + m.aside[foot, 1]
+        far = math.hypot(x, z)
+        if m.cramped:  # walls leave them no room there: near to where they were set down
+            far = min(far, math.hypot(x - m.land[foot, 0], z - m.land[foot, 1]))
+        if far > (BESIDE + 0.01 if m.waits else CLOSE) or m.lift[foot] > 0.003:
             return False
     return True
 

@@ -1,6 +1,7 @@
 """Walls hold up who walks or runs at them, whatever he wishes: the last resort, for who wishes well has braked before.
 
-Before a step, what his command has towards a wall is no faster than he can brake hard; after it, what still came too near is led out, feet and all.
+Before a step, what his command has towards a wall is no faster than he can brake hard, and who gets on no more comes to rest; after it, what still came too near
+is led out, feet and all.
 """
 
 from __future__ import annotations
@@ -20,6 +21,9 @@ BACK = 0.3
 """Who is too near to a wall as he walks is led away from it no faster than this [m/s]."""
 GIVES = 0.01
 """So much nearer than that [m] a step may end, and the next one makes up for it."""
+RESTS, CLOSE = 0.15, 0.1
+"""Who would get on more slowly than the first where he wishes to [m/s] stands still in place of treading on the spot; he sets off again only where he could if walls were nearer
+by the second [m]."""
 LEAPT = 1.3
 """What is no higher over the floor than this [m] may be leapt onto: it does not hold up who wants to leap."""
 
@@ -27,12 +31,12 @@ ARMS, HANDS = 0.6, 0.5
 """Who stands has no room for his arms where something is so near to his middle [m] that is higher over the floor than the second [m]."""
 
 
-def held_up(memory: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
+def held_up(memory: np.ndarray, wish: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
     """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap only towards those that nobody leaps onto.
-    Note who stands and has no room for his arms. floors: (N,) [m]."""
+    Take away the wishes (N, 3) that lead nowhere. Note whose feet, and of those who stand whose arms, have no room. floors: (N,) [m]."""
     memory["cramped"] = 0
     if len(walls):
-        hold_kernel(memory, floors, walls)
+        hold_kernel(memory, wish, floors, walls)
 
 
 def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: np.ndarray, root: np.ndarray) -> None:
@@ -48,11 +52,14 @@ def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: n
 
 
 @kernel
-def hold_kernel(memory, floors, walls):
-    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands."""
+def hold_kernel(memory, wish, floors, walls):
+    """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands, and let rest whom walls let get on no more."""
     velocity, rate, out = np.empty(2), np.empty(2), np.empty(3)
     for n in range(memory.shape[0]):
         m = memory[n]
+        if _nowhere(m, wish[n], floors[n], walls, velocity):
+            wish[n, 0] = wish[n, 2] = 0.0
+            m.cramped = 1
         if m.settled:
             for k in range(walls.shape[0]):
                 far = distance(m.ground[0], m.ground[1], walls[k, :6], out)
@@ -73,6 +80,20 @@ def hold_kernel(memory, floors, walls):
             into = min(rate[0] * x + rate[1] * z, 0.0)
             m.rate[0] -= into * (s * x + c * z)
             m.rate[2] -= into * (c * x - s * z)
+
+
+@kernel
+def _nowhere(m, wish, floor, walls, velocity):
+    """Whether walls let nobody get on who wishes (3,) to go on from there. velocity: (2,) scratch."""
+    speed = math.hypot(wish[0], wish[2])
+    if speed <= RESTS:
+        return False
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x, z = c * wish[2] + s * wish[0], c * wish[0] - s * wish[2]
+    velocity[0], velocity[1] = x, z
+    near = NEAR + CLOSE if m.settled else NEAR
+    slowed = slow_kernel(walls, m.ground[0], m.ground[1], floor, m.ground[2], velocity, near, LAG, BRAKE, BACK, LEAPT if m.alert else STEP)
+    return slowed and velocity[0] * x + velocity[1] * z < RESTS * speed
 
 
 @kernel

@@ -165,7 +165,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("turn", "f4"), ("turned", "f4"), ("turn_gain", "f4"), ("turn_haste", "f4"),  # how far it turns in steps of their own, 0 for none; where in its phase that is; over what is fitted; how far (0 … 1) its second step is a runner's
         ("stray", "f8", 2), ("spot", "i4"), ("turns_to", "f8"), ("turn_ends", "f8"), ("left_turn", "i4"), ("glide", "f8", 2), ("backs", "i4"), ("corner", "f4"), ("corner_rate", "f4"),  # whether on the spot; the heading it was told, that it ends with; whether it has just been left; what is left of the walk before it, x, z in the world [m/s]; to which side he turns back who brakes for it, 1 left, -1 right; how far his pose takes a corner
         ("rested", "f4"), ("presence", "f4"), ("presence_rate", "f4"),  # how long it has stood [s], how far its idling shows
-        ("moment", "f4"), ("luck", "u4"), ("alert", "i4"), ("cramped", "i4"),  # where in the recorded idling it is, and what comes next; whether arms have no room for all of it
+        ("moment", "f4"), ("luck", "u4"), ("alert", "i4"), ("cramped", "i4"),  # where in the recorded idling it is, and what comes next; whether walls leave arms or feet no room
         ("looks", "i4"), ("look", "f4", 3),  # whether there is a place to look at, and which
         ("gaze", "f4", 2), ("gaze_rate", "f4", 2),  # how far the head turns and nods
     ], align=True)

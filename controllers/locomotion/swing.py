@@ -82,22 +82,41 @@ def _give_way(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, push)
         later, low = _foretold(m, foot, ahead, k, speed_x, speed_z, height, here)
         if later < 0.0:
             continue
-        later = max(later, QUICKEST)
+        later, x, z = max(later, QUICKEST), 0.0, 0.0
         if passes:
             other = ahead.beside[foot, k] if k >= 0 else there
             need = need_of_room(other, here, side) * smooth((HIGH - low + height) / (HIGH - LOW))
             if need > 0.0:
                 own_side(other, here, side, out)
                 _reach(aside, rate, push, later, out[0], out[1], need)
+                x, z = need * out[0], need * out[1]
         if tops.shape[0] > 0:
-            x = aside[0] + later * (rate[0] + later * push[0] / 3.0)
-            z = aside[1] + later * (rate[1] + later * push[1] / 3.0)
-            for i in range(3):
-                here[i, 0] += x
-                here[i, 1] += z
-            if out_of_walls(m, tops, floor, foot, here, out):
-                far = math.hypot(out[0], out[1]) + 1e-9
-                _reach(aside, rate, push, later, out[0] / far, out[1] / far, far + (x * out[0] + z * out[1]) / far)
+            _past_walls(m, tops, floor, foot, here, x, z, later, aside, rate, push, out)
+
+
+@kernel
+def _past_walls(m, tops, floor, foot, here, x, z, later, aside, rate, push, out):
+    """Add to `push` (2,) what leads a foot whose line `here` (3, 2) in so many seconds, without giving way, would be in a wall as it gives way: to where it is out of it
+    from x, z aside, which do not hang on how it went until now. out: (2,) scratch."""
+    gone_x = aside[0] + later * (rate[0] + later * push[0] / 3.0)
+    gone_z = aside[1] + later * (rate[1] + later * push[1] / 3.0)
+    _move(here, gone_x, gone_z)
+    if not out_of_walls(m, tops, floor, foot, here, out):
+        return
+    _move(here, x - gone_x, z - gone_z)
+    if out_of_walls(m, tops, floor, foot, here, out):
+        x, z = x + out[0], z + out[1]
+    far = math.hypot(x - gone_x, z - gone_z) + 1e-9
+    along_x, along_z = (x - gone_x) / far, (z - gone_z) / far
+    _reach(aside, rate, push, later, along_x, along_z, along_x * x + along_z * z)
+
+
+@kernel
+def _move(line, x, z):
+    """Move a centre line (3, 2) by so much [m]."""
+    for i in range(3):
+        line[i, 0] += x
+        line[i, 1] += z
 
 
 @kernel
