@@ -184,7 +184,8 @@ def most_speed(m, tops, floor):
         return 0.0
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     along_x, along_z = (c * m.wished[0] + s * m.wished[1]) / speed, (-s * m.wished[0] + c * m.wished[1]) / speed
-    goes = max(speed, math.hypot(m.velocity[0], m.velocity[2]))
+    now = math.hypot(m.velocity[0], m.velocity[2])
+    goes = max(speed, now)
     sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
     ground = np.empty(3)
     ground_kernel(tops, m.ground[0] - BEHIND * along_x, m.ground[1] - BEHIND * along_z, floor, m.level, ground)
@@ -201,7 +202,7 @@ def most_speed(m, tops, floor):
             break
         if rise > STEP:
             if far > 0.0:
-                limit = min(limit, math.sqrt(2.0 * BRAKES * max(far - WALL - LATE * goes, 0.0)))
+                limit = min(limit, math.sqrt(2.0 * BRAKES * max(far - WALL - LATE * now, 0.0)))  # as he goes now: who stands a metre off may come up to it, however fast he wishes to
             break
         far = _edge(m, tops, floor, along_x, along_z, far, before, rise, before, ground)
         tread, at = far - first, far

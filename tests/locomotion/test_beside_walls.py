@@ -138,3 +138,47 @@ def test_who_comes_to_a_wall_askew_keeps_his_legs_apart(locomotion, angle, speed
     joints, _ = forward_kinematics(locomotion.skeleton, roots, rotations)
     assert np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1).max() * FPS**2 < 300
     assert joints[:, [locomotion.skeleton.index(side + "Foot") for side in ("Left", "Right")], 1].max() < 0.35
+
+
+def test_a_foot_in_mid_swing_beside_a_ramp_is_not_led_over_it(locomotion):
+    """What it was led aside for, and how fast it went there, said where it was to go out next: to the ramp's far side, half a metre off and as high as the knee."""
+    slope = SimpleNamespace(centre=(-0.0696, -0.1783, 1.3867), size=(1.3208, 1.0, 1.8005), heading=2.9333, slope=0.3573)
+    block = box((-0.6415, 0.2575, 2.5508), (1.033, 0.5149, 0.6724), 1.8408)
+    wishes = (24, (-0.5, 0.0, -0.5)), (69, (2.8, 0.8828, 0.0)), (55, (1.3, 0.0, 0.0)), (66, (0.0, 0.0, -0.5)), (54, (1.3, 0.0, 0.5))
+    state, lifts, asides = locomotion.start((0.1347, -1.5, -0.4354)), [], []
+    for frames, wish in wishes:
+        for _ in range(frames):
+            state, _ = locomotion.step(state, Intent(np.array(wish), around=(slope, block)), 1 / FPS)
+            lifts.append(state.memory["base"].max())
+            asides.append(np.linalg.norm(state.memory["aside"], axis=-1).max())
+    assert max(lifts) < 0.05 and max(asides) < 0.25, (max(lifts), max(asides))
+
+
+WALLS = {"a wall": (box((0.0, 1.0, 1.25), (6.0, 2.0, 0.5)), 0.0), "its corner": (box((-1.0, 1.0, 1.25), (2.0, 2.0, 0.5)), 0.0),
+         "a wall met askew": (box((0.0, 1.0, 1.25), (6.0, 2.0, 0.5), 0.2), 0.0), "a low box": (box((0.0, 0.3, 1.25), (1.0, 0.6, 0.5)), 0.1),
+         "a pillar": (SimpleNamespace(foot=(0.0, 0.0, 1.3), radius=0.3, height=2.0), 0.02)}
+
+
+@pytest.mark.parametrize("speed", (0.7, 1.3, 2.8))
+@pytest.mark.parametrize("name", WALLS)
+def test_who_walks_on_at_a_wall_comes_to_rest_before_it(locomotion, name, speed):
+    """He stands on both feet and treads no longer on the spot; he goes as soon as he wishes to go back."""
+    thing, x = WALLS[name]
+    state, settled, ways = locomotion.start((x, -0.2, 0.0)), [], []
+    for _ in range(6 * FPS):
+        state, _ = locomotion.step(state, Intent(np.array([speed, 0.0, 0.0]), around=(thing,)), 1 / FPS)
+        settled.append(bool(state.memory["settled"]))
+        ways.append(state.ground[:2].copy())
+    rests = settled.index(True, 30)
+    assert all(settled[rests:]) and rests < 4.5 * FPS and state.contacts.all()
+    assert ways[-1][1] > 0.6, "he came up to it"
+    for _ in range(FPS):
+        state, _ = locomotion.step(state, Intent(np.array([-0.5, 0.0, 0.0]), around=(thing,)), 1 / FPS)
+    assert state.ground[1] < ways[-1][1] - 0.2
+
+
+def test_who_runs_along_a_wall_that_he_meets_askew_goes_on(locomotion):
+    state = locomotion.start()
+    for _ in range(4 * FPS):
+        state, _ = locomotion.step(state, Intent(np.array([2.8, 0.0, 0.0]), around=(box((0.0, 1.0, 2.25), (12.0, 2.0, 0.5), 0.5),)), 1 / FPS)
+    assert not state.memory["settled"] and np.hypot(*state.ground[:2]) > 3.0
