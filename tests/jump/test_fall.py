@@ -12,10 +12,10 @@ from gambol.controllers.body import end_positions, forward_kinematics, yaw
 from gambol.controllers.body.anatomy import centre_of_mass
 from gambol.controllers.body.support_polygon import sole_corners
 from gambol.controllers.contract import Intent, Leap
-from gambol.controllers.jump.body import soles
-from gambol.controllers.jump.body import measures
+from gambol.controllers.jump.body import deepest, measures, soles
 from gambol.controllers.jump.motion.edges import over_nothing, steps_over
-from gambol.controllers.jump.motion.fall import Hit, fall, struck
+from gambol.controllers.jump.motion.fall import _fallen, fall
+from gambol.controllers.jump.motion.hit import Hit, struck
 from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene.scene import Box, Goal
@@ -251,3 +251,40 @@ def test_soles_come_down_in_no_riser(jump, standing, x, z, heading, high):
     feet = fall(jump.physique, start, None, STAIRS, jump.gravity).feet
     floor = float(feet[0, 1]) - jump.physique.tables.sole
     assert max(floor_at(a, b, STAIRS, floor + 0.3) for a, _, b in soles(feet, jump.physique.tables)) < floor + 0.02
+
+
+LEAVES = {"backward": (np.pi, (-0.5, 0.0, 0.0)), "aside": (-0.5 * np.pi, (0.0, 0.0, 0.5)), "slowly ahead": (0.0, (0.4, 0.0, 0.0)), "turning": (0.0, (0.5, 1.2, 0.0))}
+
+
+@pytest.mark.parametrize("high", (0.5, 0.8, 1.2))
+@pytest.mark.parametrize("name", LEAVES)
+def test_who_steps_off_an_edge_lands_clear_of_it_however_he_faces(jump, locomotion, name, high):
+    """Knees of who came off facing it were 20 cm in what he stepped off as he sank, and so was the seat of who turned his back."""
+    platform, (heading, wish) = Box((0.0, 0.5 * high, 0.0), (2.0, high, 2.0)), LEAVES[name]
+    person = Supervisor({"locomotion": locomotion, "jump": jump})
+    for nearer in (0.06, 0.24, 0.3):
+        state, states = person.start((0.0, 0.45 + nearer, heading), high), []
+        for _ in range(4 * FPS):
+            fell = any(s.memory.active == "jump" for s in states)
+            state, _ = person.step(state, Intent(np.zeros(3) if fell else np.array(wish), around=(platform,)), 1 / FPS)
+            states.append(state)
+        deep = deepest(jump.physique, np.stack([s.pose.root for s in states]).astype(float), np.stack([s.pose.rotations for s in states]).astype(float), (platform,))
+        assert deep.max() < 0.04, (nearer, deep.max())
+        assert fell or name == "turning"
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(0.0, 1.0), st.floats(-3.1, 3.1))
+def test_a_push_off_an_edge_begins_with_the_speed_that_is_there_and_pushes_along_the_floor_alone(jump, standing, hard, way):
+    """Its whole impulse is as told once the foot has left; up and down nothing but gravity is felt."""
+    start, push = jump.start_of(standing), hard * np.array([np.sin(way), 0.0, np.cos(way)])
+    start = replace(start, centre=start.centre + [0.0, 1.5, 0.0], root=start.root + [0.0, 1.5, 0.0], velocity=np.array([0.3, -0.2, 0.1]))
+    made = _fallen(jump.physique, start, None, (), jump.gravity, push, 1.0)
+    air = made.times < made.touch_down - 1e-9
+    np.testing.assert_allclose(made.centres[0], start.centre, atol=1e-12)
+    np.testing.assert_allclose(made.velocities[0], start.velocity, atol=1e-12)
+    last = np.flatnonzero(air)[-1]
+    np.testing.assert_allclose(made.velocities[last] - start.velocity - jump.gravity * made.times[last], push, atol=1e-9)
+    middle, step = 0.5 * (made.velocities[1:] + made.velocities[:-1]), np.diff(made.times)[:, None]
+    np.testing.assert_allclose((np.diff(made.centres, axis=0) / step)[:last], middle[:last], atol=0.02)
+    np.testing.assert_allclose(made.centres[air, 1], start.centre[1] - 0.2 * made.times[air] + 0.5 * jump.gravity[1] * made.times[air] ** 2, atol=1e-9)

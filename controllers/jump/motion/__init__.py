@@ -5,11 +5,12 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 from .airborne import HEEL, PLANT, SAME
 from .clearing import depths, lifts, spread
 from .edges import over_nothing, steps_over
-from .fall import fall, struck
+from .fall import fall
 from .footing import FADE, faded, settling, swivels
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
 from .grounded import grounded
+from .hit import struck
 from .lying import BONES, FEET, TOUCHES, grounded_poses, places, sole_places
 from .path_estimate import SPINS, Course, Path, path
 from .plan import Plan, between_kernel

@@ -57,10 +57,11 @@ class Airborne:
     """One motion in the making, from the air to standing.
 
     start: where it begins. way: its flight. landing: (2, 5) the feet on the floor. leave: when the flight
-    begins [s]. times, keys: (K,) [s], (K, 11) [rad] the carriage until touch-down; the landing's is added from `Path.keys`.
+    begins [s]. times, keys: (K,) [s], (K, 11) [rad] the carriage until touch-down; the landing's is added from `Path.keys`. gives: which share of the usual it
+    sinks and bends in its landing.
     """
 
-    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float, times, keys: np.ndarray):
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, leave: float, times, keys: np.ndarray, gives: float = 1.0):
         self.physique, self.body, self.start, self.way = physique, physique.tables, start, way
         self.landing, self.gravity, self.leave = landing, way.gravity, leave
         self.joints = carriage.joints_of(physique.skeleton)
@@ -70,7 +71,7 @@ class Airborne:
         self.down = leave + way.airtime
         self.support = soles(landing if way.lands is None else landing[way.lands:way.lands + 1], self.body, start.lands_on)
         goal = self.support.mean(0) + [0.0, measures(physique).stand, 0.0]
-        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None and not way.hops, way.hops, rolls(physique, way))
+        self.absorbs = absorb(way.land, way.falling, goal, self.support, -self.gravity[1], way.lands is not None and not way.hops, way.hops, rolls(physique, way), gives)
         self.after = np.linspace(0.0, TIME, int(np.ceil(GROUND_RATE * TIME)) + 1)[1:]
         self.sunk = self.absorbs.motion(self.after)
         landed = self._landing_times(goal[1])
@@ -84,6 +85,7 @@ class Airborne:
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
         sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
         rows[:, 0] += LEANS[0] * max(sunk - LEANS[1], 0.0) * LEANT
+        rows += (1.0 - gives) * (carriage.STAND - rows)
         self.carriage = carriage.keyed(np.concatenate([times, self.down + landed, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]), start.runs)
         if way.lands is not None:

@@ -149,13 +149,14 @@ def sprung(t, r, offset, velocity, gains):
 
 
 def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np.ndarray, gravity: float, striding: bool = False,
-           hops: bool = False, rolls: bool = False) -> Landing:
+           hops: bool = False, rolls: bool = False, gives: float = 1.0) -> Landing:
     """The landing of a body at `land` (3,) with `velocity` (3,) over feet whose middle is under `goal` (3,).
 
     support: (C, 3) corners of the soles. It comes to rest if its capture point, x + v √(h/g), lies over
     them; else it passes over them and must step on (Ha 2012 rolls on; feet do it here). It sinks the
     deeper the faster it fell; the springs have three equal rates, so that the ground's force begins with none. striding: on one foot, to run on. hops: on one foot
-    or both, to hop on: as deep as a spring gives. rolls: on both, to roll on.
+    or both, to hop on: as deep as a spring gives. rolls: on both, to roll on. gives: it
+    sinks by this share of the usual.
     """
     fall = max(-velocity[1], 0.0)
     flat = velocity * [1.0, 0.0, 1.0]
@@ -172,6 +173,6 @@ def absorb(land: np.ndarray, velocity: np.ndarray, goal: np.ndarray, support: np
         deep = Springy.depth(fall, gravity, size / ADULT, len(support) // 4)
     else:
         deep = min(SINKS[0] + SINKS[1] * fall, SINKS[2]) * (STIFF if striding else LOWER if rolls else 1.0) * size / ADULT
-        deep -= FOLDED[1] * max(-start - FOLDED[0] * size, 0.0)
+        deep = gives * deep - FOLDED[1] * max(-start - FOLDED[0] * size, 0.0)
     deep = max(min(deep, start + DEEPEST * (LOWER if rolls else 1.0) * size), max(start, 0.0) + LEAST * size)
     return (Springy if hops else Landing)(rate, land - goal, velocity, gravity, goal, deep, passes)

@@ -4,8 +4,8 @@ from .arcs import How
 from .feasibility import BESIDE, MOMENTARY, SETS_FEET, Refused, meant, too_weak
 from .reach import Found, Reach
 from .seeking import SHARE, Onward, Pieces, Seeking, whole
-from .sweep import Touch, deepest, near
+from .sweep import Touch
 
 __all__ = [
-    "BESIDE", "Found", "How", "MOMENTARY", "Onward", "Pieces", "Reach", "Refused", "SETS_FEET", "SHARE", "Seeking", "Touch", "deepest", "meant", "near", "too_weak", "whole",
+    "BESIDE", "Found", "How", "MOMENTARY", "Onward", "Pieces", "Reach", "Refused", "SETS_FEET", "SHARE", "Seeking", "Touch", "meant", "too_weak", "whole",
 ]
