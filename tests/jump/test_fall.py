@@ -279,7 +279,7 @@ def test_a_push_off_an_edge_begins_with_the_speed_that_is_there_and_pushes_along
     """Its whole impulse is as told once the foot has left; up and down nothing but gravity is felt."""
     start, push = jump.start_of(standing), hard * np.array([np.sin(way), 0.0, np.cos(way)])
     start = replace(start, centre=start.centre + [0.0, 1.5, 0.0], root=start.root + [0.0, 1.5, 0.0], velocity=np.array([0.3, -0.2, 0.1]))
-    made = _fallen(jump.physique, start, None, (), jump.gravity, push, 1.0)
+    made, _ = _fallen(jump.physique, start, None, (), jump.gravity, push, 1.0, None)
     air = made.times < made.touch_down - 1e-9
     np.testing.assert_allclose(made.centres[0], start.centre, atol=1e-12)
     np.testing.assert_allclose(made.velocities[0], start.velocity, atol=1e-12)

@@ -44,16 +44,19 @@ SINKS = 0.6
 
 def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray) -> Plan:
     """The motion from the moment of a hit, or of losing the floor, to standing, with a roll where it comes down hard, going ahead. start: the body at that moment."""
-    best = _fallen(physique, start, hit, around, gravity, np.zeros(3), 1.0)
+    best, made = _fallen(physique, start, hit, around, gravity, np.zeros(3), 1.0, None)
     least, push = _in_the_way(physique, best, around)
-    hardest = PUSH[1] * push / max(float(np.linalg.norm(push)), 1e-9)
-    for push, gives in ((push, 1.0), (hardest, SINKS)) if hit is None else ((np.zeros(3), SINKS),):  # in the air there is nothing to push off
+    size = float(np.linalg.norm(push))
+    ways = [(push, 1.0), (PUSH[1] / max(size, 1e-9) * push, SINKS)]
+    if hit is not None:  # in the air there is nothing to push off
+        ways = [(np.zeros(3), SINKS)]
+    for push, gives in ways[int(size >= PUSH[1] and hit is None):]:
         if least < IN:
             break
-        made = _fallen(physique, start, hit, around, gravity, push, gives)
-        deep, _ = _in_the_way(physique, made, around)
+        other, made = _fallen(physique, start, hit, around, gravity, push, gives, made)
+        deep, _ = _in_the_way(physique, other, around)
         if deep < least - NEARER:
-            best, least = made, deep
+            best, least = other, deep
     return best
 
 
@@ -79,8 +82,9 @@ def _in_the_way(physique: Physique, made: Plan, around: Sequence[Any]) -> tuple[
     return worst, push
 
 
-def _fallen(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray, push: np.ndarray, gives: float) -> Plan:
-    """One such motion, of somebody who pushes off as much (3,) [m/s] and sinks by such a share of the usual."""
+def _fallen(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any], gravity: np.ndarray, push: np.ndarray, gives: float,
+            like: Falling | None) -> tuple[Plan, Falling]:
+    """One such motion, of somebody who pushes off as much (3,) [m/s] and sinks by such a share of the usual; and of what it was made. like: as of `Falling`."""
     velocity = (start.velocity if hit is None else hit.after(start.velocity)) + push
     leaves = start.centre - pushed_off(push)
     time, land, place = _down(physique, leaves, velocity, start.heading, around, gravity)
@@ -90,21 +94,23 @@ def _fallen(physique: Physique, start: Start, hit: Hit | None, around: Sequence[
                keys=prior.keys(features, features))
     start = replace(start, lands_on=slope_at(place[0], place[2], around, place[1] + GRAZES))
     landing, tucks = landing_feet(place, start.heading, physique.tables, start.lands_on), np.zeros(2)
-    best = Falling(physique, start, way, landing, tucks, push, gives).plan()
+    falling = Falling(physique, start, way, landing, tucks, push, gives, like)
+    best = falling.plan()
     deep = least = _deep(physique, best, around)
-    for tuck in TUCKS:
+    for tuck in TUCKS if like is None else TUCKS[1:2]:  # no longer than a frame or two may take
         if deep.max() < GRAZES:
             break
         tucks = np.where(deep < GRAZES, tucks, tuck)
-        made = Falling(physique, start, way, landing, tucks, push, gives).plan()
+        falling = Falling(physique, start, way, landing, tucks, push, gives, falling)
+        made = falling.plan()
         deep = _deep(physique, made, around)
         if deep.max() < least.max():
             best, least = made, deep
     if rolls(physique, way):
         rolling = rolled(physique, best)
         if room(physique, rolling, around):
-            return rolling
-    return best
+            return rolling, falling
+    return best, falling
 
 
 def _deep(physique: Physique, made: Plan, around: Sequence[Any]) -> np.ndarray:

@@ -34,10 +34,10 @@ def pushed_off(push: np.ndarray) -> np.ndarray:
 
 class Falling(Airborne):
     """One fall in the making. tucks: (2,) how far legs are drawn up half-way, as a share of TUCKED. push: (3,) [m/s] how much faster along the floor a foot's push off the edge makes
-    it, which `way` has from the beginning. gives: which share of the usual it sinks in its landing."""
+    it, which `way` has from the beginning. gives: which share of the usual it sinks in its landing. like: one that differs little, whose turn is where the search for its own begins."""
 
-    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, tucks: np.ndarray, push: np.ndarray, gives: float):
-        self.tucks, self.push = tucks, push
+    def __init__(self, physique: Physique, start: Start, way: Path, landing: np.ndarray, tucks: np.ndarray, push: np.ndarray, gives: float, like: Falling | None = None):
+        self.tucks, self.push, self.like = tucks, push, like
         touch = way.keys[3 * BETWEEN, :LEGS]
         share = min(way.airtime / GATHERS, 1.0)
         super().__init__(physique, start, way, landing, 0.0, [0.0, way.airtime], np.stack([carriage.FALL, carriage.FALL + share * (touch - carriage.FALL)]), gives)
@@ -65,15 +65,16 @@ class Falling(Airborne):
         self.air[0] = self.start.rotations
         wanted = self._upright(self.air_angles[-1:, 0])[0]
         inertia = self._inertia()
-        spin = vectors(wanted @ self.air[0, 0].T) / self.way.airtime
-        landed = wanted
+        spin = vectors(wanted @ self.air[0, 0].T) / self.way.airtime if self.like is None else self.like.spin
+        landed = wanted if self.like is None else self.like.air[-1, 0].copy()
         for _ in range(ROUNDS):
-            spin *= min(1.0, TURNS / max(float(np.linalg.norm(spin)), 1e-9))
+            spin = spin * min(1.0, TURNS / max(float(np.linalg.norm(spin)), 1e-9))
             self._fly(inertia @ spin, landed, 1e-4)
             landed, miss = self.air[-1, 0].copy(), self._miss(wanted, self.air)
             if np.abs(miss).max() < CLOSE:
                 break
             spin = spin + miss / self.way.airtime
+        self.spin = spin
         for _ in range(ROUNDS):  # the legs reach for where this very body comes down
             landed = self.air[-1, 0].copy()
             self._fly(self.momentum.copy(), landed, 1e-9)
