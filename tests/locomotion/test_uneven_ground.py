@@ -243,3 +243,23 @@ def test_what_comes_about_in_mid_swing_is_passed_over_from_where_the_foot_left(l
                     heights.append(contact_points(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, pose.root, pose.rotations))[:, 1])
                 lifted.append(np.array(heights))
             assert np.abs(lifted[1] - lifted[0]).max() < 2e-3
+
+
+@pytest.mark.parametrize(("wish", "longest"), [((0.0, 0.0, 0.0), 10), ((0.4, 0.0, 0.0), 10), ((1.3, -1.5, 0.0), 10), ((-0.5, 0.0, 0.0), 24)], ids=str)
+def test_who_thinks_better_of_it_half_down_a_ledge_brings_his_other_foot_down_to_the_first(locomotion, wish, longest):
+    """Set down again on the ledge behind him, a step higher, it pulled the first off the ground and was thrown up as high as the hips behind its body."""
+    hips, ankles = ([locomotion.skeleton.index(side + part) for side in ("Left", "Right")] for part in ("UpLeg", "Foot"))
+    for when in range(40, 100, 6):
+        state, states = locomotion.start((0.0, -0.75, 0.0), 0.29), []
+        for frame in range(180):
+            now = np.array(wish) if when <= frame < when + 35 else np.array([1.3, 0.0, 0.0])
+            state, _ = locomotion.step(state, Intent(now, around=(box((0.0, 0.145, -2.0), (3.0, 0.29, 4.0)),)), 1 / FPS)
+            states.append(state)
+        joints, _ = forward_kinematics(locomotion.skeleton, np.array([s.pose.root for s in states], float), np.array([s.pose.rotations for s in states], float))
+        heading = np.array([s.ground[2] for s in states])
+        way = joints[:, hips] - joints[:, ankles]
+        behind = way[..., 0] * np.sin(heading)[:, None] + way[..., 2] * np.cos(heading)[:, None]
+        assert np.degrees(np.arctan2(behind, way[..., 1])).max() < 50.0, when
+        off = np.array([not s.contacts.any() for s in states])
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
+        assert np.max(edges[1::2] - edges[::2], initial=0) <= longest, when
