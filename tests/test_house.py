@@ -122,7 +122,7 @@ PLAN = {
         "tracking.segmentation": "compiled tracking.silhouettes",
         "locomotion": "compiled files body contract mocap navigation navigation.passing navigation.routes",
         "scaled": "body contract navigation",
-        "jump.motion": "compiled body jump.body navigation jump.muscles jump.prior",
+        "jump.motion": "compiled body jump.body navigation navigation.passing jump.muscles jump.prior",
         "jump.reach": "body contract navigation jump.body jump.motion jump.muscles jump.prior",
         "struck": "compiled body contract mocap navigation navigation.passing jump jump.body jump.motion jump.prior",
         "reconstruction.database": "compiled files body contract mocap supervisor jump locomotion",

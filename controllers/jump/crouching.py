@@ -15,8 +15,8 @@ import numpy as np
 
 from ..body import Pose, yaw
 from ..contract import CharacterState, Leap
-from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, deepest, measures, near, soles, standing, turns, vectors
-from .motion import FADE, faded, ground_kernel, swivels
+from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, standing, turns, vectors
+from .motion import FADE, deepest, faded, ground_kernel, near, swivels
 from .prior import BETWEEN, LEGS
 from .reach import Onward, Reach
 from .starting import stands, turning

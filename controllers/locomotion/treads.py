@@ -29,8 +29,8 @@ NONE, BALL, HALF, WHOLE = 0, 1, 2, 3
 WORTH = np.array([9.0, 0.22, 0.12, 0.0])
 """So much farther away a foot is set for more of it to stand [m]."""
 EASY, DEAR = 0.2, 3.0
-"""A foot is set so many times as far away as what it would be higher or lower there than the other one by more than the first [m]: who has stepped down from a ledge brings
-the other foot down beside it."""
+"""A foot is set so many times as far away as what it would be higher or lower there than the other one by more than the first [m], but on slopes: who has stepped down from a ledge
+brings the other foot down beside it."""
 WITHIN = 0.02
 """A ball stands at least so far within an edge, and toes end so far before a riser [m]."""
 TIP, SOLE = 0.07, 0.05
@@ -127,7 +127,7 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         if far >= least:
             break
         stands = under_kernel(m, tops, floor, x + shift * along_x + beside * along_z, z + shift * along_z - beside * along_x, c, s, here)
-        worse = WORTH[stands] + DEAR * max(abs(here[0] - other) - EASY, 0.0)
+        worse = WORTH[stands] + (DEAR * max(abs(here[0] - other) - EASY, 0.0) if here[1] == 0.0 and here[2] == 0.0 else 0.0)
         if stands > NONE and abs(here[0] - other) <= STEP and far + worse < least:
             best, left, least, most = shift, beside, far + worse, stands
             out[0], out[1], out[2] = here[0], here[1], here[2]

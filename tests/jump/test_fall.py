@@ -8,11 +8,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from conftest import ahead
-from gambol.controllers.body import end_positions, forward_kinematics, yaw
+from gambol.controllers.body import contact_points, end_positions, forward_kinematics, yaw
 from gambol.controllers.body.anatomy import centre_of_mass
 from gambol.controllers.body.support_polygon import sole_corners
 from gambol.controllers.contract import Intent, Leap
-from gambol.controllers.jump.body import deepest, measures, soles
+from gambol.controllers.jump.body import measures, soles
+from gambol.controllers.jump.motion import deepest
 from gambol.controllers.jump.motion.edges import over_nothing, steps_over
 from gambol.controllers.jump.motion.fall import _fallen, fall
 from gambol.controllers.jump.motion.hit import Hit, struck
@@ -288,3 +289,18 @@ def test_a_push_off_an_edge_begins_with_the_speed_that_is_there_and_pushes_along
     middle, step = 0.5 * (made.velocities[1:] + made.velocities[:-1]), np.diff(made.times)[:, None]
     np.testing.assert_allclose((np.diff(made.centres, axis=0) / step)[:last], middle[:last], atol=0.02)
     np.testing.assert_allclose(made.centres[air, 1], start.centre[1] - 0.2 * made.times[air] + 0.5 * jump.gravity[1] * made.times[air] ** 2, atol=1e-9)
+
+
+@pytest.mark.parametrize("high", (0.2, 0.28, 0.299, 0.303, 0.31, 0.33, 0.36))
+@pytest.mark.parametrize("speed", (0.7, 1.3))
+def test_nobody_walks_on_air_whatever_the_height_of_the_ledge(jump, locomotion, high, speed):
+    """What is no step down any more is a fall: between the two heights from which each was said, people walked on as high as they had been."""
+    around, person = (Box((0.0, 0.5 * high, -2.0), (3.0, high, 4.0)),), Supervisor({"locomotion": locomotion, "jump": jump})
+    state, off = person.start((0.0, -1.0, 0.0), high), 0
+    for _ in range(3 * FPS):
+        state, _ = person.step(state, Intent(np.array([speed, 0.0, 0.0]), around=around), 1 / FPS)
+        feet = contact_points(jump.skeleton, *forward_kinematics(jump.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
+        aloft = min(y - floor_at(x, z, around, y + 0.1) for x, y, z in feet) > 0.1 and state.memory.active == "locomotion"
+        off = off + 1 if aloft else 0
+        assert off < 8
+    assert float(state.floor) == pytest.approx(0.0, abs=1e-6)

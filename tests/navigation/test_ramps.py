@@ -189,7 +189,7 @@ def test_hills_of_many_small_ramps_hold_up_nobody(locomotion, heading):
             around = hills(*(CELL * np.array(cell)))
         state, _ = locomotion.step(state, Intent(np.array([2.5, 0.0, 0.0]), around=around), 1 / FPS)
         speed.append(np.linalg.norm(state.ground[:2] - before) * FPS)
-    assert min(speed[2 * FPS:]) > 2.4
+    assert min(speed[2 * FPS:]) > 0.95 * 2.5
 
 
 PUSHES = {"its tall end": ((0.1, 2.1, math.pi), -1.0, (0.8, 1.5)), "its high side": ((1.7, 1.0, -0.5 * math.pi), None, (0.8, 1.5)),

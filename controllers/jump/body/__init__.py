@@ -5,7 +5,6 @@ and where a jump starts. Nothing here plans a jump.
 from . import carriage
 from .balance import DEEP, FLEX, flat_feet, frame, pose_kernel, stand_pelvis_kernel, support_kernel
 from .ballistics import along, apex_airtime, least_effort, take_off_velocity
-from .capsules import capsule_places, deepest, near
 from .curves import hermite, monotone
 from .dynamics import (GRAVITY, MASS, BodyTables, Physique, centre_kernel, mass_of, momentum_kernel, parts_kernel, place_kernel, turns,
                        vectors)
@@ -16,8 +15,8 @@ from .start import (FLAT, FOOT_FADE, HEEL_UP, TAKE_OFF_REACH, TOES_DOWN, TOUCH_R
 
 __all__ = [
     "DEEP", "FLAT", "FLEX", "FOOT_FADE", "GRAVITY", "HEEL_UP", "LEVEL", "MASS", "TAKE_OFF_REACH", "TOES_DOWN", "TOUCH_REACH", "TRAIL", "TURNED", "BodyTables",
-    "Measures", "Physique", "Start", "airtime_up", "along", "apex_airtime", "bend_kernel", "capsule_places", "carriage", "carried", "centre_kernel", "deepest", "flat_feet",
-    "frame", "hermite", "landing_feet", "least_effort", "mass_of", "measures", "momentum_kernel", "monotone", "near", "nearest_kernel",
+    "Measures", "Physique", "Start", "airtime_up", "along", "apex_airtime", "bend_kernel", "carriage", "carried", "centre_kernel", "flat_feet",
+    "frame", "hermite", "landing_feet", "least_effort", "mass_of", "measures", "momentum_kernel", "monotone", "nearest_kernel",
     "over", "parts_kernel", "place_kernel", "pose_kernel", "raised", "rise", "soles", "stand_kernel", "stand_pelvis_kernel", "standing", "stretched", "striding_feet",
     "support_kernel", "swivelled_kernel", "take_off_velocity", "turns", "uphill", "vectors",
 ]

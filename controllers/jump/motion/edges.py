@@ -10,10 +10,11 @@ import numpy as np
 
 from ...body import Pose, Skeleton, contact_points, forward_kinematics
 from ...navigation import floor_at
+from ...navigation.passing import STEP
 from ..body import Physique, Start, measures
 
-VOID = 0.33
-"""A foot that is so high over what lies under it [m] stands on nothing: farther than feet step down."""
+VOID, BRINK = 0.33, STEP + 0.002
+"""A heel or ball that is so high over what lies under it [m] stands on nothing: farther than feet step down; and so does one on a floor so high over that."""
 STANDS = 0.1
 """A foot whose ball or heel is no higher over it [m] stands there, however high the floor was that its body was on."""
 TOUCHES, SUNK = 0.055, 0.01
@@ -46,7 +47,7 @@ def steps_over(physique: Physique, start: Start, pose: Pose, around: Sequence[An
     flat = start.velocity[[0, 2]]
     ahead = flat / max(float(np.hypot(*flat)), 1e-6)
     places = start.centre[[0, 2]] + time * flat + STRIDE[:, None] * size * ahead
-    return all(floor - floor_at(x, z, around, floor + VOID * size) > VOID * size for x, z in places)
+    return all(floor - floor_at(x, z, around, floor + VOID * size) > BRINK * size for x, z in places)
 
 
 def _feet(skeleton: Skeleton, pose: Pose) -> np.ndarray:
@@ -61,4 +62,4 @@ def _heights(feet: np.ndarray, around: Sequence[Any], size: float, floor: float)
 
 def _void(feet: np.ndarray, around: Sequence[Any], floor: float, size: float) -> np.ndarray:
     """Whether nothing lies within a step under feet (2,), or under the floor that their body was on."""
-    return np.array([all(max(y, floor) - floor_at(x, z, around, y + STANDS * size) > VOID * size for x, y, z in foot) for foot in feet])
+    return np.array([all(max(y, floor + (VOID - BRINK) * size) - floor_at(x, z, around, y + STANDS * size) > VOID * size for x, y, z in foot) for foot in feet])

@@ -15,8 +15,9 @@ import numpy as np
 
 from ...body import forward_kinematics, sole_corners
 from ...navigation import floor_at, gap, slope_at
-from ..body import FLAT, TRAIL, Physique, Start, capsule_places, landing_feet, measures, near, rise, soles
+from ..body import FLAT, TRAIL, Physique, Start, landing_feet, measures, rise, soles
 from ..prior import Prior
+from .capsules import capsule_places, near
 from .falling import Falling, pushed_off
 from .hit import Hit, out_of
 from .path_estimate import Path, softened

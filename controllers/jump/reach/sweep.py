@@ -9,8 +9,8 @@ import numpy as np
 
 from ...body import centre_of_mass, forward_kinematics
 from ...navigation import gap
-from ..body import Physique, capsule_places, near
-from ..motion import Plan
+from ..body import Physique
+from ..motion import Plan, capsule_places, near
 
 RATE = 72.0
 """So many poses a second are looked at, and half-way between them."""

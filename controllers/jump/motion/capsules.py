@@ -10,7 +10,7 @@ import numpy as np
 
 from ...body import Skeleton, end_positions, forward_kinematics, sole_corners
 from ...navigation import gap
-from .dynamics import Physique
+from ..body import Physique
 
 NEAR = 1.3
 """What is farther from the centre of mass [m], at standard height, is out of reach."""
