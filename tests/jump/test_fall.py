@@ -288,6 +288,7 @@ def test_a_push_off_an_edge_begins_with_the_speed_that_is_there_and_pushes_along
     np.testing.assert_allclose(made.velocities[last] - start.velocity - jump.gravity * made.times[last], push, atol=1e-9)
     middle, step = 0.5 * (made.velocities[1:] + made.velocities[:-1]), np.diff(made.times)[:, None]
     np.testing.assert_allclose((np.diff(made.centres, axis=0) / step)[:last], middle[:last], atol=0.02)
+    np.testing.assert_allclose(np.trapezoid(made.forces[air], made.times[air], axis=0), jump.physique.mass * push, atol=1.0)
     np.testing.assert_allclose(made.centres[air, 1], start.centre[1] - 0.2 * made.times[air] + 0.5 * jump.gravity[1] * made.times[air] ** 2, atol=1e-9)
 
 

@@ -47,11 +47,14 @@ def fall(physique: Physique, start: Start, hit: Hit | None, around: Sequence[Any
     """The motion from the moment of a hit, or of losing the floor, to standing, with a roll where it comes down hard, going ahead. start: the body at that moment."""
     best, made = _fallen(physique, start, hit, around, gravity, np.zeros(3), 1.0, None)
     least, push = _in_the_way(physique, best, around)
-    size = float(np.linalg.norm(push))
-    ways = [(push, 1.0), (PUSH[1] / max(size, 1e-9) * push, SINKS)]
+    hardest = PUSH[1] / max(float(np.linalg.norm(push)), 1e-9) * push
     if hit is not None:  # in the air there is nothing to push off
         ways = [(np.zeros(3), SINKS)]
-    for push, gives in ways[int(size >= PUSH[1] and hit is None):]:
+    elif np.allclose(push, hardest):
+        ways = [(hardest, SINKS)]
+    else:
+        ways = [(push, 1.0), (hardest, SINKS)]
+    for push, gives in ways:
         if least < IN:
             break
         other, made = _fallen(physique, start, hit, around, gravity, push, gives, made)

@@ -57,7 +57,7 @@ class Falling(Airborne):
             np.append(flying, self.down + after), np.concatenate([self.air_roots, landed[0]]),
             np.concatenate([self.air, landed[1]]), np.concatenate([self.arc, landed[2]]),
             np.concatenate([way.velocity - self.push * left**2 + self.gravity * flying[:, None], landed[3]]),
-            self.physique.mass * np.concatenate([np.zeros((len(flying), 3)), landed[4] - self.gravity]),
+            self.physique.mass * np.concatenate([2.0 / PUSHES * left * self.push, landed[4] - self.gravity]),
             contacts, 0.0, 0.0, self.down, self.down + self.lowest, self.down + through, self.landing, self.momentum.copy(), way)
 
     def _turn_upright(self) -> None:
