@@ -18,7 +18,7 @@ from ...navigation import floor_at, gap, slope_at
 from ..body import FLAT, TRAIL, Physique, Start, landing_feet, measures, rise, soles
 from ..prior import Prior
 from .capsules import capsule_places, near
-from .falling import Falling, pushed_off
+from .falling import LATE, Falling
 from .hit import Hit, out_of
 from .path_estimate import Path, softened
 from .plan import Plan
@@ -82,7 +82,7 @@ def _in_the_way(physique: Physique, made: Plan, around: Sequence[Any]) -> tuple[
             way = out_of(np.array([centres[k, 0], points[k, place, 1], centres[k, 2]]), thing) * FLAT
             size, goes = float(np.linalg.norm(way)), min(float(times[k]), made.touch_down)
             if size > 0.0:
-                push = np.clip((worst + CLEARS) / max(goes - float(pushed_off(1.0)), 0.05), *PUSH) / size * way
+                push = np.clip((worst + CLEARS) / max(goes - LATE, 0.05), *PUSH) / size * way
     return worst, push
 
 
@@ -90,7 +90,7 @@ def _fallen(physique: Physique, start: Start, hit: Hit | None, around: Sequence[
             like: Falling | None) -> tuple[Plan, Falling]:
     """One such motion, of somebody who pushes off as much (3,) [m/s] and sinks by such a share of the usual; and of what it was made. like: as of `Falling`."""
     velocity = (start.velocity if hit is None else hit.after(start.velocity)) + push
-    leaves = start.centre - pushed_off(push)
+    leaves = start.centre - LATE * push
     time, land, place = _down(physique, leaves, velocity, start.heading, around, gravity)
     prior, falls = Prior.load(), max(-float(velocity[1] + gravity[1] * time), 0.0)
     features = prior.features(falls, 0.0, 0.0, physique.size, False)

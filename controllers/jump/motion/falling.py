@@ -25,11 +25,8 @@ TUCKED, EARLY = np.array([-0.7, 1.3, -0.6]), 0.4
 """A leg that is drawn up is bent more by so many [rad] at hip, knee and ankle, after so much of the time in which legs get to where they land."""
 PUSHES = 0.15
 """A foot pushes off the edge for so long [s], at first hardest."""
-
-
-def pushed_off(push: np.ndarray) -> np.ndarray:
-    """How far (3,) [m] short a body stays for good of one that had as much more speed (3,) [m/s] at once as its foot gives it while it pushes off."""
-    return PUSHES / 3.0 * push
+LATE = PUSHES / 3.0
+"""Who pushes off so stays for good this long [s] behind one who had all that speed at once."""
 
 
 class Falling(Airborne):
@@ -47,7 +44,7 @@ class Falling(Airborne):
         self._differ(self.carriage(0.0))
         self._prepare_air()
         left = np.maximum(1.0 - self.flying[:, None] / PUSHES, 0.0)
-        self.arc += pushed_off(self.push) * left**3
+        self.arc += LATE * self.push * left**3
         self._turn_upright()
         after, landed, heels, through = self._land()
         way, flying = self.way, self.flying
