@@ -60,6 +60,20 @@ def test_it_goes_over_its_back_once_and_stands_up(roll):
     assert roll.local[-1, 0, 2, 2] > 0.9 and roll.centres[-1, 1] > 0.9
 
 
+def test_hands_bear_who_tips_over(person, roll):
+    """Both stand on the floor, and stay, while the hips are over them, and no arm jumps as it gives way."""
+    body = person.parts["jump"].physique
+    tips = (roll.times > roll.lowest + 0.18) & (roll.times < roll.lowest + 0.22)
+    positions, turned = forward_kinematics(body.skeleton, roll.roots[tips], roll.local[tips])
+    hands = positions[:, [body.skeleton.index(side + "Hand") for side in ("Left", "Right")]]
+    assert hands[..., 1].max() < 0.06 and positions[:, 0, 1].min() > 0.5
+    assert np.ptp(hands, axis=0).max() < 0.02
+    late = roll.times >= roll.lowest
+    turned = vectors(roll.local[1:] @ np.swapaxes(roll.local[:-1], -1, -2))[late[1:]]
+    assert np.linalg.norm(turned, axis=-1).max() * 120.0 < 30.0
+    assert roll.forces[late, 1].min() > -1.2 * 9.81 * body.mass
+
+
 def test_a_wall_leaves_no_room_to_roll(person):
     with pytest.raises(Unable, match="no room to roll"):
         dropped(person, 2.5, 2.0, Box((0.0, 1.0, 3.6), (4.0, 2.0, 0.2)))

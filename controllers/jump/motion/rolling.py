@@ -18,10 +18,11 @@ from gambol import assets
 
 from ...body import centre_of_mass, exp, forward_kinematics, yaw
 from ...navigation import floor_at, gap
-from ..body import FLEX, Physique, hermite, monotone, stand_kernel, turns, vectors
+from ..body import Physique, hermite, monotone
 from .lying import FEET, TOUCHES, grounded_poses, places
 from .path_estimate import Path
 from .plan import Plan
+from .tipping import TIPS, tipped
 
 HARD = 6.4
 """Who comes down faster than this [m/s], at standard height, as from 2.1 m, rolls if he can."""
@@ -34,10 +35,6 @@ SPACED = 0.05
 """From one row of coefficients to the next [s]."""
 RATE = 120.0
 """Moments a second."""
-TIPS = 0.30
-"""From the lowest point of the landing to the upper back [s]."""
-LETS_GO = 0.3, 0.75
-"""Feet stand until the first of this share of that time, and are let go until the second."""
 PACE, PACES = 3.0, (0.75, 1.1)
 """The recorded roll goes so fast [m/s]; it is played at its pace times how much faster this one goes, within these, until it is up."""
 WEARS = 0.2, 0.6
@@ -81,7 +78,7 @@ def _over(physique: Physique, pace: float, heading: float) -> tuple[np.ndarray, 
     local, roots = tumbled(told[:, 2], told[:, 3:].reshape(len(shown), -1, 3)), np.zeros((len(shown), 3))
     local[:, 0] = yaw(heading) @ local[:, 0]
     height = grounded_poses(physique, local, np.zeros(3), 0.0)[0][:, 1]
-    roots[:, [0, 2]], roots[:, 1] = physique.size * told[:, :2], gaussian_filter1d(height, SMOOTH * RATE, mode="nearest")
+    roots[:, [0, 2]], roots[:, 1] = physique.size * told[:, :2], _smooth(height, SMOOTH * RATE)
     roots = roots @ yaw(heading).T
     roots[:, [0, 2]] -= centre_of_mass(physique.anatomy, *forward_kinematics(physique.skeleton, np.zeros((len(local), 3)), local))[:, [0, 2]]
     where, over = places(physique, *forward_kinematics(physique.skeleton, roots, local))
@@ -90,6 +87,14 @@ def _over(physique: Physique, pace: float, heading: float) -> tuple[np.ndarray, 
     slips = np.einsum("np,npi->ni", stands, flow) / np.maximum(stands.sum(1), 1.0)[:, None]
     roots[:, [0, 2]] -= gaussian_filter1d(np.cumsum(slips, 0) / RATE, SMOOTH * RATE, axis=0, mode="nearest")
     return local, roots
+
+
+def _smooth(height: np.ndarray, width: float) -> np.ndarray:
+    """Heights (N,) as means of so many moments, which go on at their ends as they went."""
+    from scipy.ndimage import gaussian_filter1d  # no game waits for it at its start
+
+    wide = 4 * math.ceil(width)
+    return gaussian_filter1d(np.pad(height, wide, "reflect", reflect_type="odd"), width)[wide:-wide]
 
 
 def rolls(physique: Physique, way: Path) -> bool:
@@ -116,25 +121,22 @@ def rolled(physique: Physique, made: Plan) -> Plan:
     n, body, skeleton = int(np.searchsorted(made.times, made.lowest)), physique.tables, physique.skeleton
     floor, heading = float(made.feet[0, 1] - body.sole), made.path.heading + made.path.turn
     ahead = np.array([np.sin(heading), 0.0, np.cos(heading)])
-    going, step = made.velocities[n], made.times[n] - made.times[n - 1]
+    going = made.velocities[n]
     local, roots = _over(physique, float(np.clip(going @ ahead / PACE, *PACES)), heading)
     centres = centre_of_mass(physique.anatomy, *forward_kinematics(skeleton, roots, local)) + [0.0, floor, 0.0]
     meets = (centres[4] - centres[0]) * 0.25 * RATE
-    times = np.arange(round(TIPS * RATE)) / RATE
-    way = np.stack([made.centres[n], made.centres[n] + 0.5 * TIPS * (going + meets)])
-    way[1, 1] = centres[0, 1]
-    tips = hermite(np.array([0.0, TIPS]), way, np.stack([going, meets]), times)
-    rates = vectors(made.local[n] @ np.swapaxes(made.local[n - 1], -1, -2)) / step, vectors(local[1] @ np.swapaxes(local[0], -1, -2)) * RATE
-    off = vectors(made.local[n] @ np.swapaxes(local[0], -1, -2))
-    tipping = turns(hermite(np.array([0.0, TIPS]), np.stack([off, 0.0 * off]), np.stack(rates), times)) @ local[0]
-    _stand(physique, made, n, tips, times / TIPS, tipping)
-    centres = np.concatenate([tips, centres + way[1] * [1.0, 0.0, 1.0] - centres[0] * [1.0, 0.0, 1.0]])
-    local = np.concatenate([tipping, local])
-    positions, turned = forward_kinematics(skeleton, np.zeros((len(local), 3)), local)
-    roots = centres - centre_of_mass(physique.anatomy, positions, turned)
-    where, over = places(physique, positions + roots[:, None], turned)
-    sunk = np.maximum(floor - over.min(1), 0.0)
-    roots, centres, over = (part + lift for part, lift in zip((roots, centres, over), _lifts(sunk)))
+    up, count = np.array([0.0, 1.0, 0.0]), round(TIPS * RATE)
+    centres += (made.centres[n] + 0.5 * TIPS * (going + meets) - centres[0]) * (1.0 - up)
+    rolling, lift = (local, centres), np.zeros((count + len(local), 1))
+    for _ in range(2):  # hands stay on the floor when what would be below it is lifted
+        tipping, tips = tipped(physique, made, n, rolling, meets, heading, lift[:count], 1.0 / RATE)
+        local, centres = np.concatenate([tipping, rolling[0]]), np.concatenate([tips, rolling[1] + up * lift[count:]])
+        positions, turned = forward_kinematics(skeleton, np.zeros((len(local), 3)), local)
+        roots = centres - centre_of_mass(physique.anatomy, positions, turned)
+        where, over = places(physique, positions + roots[:, None], turned)
+        more = _lifts(np.maximum(floor - over.min(1), 0.0))
+        lift = lift + more
+    roots, centres, over = roots + up * more, centres + up * more, over + more
     feet = where[:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
     low = over[:, -FEET:].reshape(-1, 2, 3)[..., :2].reshape(-1, 4) - floor < TOUCHES * physique.size
@@ -147,28 +149,12 @@ def rolled(physique: Physique, made: Plan) -> Plan:
                    contacts=np.concatenate([made.contacts[:n], low & (np.hypot(flows[..., 0], flows[..., 2]) < SLIDES)]), through=np.inf, rolls=float(after[-1]))
 
 
-def _lifts(sunk: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """How far roots and centres (N, 3), and all places (N, 1), are lifted smoothly [m] where something is (N,) below the floor [m]."""
+def _lifts(sunk: np.ndarray) -> np.ndarray:
+    """How far a body is lifted (N, 1) [m], smoothly, where something is (N,) below the floor [m]."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d  # no game waits for it at its start
 
     wide = round(LIFTS * RATE)
     lift = gaussian_filter1d(maximum_filter1d(sunk, 2 * wide + 1, mode="nearest"), 0.5 * wide, mode="nearest")
     comes = np.minimum(np.arange(len(lift)) / (2.0 * wide), 1.0)  # whoever still stands is where the landing left him
     lift *= comes**2 * (3.0 - 2.0 * comes)
-    up = lift[:, None] * [0.0, 1.0, 0.0]
-    return up, up, lift[:, None]
-
-
-def _stand(physique: Physique, made: Plan, n: int, centres: np.ndarray, share: np.ndarray, local: np.ndarray) -> None:
-    """Write the legs (M, J, 3, 3) of who tips over, `share` (M,) of it done, his mass centre at (M, 3): over his feet until they are let go."""
-    skeleton, feet, root = physique.skeleton, np.ones((2, 6)), made.roots[n].copy()
-    positions, turned, legs = np.empty((len(skeleton), 3)), np.empty((len(skeleton), 3, 3)), (physique.tables.hip[:, None] + np.arange(4)).ravel()
-    free = np.clip((share - LETS_GO[0]) / (LETS_GO[1] - LETS_GO[0]), 0.0, 1.0)
-    for centre, freed, posed in zip(centres, free * free * (3.0 - 2.0 * free), local):
-        if freed == 1.0:
-            break
-        blend = posed[legs].copy()
-        feet[:, :5] = made.feet
-        feet[:, 4] = 0.0
-        stand_kernel(physique.tables, centre, feet, FLEX * physique.flexibility, root, posed, positions, turned)
-        posed[legs] = blend @ turns((1.0 - freed) * vectors(np.swapaxes(blend, -1, -2) @ posed[legs]))
+    return lift[:, None]
