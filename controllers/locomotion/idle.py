@@ -14,6 +14,7 @@ import numpy as np
 
 from ..body import contact_points, forward_kinematics, rotations as rot, spring_kernel
 from ..compiled import kernel
+from .arms_apart import apart
 from .cycles import RATE, Track
 from .kernel import COLUMNS, LABELS_AT
 from .library import Idle, Library
@@ -81,6 +82,7 @@ def _stretch(track: Track, reference: np.ndarray, rest: np.ndarray) -> np.ndarra
     turn, shift = onto(flat.mean(0), _rest_feet(track, reference, rest))
     local[:, 0] = rot.yaw(turn) @ local[:, 0]
     root = root @ rot.yaw(turn).T + [shift[0], 0.0, shift[1]]
+    local = apart(track.clip.skeleton, root, local, RATE)
     chart = rot.continuous(rot.log(np.swapaxes(reference, -1, -2) @ local)).reshape(b - a, -1)
     rows = np.concatenate([chart, root], -1) - rest
     count = int((b - a) / RATE * PER_SECOND)

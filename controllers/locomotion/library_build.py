@@ -33,6 +33,8 @@ OUT = -0.6
 LONE, STRAIGHT = 4, 0.15
 """Fewer cycles than the first that go straight ahead (turning [rad/s] and going aside [m/s] less than the second) are averaged
 with their mirror images: one stride's limp is nobody's gait."""
+HAND_HARMONICS = 3
+"""Hands turn about their wrists by so many harmonics of a stride."""
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, how much of it is done and how much there is."""
 
@@ -212,7 +214,7 @@ def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], still
         primitives.append(Primitive(choice.label, seed.clip, seed.start, seed.period, seed.family, seed.closure,
                                     tuple(map(float, seed.events)), choice.mirrored, len(near)))
         velocities.append(np.asarray(sum(w * c.velocity for w, c in zip(weight, group))))
-        rows.append(fourier.fit(pushable(samples, reference, velocities[-1])))
+        rows.append(_calm_hands(fourier.fit(pushable(samples, reference, velocities[-1]))))
     walking = [i for i, p in enumerate(primitives) if p.family == "walk"]
     rest, clip, start = rest_pose(stills, reference)
     row = np.zeros_like(rows[0])
@@ -221,6 +223,14 @@ def assemble(cycles: list[Cycle], actor: np.ndarray, chosen: list[Choice], still
     primitives.append(Primitive("rest", clip, start, float(row[0, DURATION]), "rest", 0.0, tuple(map(float, EVENTS["walk"]))))
     return Library(skeleton, tuple(primitives), np.array(velocities + [np.zeros(3)]), np.array(rows + [row]),
                    reference, provenance)
+
+
+def _calm_hands(row: np.ndarray) -> np.ndarray:
+    """A primitive's coefficients (2 N + 1, D) whose hands turn as smoothly as arms swing: what is quicker is a marker that was lost for a moment."""
+    for side in ("Left", "Right"):
+        hand = human().index(side + "Hand")
+        row[1 + 2 * HAND_HARMONICS:, 3 * hand:3 * hand + 3] = 0.0
+    return row
 
 
 def mirrored(cycle: Cycle, swap: np.ndarray) -> Cycle:

@@ -9,7 +9,7 @@ from scipy.interpolate import BSpline
 from gambol.controllers.body import anatomy, centre_of_mass, rotations as rot
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.locomotion import Idle, Library, LibraryError, Locomotion, Settings
-from gambol.controllers.locomotion import idle as idling
+from gambol.controllers.locomotion import arms_apart, idle as idling
 from gambol.controllers.locomotion.spline import spline_kernel
 from playing import FPS, hold, play
 
@@ -148,3 +148,37 @@ def test_a_crowd_looks_where_each_is_told(calm):
     for _ in range(FPS):
         state, _ = calm.step(state, Intent(look=np.array([[3.0, 1.6, 3.0], [np.nan, 0, 0]])), 1 / FPS)
     assert state.memory["gaze"][0, 0] > 0.5 and state.memory["gaze"][1, 0] == 0.0
+
+
+def test_arms_that_lie_in_each_other_are_taken_apart(locomotion):
+    """One forearm crosses before the trunk and the other is turned through it: apart afterwards by their thickness, neither is in the trunk, and nothing else moves."""
+    skeleton = locomotion.skeleton
+    local = np.tile(np.eye(3), (60, len(skeleton), 1, 1))
+    time = np.sin(np.linspace(0.0, np.pi, 60))
+    for side, name in ((1.0, "Left"), (-1.0, "Right")):
+        raised = rot.exp(np.array([-0.4 - 0.03 * side, 0.0, 0.0])) @ rot.exp(np.array([0.0, 0.0, -1.3 * side]))
+        local[:, skeleton.index(name + "Arm")] = raised @ rot.exp(time[:, None] * [1.4, 0.0, 0.0])
+        local[:, skeleton.index(name + "ForeArm")] = rot.exp(time[:, None] * [0.0, -1.9 * side, 0.0])
+    root = np.tile([0.0, 1.0, 0.0], (60, 1))
+    made = arms_apart.apart(skeleton, root, local, 60.0)
+    def nearest(poses):
+        (left, right), trunk = arms_apart._bones(skeleton, root, poses)
+        return arms_apart._between(left[1][0], right[1][0])[0].min(), min(arms_apart._between(arm[1][0], trunk)[0].min() for arm in (left, right))
+    assert nearest(local)[0] < 0.02
+    assert nearest(made)[0] > 0.06 and nearest(made)[1] > 0.12
+    others = [k for k, name in enumerate(skeleton.names) if name not in ("LeftArm", "RightArm")]
+    assert np.abs(made[:, others] - local[:, others]).max() < 1e-9
+    assert np.linalg.norm(rot.log(np.swapaxes(made[:-1], -1, -2) @ made[1:]), axis=-1).max() < 0.25
+
+
+def test_nobody_who_stands_about_has_one_arm_in_the_other(locomotion):
+    """Of eight people in 40 s: hands touch, forearms do not go through each other."""
+    state, roots, poses = locomotion.start(np.array([(2.3 * k, -1.7 * k, 0.7 * k) for k in range(8)])), [], []
+    for tick in range(40 * 60):
+        state, pose = locomotion.step(state, Intent(np.zeros((8, 3))), 1 / 60)
+        if tick % 6 == 0:
+            roots.append(pose.root)
+            poses.append(pose.rotations)
+    joints, skeleton = len(locomotion.skeleton), locomotion.skeleton
+    (left, right), _ = arms_apart._bones(skeleton, np.array(roots, float).reshape(-1, 3), np.array(poses, float).reshape(-1, joints, 3, 3))
+    assert arms_apart._between(left[1][0], right[1][0])[0].min() > 0.05
