@@ -138,7 +138,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("stood", "f8", (4, 2)), ("standing", "i4", 4), ("torn", "i4", 2),  # where each point was held, x, z in the world; whether it stands; feet let go until well into their swing
         ("raised", "f4", 4), ("raised_rate", "f4", 4),  # points' heights, shown minus blended
         ("offset", "f4", (2, 3)), ("offset_rate", "f4", (2, 3)), ("offset_push", "f4", (2, 3)),  # each foot's x, z in the world and turn, shown minus blended; its speed and acceleration
-        ("base", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how it rises along x and z
+        ("base", "f8", 2), ("climb", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how fast that goes up, how it rises along x and z
         ("left", "f8", 2), ("left_at", "f8", (2, 2)),  # the ground it left, and where, x, z in the world
         ("held", "i4", 2), ("land", "f8", (2, 2)),  # whether it found its own; how far from where the blend does it comes down
         ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain

@@ -28,6 +28,8 @@ RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
 DROPS, CLIMBS = 2.0, 4.0
 """A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
+HASTE = 50.0, 300.0
+"""A foot on its way up gets faster and slower by no more than the first [m/s²] of who goes backward or aside, and the second of who goes ahead, whose knee is bent as it leaves: a straight one would be thrown."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
 GRAVITY = 9.81
@@ -52,6 +54,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
+    haste = HASTE[0] + (HASTE[1] - HASTE[0]) * max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1)
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -62,6 +65,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         passed = ((m.phase - 0.5 * foot) % 1.0) / swing
         progress = min(passed, 1.0)
         aim = m.aim[foot]
+        m.climb[foot] = m.climb[foot] if progress < 1.0 and not firm else 0.0
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
                 _ball(m, foot, place)
@@ -99,7 +103,9 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             up, down = smooth(progress / RISES), smooth((progress - SINKS) / (1.0 - SINKS))
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
-        m.base[foot] = min(max(path, rising, m.base[foot] - DROPS * dt), m.base[foot] + CLIMBS * dt)
+        before, goal = m.base[foot], max(path, rising, m.base[foot] - DROPS * dt)
+        m.base[foot] = min(goal, before + min(m.climb[foot] + haste * dt, CLIMBS, math.sqrt(2.0 * haste * max(goal - before, 0.0))) * dt)
+        m.climb[foot] = max(m.base[foot] - before, 0.0) / dt
         m.high[foot] = m.base[foot] - under[0]
         bears[foot] = min(m.base[foot], bearing)
         if under[0] < m.left[foot]:  # the body sinks all the way down
@@ -219,8 +225,8 @@ def _beneath(m, tops, floor, foot, highest, place):
     heel_x, heel_z = place[0], place[1]
     shown_kernel(m, 2 * foot + 1, place)
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    for k in range(4):  # heel, ball, toes' end
-        along = (0.0, 1.0, 1.0 + TOE / FOOT, 1.0 + (TOE + REACHES) / FOOT)[k]
+    for k in range(5):  # a little behind the heel, heel, ball, toes' end, a little before that
+        along = (-REACHES / FOOT, 0.0, 1.0, 1.0 + TOE / FOOT, 1.0 + (TOE + REACHES) / FOOT)[k]
         x, z = heel_x + along * (place[0] - heel_x), heel_z + along * (place[1] - heel_z)
         if ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground) and ground[0] < highest:
             high = max(high, ground[0])

@@ -99,3 +99,17 @@ def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
         bare = np.where((np.abs(soles[..., 1] - under) < 0.02).any(-1), 0, bare + 1)
         assert (bare * on).max() <= 0.15 * 60, "no sole touches a tread"
     assert turned.all() and longest < 0.5
+
+
+@pytest.mark.parametrize("rise, tread", ((0.17, 0.30), (0.12, 0.40)))
+def test_who_climbs_backward_has_no_knee_thrown(locomotion, rise, tread):
+    """Where a leg that is straight must rise to the next tread at once."""
+    around, _ = flight(rise, tread, 1.0)
+    state, knees = locomotion.start((0.0, 1.0, np.pi)), []
+    joints = [locomotion.skeleton.index(side + "Leg") for side in ("Left", "Right")]
+    for _ in range(480):
+        off = (np.pi - float(state.ground[2]) + np.pi) % (2.0 * np.pi) - np.pi
+        state, pose = locomotion.step(state, Intent(np.array([-0.5, 2.0 * off, 0.0]), around=around), 1 / 60)
+        knees.append(forward_kinematics(locomotion.skeleton, pose.root, pose.rotations)[0][joints])
+    change = np.linalg.norm(np.diff(knees, 2, axis=0), axis=-1) * 60.0
+    assert state.floor > 3.5 * rise and change.max() < 4.5
