@@ -29,7 +29,7 @@ RISES, SINKS = 0.4, 0.5
 DROPS, CLIMBS = 2.0, 4.0
 """A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
 HASTE = 50.0, 300.0
-"""A foot on its way up gets faster and slower by no more than the first [m/s²] of who goes backward or aside, and the second of who goes ahead, whose knee is bent as it leaves: a straight one would be thrown."""
+"""A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose knee is bent as it leaves: a straight one would be thrown."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
 GRAVITY = 9.81
@@ -54,7 +54,8 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     """Lead on the ground under each foot, where it stands or from where it left to where it will come down, and the
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
-    haste = HASTE[0] + (HASTE[1] - HASTE[0]) * max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1)
+    bent = max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1) if m.family == WALK else 0.0
+    haste = HASTE[0] + (HASTE[1] - HASTE[0]) * bent
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
