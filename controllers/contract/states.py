@@ -108,6 +108,11 @@ class CharacterState:
         """Why what was asked last can't be done, or goes wrong; "" if it can."""
         return self.memory.refused if isinstance(self.memory, Duty) else ""
 
+    @property
+    def seeks(self) -> bool:
+        """Whether it is still found out how what was asked last can be done."""
+        return isinstance(self.memory, Duty) and self.memory.asked is not None and self.memory.asked.onward is not None
+
 
 def _batch(state: CharacterState) -> tuple[int, ...]:
     """The batch axes of a state. ValueError where it has none."""

@@ -148,13 +148,14 @@ class Reconstruction(Controller):
         return f"{', '.join(names[:-1])} and {names[-1]} have exchanged their numbers" if names else ""
 
     def _seen(self, intent: Intent, level: float) -> np.ndarray:
-        """The points that are wanted (n, 3) as of a standard body on a floor there. Unable for another number of them."""
+        """The points that are wanted (n, 3) as of a standard body on a floor there, NaN where they are not finite. Unable for another number of them."""
         count = len(self.controls)
         if intent.points is None:
             return np.full((count, 3), np.nan)
         points = np.asarray(intent.points, float)
         if points.shape != (count, 3):
             raise Unable(f"points of shape {points.shape}: {count} are followed, {', '.join(self.controls.names)}")
+        points = np.where(np.isfinite(points), points, np.nan)  # infinite ones, which are nowhere either, would be reckoned with
         return (points - np.array([0.0, level, 0.0])) / self.factor
 
     def _turns(self, intent: Intent) -> np.ndarray:

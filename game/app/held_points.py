@@ -120,7 +120,7 @@ class HeldPoints:
         """What is going on, in lines."""
         lines = []
         if self.wanted is not None:
-            said = self.learning.said if self.learning is not None else ""
+            said = self.learning.so_far if self.learning is not None else ""
             lines.append(self._meanwhile + (f": {said}" if said else ""))
         if moment.comparison is not None:
             if moment.comparison.pins is None:

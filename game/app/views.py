@@ -38,7 +38,7 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     people = stepping(led(pointed(people, before, after, fraction, overlays), after, overlays, len(moment.players)), after, overlays)
     people += ghosts(aimed, people, after) if overlays.jump else ()
     text = tuple(text) or ((),) * len(cameras)
-    text = tuple((*lines, *broken(f"no jump: {seen.why}")) if seen is not None and seen.fault else lines
+    text = tuple((*lines, *broken(seen.told)) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))
     held = _held(moment)
     return tuple(Scene(camera, people if player.camera.flown else seen_past(people, camera, (i, *held)), moment.after.props, overlays, lines,

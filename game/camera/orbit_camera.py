@@ -13,8 +13,8 @@ from gambol.controllers.body import damp
 
 from ..input import Wish
 from ..scene import Prop
-from .arm import Armed, CameraSettings, finite, forward, nearer_to
-from .line_of_sight import above_floor
+from .arm import REST, Armed, CameraSettings, finite, forward, nearer_to
+from .line_of_sight import above_floor, outside
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -22,19 +22,21 @@ class Orbit(Armed):
     """Round a point, as in a viewer of models: the mouse turns it, its middle button pans.
 
     The point goes with the character (its heading is left alone) until it is panned away; then
-    it stays, until the player recentres. pivot: (3,) [m] where it is to be.
+    it stays, until the player recentres. pivot: (3,) [m] where it is to be. keeps: stays as far off as it is told whatever comes between; only out of what
+    its eye would be inside of it moves.
     """
 
     kind: ClassVar[str] = "orbit"
     pivot: np.ndarray
     tracks: bool = True
+    keeps: bool = False
 
     @staticmethod
     def round(pivot: np.ndarray, settings: CameraSettings = CameraSettings(), yaw: float = 0.0, pitch: float = 0.25,
-              distance: float = 4.0, tracks: bool = True) -> Orbit:
+              distance: float = 4.0, tracks: bool = True, keeps: bool = False) -> Orbit:
         """A camera at rest that looks at a point (3,) [m] along `yaw`."""
         return Orbit(eye=pivot - distance * forward(yaw, pitch), target=pivot, pivot=pivot, yaw=yaw, wanted_yaw=yaw,
-                     pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance, settings=settings, tracks=tracks)
+                     pitch=pitch, wanted_pitch=pitch, distance=distance, arm=distance, settings=settings, tracks=tracks, keeps=keeps)
 
     def recentred(self, heading: float) -> Self:
         """Back to the character, seen from behind `heading` [rad]."""
@@ -59,6 +61,12 @@ class Orbit(Armed):
         target = nearer_to(told.target, ground, level, s, dt) if told.tracks else damp(told.target, pivot, s.focus_halflife, dt)
         moved = replace(told, pivot=pivot, target=target, **told._swung(dt))
         return moved._reached(ground, dt, props, clear=False)
+
+    def _reached(self, ground, dt: float, props: Sequence[Prop], clear: bool, velocity: np.ndarray = REST) -> Self:
+        if not self.keeps:
+            return super()._reached(ground, dt, props, clear, velocity)
+        eye = above_floor(self.target - self.distance * forward(self.yaw, self.pitch))
+        return replace(self, eye=outside(eye, tuple(props)), arm=self.distance)
 
     def _pitches(self) -> tuple[float, float]:
         return -1.2, 1.5

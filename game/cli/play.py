@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -126,7 +127,8 @@ def show(game: Any, pixels: tuple[int, int], preset: Preset, log: Any = None, ca
     finally:
         game.close()
         if log is not None and log.begun:
-            say(f"{log.path}: {log.ticks / 60:.0f} s; `gambol play --replay` shows it, `gambol render --replay` films it")
+            named = f" {shlex.join((str(log.path), *capture.options))}" if capture is not None and capture.options else ""
+            say(f"{log.path}: {log.ticks / 60:.0f} s; `gambol play --replay{named}` shows it, `gambol render --replay{named}` films it")
         if capture is not None:
             capture.finish(say)
         if sending is not None and sending.lost:

@@ -56,8 +56,9 @@ class Preview:
     stand, place: (3,) [m] the middle of the feet, and where it is to land. arc, beads: (N, 3), (M, 3) [m] where the centre
     of mass goes, and where it is on every beat. fault: why it can't be made; empty if it can. nearest: (3,) [m] the place
     nearest to it that can be reached; None where there is none. heading: [rad] in which it is to land, None where nobody said so.
-    sought: whether all was found out about it that takes long; seeking: that, as long as it is sought. touch: what it would touch, and how the body
-    would lie in it.
+    slack: so far from the place it may land [m].
+    sought: whether all was found out about it that takes long; seeking: that, as long as it is sought; found: what was found so last, where the ring was
+    then. touch: what it would touch, and how the body would lie in it.
     """
 
     stand: np.ndarray
@@ -67,8 +68,10 @@ class Preview:
     fault: str
     nearest: np.ndarray | None = None
     heading: float | None = None
+    slack: float = 0.0
     sought: bool = False
     seeking: Future[Preview] | None = None
+    found: Preview | None = None
     touch: Touch | None = None
 
     @property
@@ -80,6 +83,13 @@ class Preview:
         if self.fault.startswith("too far:") and beyond > 0.05:
             return f"{beyond:.1f} m farther than this body can jump"
         return f"{self.fault}; it can jump {reach:.1f} m that way"
+
+    @property
+    def told(self) -> str:
+        """What somebody who aims is told: that it can't be made, or that it leads to the nearest place instead; "" if it can."""
+        if self.nearest is None or not self.fault.startswith("too far:") or not np.linalg.norm(self.place - self.nearest) <= self.slack:
+            return self.fault and f"no jump: {self.why}"
+        return f"{self.why}: it lands in the green ring"
 
 
 def plan_of(character: Character) -> tuple[Plan, float] | None:
@@ -98,7 +108,7 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
     jump = jump_of(character.controller)
     if jump is None or not aim.wants or leaving(character.state):  # what is not aimed may still be being compiled
         return None
-    leap = aim.target(landing(jump, character.state), props, -float(jump.gravity[1]), jump.longest)
+    leap = aim.target(landing(jump, character.state), props, -float(jump.gravity[1]), jump.longest, reaches=jump.about)
     if leap is None:
         return None
     solid, state = [prop for prop in props if not isinstance(prop, Goal)], jump.landing(character.controller.active(character.state)[1])
@@ -111,20 +121,18 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
         return _running(jump, start, leap, floor, solid, seen, before, crew) if sweeps else seen
     runs = bool(np.linalg.norm(start.velocity[[0, 2]]) >= RUNNING)
     sweeps = sweeps and bool(solid) and not runs  # who has let go is swept as he leaps
-    if before is not None and before.sought and not _moved(before, seen):
-        return replace(seen, fault=before.fault or seen.fault, nearest=before.nearest, sought=True, touch=before.touch)
-    if not sweeps and not seen.fault:
-        return seen
-    if before is not None and before.sought and _same_way(before, seen):
-        seen = replace(seen, nearest=before.nearest, sought=not sweeps)
-        if seen.sought:
-            return seen
-    if before is not None and before.seeking is not None:
-        if _moved(before, seen):
-            before.seeking.cancel()
-        else:
-            return _with(seen, before.seeking)
-    return _with(seen, (AT_ONCE if runs else crew).submit(_sought, jump, start, leap, floor, solid, seen, sweeps))
+    found, seeking = (None, None) if before is None else (before.found, before.seeking)
+    if seeking is not None and seeking.done():
+        found, seeking = seeking.result(), None
+    known = _with(seen, found, sweeps)
+    if known.sought or not sweeps and not seen.fault:
+        return known
+    if before is not None and seeking is not None:
+        if not _moved(before, seen) or seen.fault and _same_way(before, seen):  # how far it can get that way is sought on while the ring moves on
+            return replace(known, seeking=seeking)
+        seeking.cancel()
+    seeking = (AT_ONCE if runs else crew).submit(_sought, jump, start, leap, floor, solid, seen, sweeps)
+    return _with(seen, seeking.result(), sweeps) if seeking.done() else replace(known, seeking=seeking)
 
 
 def _running(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[Prop], seen: Preview, before: Preview | None, crew: Executor) -> Preview:
@@ -141,12 +149,16 @@ def _running(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence
     return replace(seen, seeking=seeking)
 
 
-def _with(seen: Preview, seeking: Future[Preview]) -> Preview:
-    """A preview with what was found out about it, if it has been."""
-    if not seeking.done():
-        return replace(seen, seeking=seeking)
-    found = seeking.result()
-    return replace(seen, fault=found.fault or seen.fault, nearest=found.nearest, sought=True, touch=found.touch)
+def _with(seen: Preview, found: Preview | None, sweeps: bool) -> Preview:
+    """A preview with what was found out last; of a ring that has moved on since with the nearest place alone, if it lies on the same way.
+    sweeps: whether what it touches has to be found out, too."""
+    if found is None:
+        return seen
+    if not _moved(found, seen):
+        return replace(seen, fault=found.fault or seen.fault, nearest=found.nearest, sought=True, touch=found.touch, found=found)
+    if _same_way(found, seen):
+        return replace(seen, nearest=found.nearest, sought=not sweeps, found=found)
+    return replace(seen, found=found)
 
 
 def _sought(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[Prop], seen: Preview, sweeps: bool) -> Preview:
@@ -170,7 +182,7 @@ def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Pro
     stand = jump.middle(start, floor)
     place = stand if leap.place is None else np.asarray(leap.place, float)
     way, why = jump.survey(start, place, floor, leap.airtime, solid)
-    return Preview(stand, place, *flight(way), why, heading=leap.heading)
+    return Preview(stand, place, *flight(way), why, heading=leap.heading, slack=leap.slack)
 
 
 def _pushing(jump: Jump, start: Start) -> Start:

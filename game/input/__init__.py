@@ -5,7 +5,7 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from .aim import NEAR, PATIENCE, Aim
+from .aim import FARTHEST, NEAR, PATIENCE, Aim
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
                       player_of, wheel_wish, wishes)
@@ -22,7 +22,7 @@ from .wish import STEPS, Wish, push
 
 __all__ = [
     "BRAKES", "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
-    "Bindings", "Command", "Jump", "Keyboard", "Mouse", "Move", "NEAR", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
+    "Bindings", "Command", "FARTHEST", "Jump", "Keyboard", "Mouse", "Move", "NEAR", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
     "before", "braked", "button_label", "cramped", "dead_zone", "drivers", "headlong", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
     "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "shared", "user_file", "wheel_wish", "wishes",
 ]

@@ -8,7 +8,7 @@ longer it was held. Who stands and turns meanwhile, or keeps facing, says in whi
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -29,10 +29,14 @@ PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
 SWINGS = 3.0
 """How fast the heading turns in which to land [rad/s]."""
-FARTHEST = 2.6
-"""How far from a standing body the ring may be [m]."""
+FARTHEST = 1.4
+"""How far from a standing body the ring may be, over how far it leaps over level ground: so far it may leap down."""
+BEYOND = 0.2
+"""On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
+LOWER = 0.05
+"""Floor that is lower by more than this [m] may be reached from farther off."""
 SLACK = 0.5, 0.3
 """Who can't reach the ring lands at most so far from it [m], from a stand and on the move."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
@@ -42,11 +46,19 @@ SINKS = 0.35
 PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 TURNS = 0.3
-"""That passes at this pace while a standing body still turns to the ring, or sets its feet: half a turn takes 2.2 s."""
+"""That passes at this pace while a standing body still turns to the ring, sets its feet, or finds out how to leap: half a turn takes 2.2 s."""
 ASKEW = 0.35
 """A standing body faces the ring to within this before it jumps [rad]."""
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
+
+Reaches = Callable[[float], float]
+"""About how far a standing body leaps [m], so far aside [rad] of the way it faces."""
+
+
+def anywhere(aside: float) -> float:
+    """What nobody knows of is no limit."""
+    return math.inf
 
 
 @dataclass(frozen=True)
@@ -67,9 +79,11 @@ class Aim:
     heading: float | None = None
     spent: bool = False
 
-    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False) -> Aim:
+    def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
+             farthest: float = math.inf) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
-        the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first."""
+        the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first.
+        farthest: how far from a standing body the ring may be [m]."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         x, z = self._there(state)
@@ -80,7 +94,7 @@ class Aim:
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place)
             sets = state.refused == SETS_FEET
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
-            pace = 0.0 if aloft else TURNS if sets or cramped or self._askew(state) else 1.0
+            pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
             return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
@@ -91,7 +105,7 @@ class Aim:
         else:
             pushed = in_view(wish.move, camera_yaw)
             x, z = (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
-            shrink = min(1.0, FARTHEST / max(math.hypot(x, z), 1e-9))
+            shrink = min(1.0, farthest / max(math.hypot(x, z), 1e-9))
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
@@ -136,7 +150,8 @@ class Aim:
         """Whether a jump is aimed at, or waited for."""
         return self.aiming or self.waiting > 0.0
 
-    def target(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf, ahead: float = 0.0) -> Leap | None:
+    def target(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf, ahead: float = 0.0,
+               reaches: Reaches = anywhere) -> Leap | None:
         """The jump that would be made now; None where nobody aims. gravity: [m/s²], downwards positive. longest: [s] that the body can be in
         the air straight up; ahead: as it would be made so many seconds later."""
         if not self.wants:
@@ -146,18 +161,30 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self._there(state)
-        x, z = (x, z) if self.moving else on_top((x, z), floor, around)
+        x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=self.heading)
 
-    def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
+    def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
+                reaches: Reaches = anywhere) -> Leap | None:
         """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""
-        return None if self.moving or not self.aiming or self._askew(state) else self.target(state, around, gravity, longest, SINKS)
+        return None if self.moving or not self.aiming or self._askew(state) else self.target(state, around, gravity, longest, SINKS, reaches)
 
-    def asked(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf) -> Leap | None:
+    def asked(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
+              reaches: Reaches = anywhere) -> Leap | None:
         """The jump that is wanted now that the button was let go; None while the body still turns to it."""
         if self.aiming or self.waiting <= 0.0:
             return None
-        return None if self._askew(state) else self.target(state, around, gravity, longest)
+        return None if self._askew(state) else self.target(state, around, gravity, longest, 0.0, reaches)
+
+    def _near(self, place: tuple[float, float], state: CharacterState, around: Sequence[Any], reaches: Reaches) -> tuple[float, float]:
+        """A place x, z [m], or where on the way there the ring stops."""
+        floor = float(state.floor)
+        x, z = (place[k] - float(state.ground[k]) for k in (0, 1))
+        aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring first
+        share = (reaches(aside) + BEYOND) / math.hypot(x, z)
+        if share >= 1.0 or floor_at(*place, around, floor + UP) < floor - LOWER:
+            return place
+        return float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
 
     def _askew(self, state: CharacterState) -> bool:
         """Whether a standing body still has to turn to the ring."""

@@ -55,7 +55,7 @@ class Operator:
             target, yaw = held.target, held.yaw
         else:
             target = np.array(table.target)
-        held = Orbit.round(target, settings, yaw, above, table.distance, tracks=table.target is None)
+        held = Orbit.round(target, settings, yaw, above, table.distance, tracks=table.target is None, keeps="distance" in table.model_fields_set)
         return replace(operator, held=held.placed(ground, world.props))
 
     def step(self, world: World) -> Operator:

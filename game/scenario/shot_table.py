@@ -28,7 +28,8 @@ class CameraTable(Table):
     follow: an actor, looking `around` degrees to the left of its heading at the cut and from
     `above` degrees over the horizon; with `swing` it comes round behind. orbit: the same, turning by
     `turn` degrees until the cut, round an actor or a `target`. fixed: from `eye`. dolly: along the
-    points of `path`. The last two look at `target`, or at the middle of the actors in `look_at`.
+    points of `path`. The last two look at `target`, or at the middle of the actors in `look_at`, and stay where they are put.
+    What stands between brings a follow nearer, and an orbit without a `distance`; with one it keeps it, and is only moved out of what it would be inside of.
     Actors are looked at `height` metres above the floor.
     """
 

@@ -34,6 +34,11 @@ LONGEST = 12 * 3600 * RATE
 """The longest log that is read or written [ticks]."""
 
 
+def worn(controller: Any) -> str:
+    """The name of the body that somebody wears, as a log keeps it; "" for the mannequin."""
+    return "" if controller.body is None else printable(controller.body.name, 100)
+
+
 @dataclass(frozen=True, eq=False)
 class Log:
     """What was played. players: at the beginning. ticks: for each, one wish for each player.
@@ -73,8 +78,7 @@ class LogWriter:
         self.path, self._file, self.ticks = Path(path), None, 0
         needs = {name: str(Path(file).resolve()) for name, file in (("clip", clip), ("database", database)) if file} | {name: word for name, word in told.items() if word}
         self._head = {"gambol": "input log", "format": FORMAT, "version": version("gambol"), "players": players,
-                      "library": digest(controller),
-                      "character": "" if controller.body is None else printable(controller.body.name, 100), **needs}
+                      "library": digest(controller), "character": worn(controller), **needs}
         self._packer, self._waiting = zlib.compressobj(9, strategy=zlib.Z_FILTERED), []
         self._count, self._ended = 0, False
 

@@ -11,7 +11,7 @@ from gambol.controllers.files import printable
 from ..world import RATE, Filmed, Recorded, methods
 from .comparison import wanted
 from .fingerprint import digest, fingerprint
-from .input_log import Log
+from .input_log import Log, worn
 from .log_lines import LogError
 from .settings import SettingError
 from .state import SessionState, opening
@@ -44,10 +44,17 @@ def of_library(log: Log, controller: Any) -> Log:
     if log.library != digest(controller):
         if log.clip:
             raise LogError(f"{log.path}: was played with another clip than {log.clip} holds now")
-        wearing = f"the character {log.character!r}" if log.character else "the mannequin"
-        raise LogError(f"{log.path}: was played as {wearing}, and with another gait library or in another size: "
-                       "name them with --library and --character")
+        raise LogError(f"{log.path}: was played {_otherwise(log.character, worn(controller))}")
     return log
+
+
+def _otherwise(played: str, now: str) -> str:
+    """How a log was played otherwise than somebody would play it now, and what to name; both are told by whose body is worn."""
+    if played != now:
+        return f"as the character {played!r}: name its file with --character" if played else "as the mannequin: leave out --character"
+    if not played:
+        return "with another gait library: name it with --library"
+    return f"with another gait library, or another character {played!r}: name them with --library and --character"
 
 
 def replay(log: Log, controller: Any) -> Iterator[SessionState]:

@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import BRAKES, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, headlong, landing, last_chance, leaps, leaving, push, ring, rises
+from ..input import BRAKES, FARTHEST, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, headlong, landing, last_chance, leaps, leaving, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -75,7 +75,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         stands = state if jump is None else landing(jump, state)  # in the air one aims from where one will land
         held = replace(wish, strafe=wish.strafe or player.pilot.locked)
         back = _back(player, character, stands, moment.after.props)
-        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None) if jump is not None else player.aim
+        farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
+        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
@@ -90,7 +91,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         known = run_up or RunUp()
         players[-1] = replace(players[-1], run_up=known)
         # how long it can be in the air is not asked before somebody aims: on a first start that is still being compiled
-        leap, ready = (None, None) if jump is None or not aim.wants or back is not None else (ask(stands, props, -float(jump.gravity[1]), jump.longest) for ask in (aim.asked, aim.readied))
+        leap, ready = (None, None) if jump is None or not aim.wants or back is not None else (ask(stands, props, -float(jump.gravity[1]), jump.longest, jump.about) for ask in (aim.asked, aim.readied))
         command = command if known.leap is None else replace(command, velocity=known.velocity)
         command = command if back is None or not aim.stands else replace(command, velocity=back)
         intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,

@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -182,7 +183,7 @@ class Learning:
     def __init__(self, wanted: Sequence[tuple[str, str]], file: Path | None = None, progress: Progress | None = None):
         arguments = [f"{name}@{points}" for name, points in wanted]
         command = [sys.executable, "-P", "-m", "gambol.game.world.learnt_methods", str(file or ""), *arguments]
-        self.said, self._told = "", progress or _silent
+        self.said, self._told, self._began = "", progress or _silent, time.monotonic()
         # small matrices are learnt many times faster on one thread, and the game keeps the other cores
         self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                          stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
@@ -204,6 +205,11 @@ class Learning:
     def _complain(self) -> None:
         assert self._process.stderr is not None  # it is a pipe, and a full one would stop the program
         self._complaints.extend(self._process.stderr)
+
+    @property
+    def so_far(self) -> str:
+        """How far it is, in words; what only compiles tells for how long it has."""
+        return self.said or f"{time.monotonic() - self._began:.0f} s; about a minute, the first time"
 
     @property
     def done(self) -> bool:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from gambol.controllers.contract import Leap
-from gambol.controllers.jump import SETS_FEET
+from gambol.controllers.jump import SETS_FEET, Physique
 from gambol.controllers.person import person
 from gambol.controllers.navigation import gap
 from gambol.game.app.views import previews, scenes
 from gambol.game.explain.jump_preview import previewed
 from gambol.game.explain.jump_sketches import CAN, CANNOT, aimed
+from gambol.game.input.aim import BEYOND, SLACK
 from gambol.game.input.making import jumping
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box, Overlays, Patch
@@ -93,9 +94,10 @@ def test_where_a_jump_is_refused_the_nearest_place_is_one_that_can_be_jumped_to(
     state = who.controller.active(who.state)[1]
     assert seen.fault and seen.nearest is not None
     assert not previewed(jump, state, Leap(seen.nearest), ()).fault
-    assert previewed(jump, state, Leap(seen.nearest + 0.1 * (seen.place - seen.nearest)), ()).fault
+    assert previewed(jump, state, Leap(seen.nearest + 0.3 * (seen.place - seen.nearest)), ()).fault
     far, near = (np.linalg.norm((place - seen.stand)[[0, 2]]) for place in (seen.place, seen.nearest))
     assert seen.why == f"{far - near:.1f} m farther than this body can jump"
+    assert seen.told == "0.1 m farther than this body can jump: it lands in the green ring"
     rings = {sketch.tint for sketch in aimed(seen, ()) if isinstance(sketch, Patch)}
     assert rings == {CAN, CANNOT}
 
@@ -106,16 +108,20 @@ def test_the_nearest_place_is_not_sought_anew_while_one_aims_the_same_way(beyond
     monkeypatch.setattr(type(somebody.parts["jump"]), "nearest", lambda jump, start, place, *_: sought.append(place))
     again, = previews(timeline.now, (seen,))
     assert again.nearest is seen.nearest and not sought
-    turned = replace(seen, nearest=seen.stand + [0.5, 0.0, 1.5])
-    previews(timeline.now, (replace(turned, place=seen.stand + [0.6, 0.0, 1.8]),))
+    turned = replace(seen.found, nearest=seen.stand + [0.5, 0.0, 1.5], place=seen.stand + [0.6, 0.0, 1.8])
+    previews(timeline.now, (replace(seen, found=turned),))
     assert len(sought) == 1
-    previews(timeline.now, (replace(seen, heading=1.0),))
+    previews(timeline.now, (replace(seen, found=replace(seen.found, heading=1.0)),))
     assert len(sought) == 2, "who is to land turned another way reaches other places"
 
 
-def test_who_lets_go_is_told_why_not_without_coordinates(beyond):
-    timeline, seen = beyond
-    moment, told = timeline.now, []
+def test_who_lets_go_is_told_why_not_without_coordinates(somebody):
+    """Down from a low platform the ring may lie farther than is forgiven."""
+    low = Box((0.0, 0.05, 0.0), (1.4, 0.1, 1.4))
+    timeline, told = Timeline(begin(World((Character("A", somebody, somebody.start().at((0.0, 0.0, 0.0), 0.1)),), (low,)), 1)), []
+    for wish in [Wish(jump=True)] * 10 + [Wish(jump=True, move=(0.0, 1.0))] * 120:
+        timeline.advance((wish.rounded(),))
+    moment, (seen,) = timeline.now, previews(timeline.now)
     for _ in range(60):
         after = advance(moment, (Wish(),))
         told += refused(moment, after)
@@ -214,3 +220,33 @@ def test_where_something_would_be_touched_the_body_is_seen_as_it_would_lie_in_it
     assert told.why == seen.why and np.array_equal(told.touch.root, seen.touch.root)
     far = replace(moment, after=replace(moment.after, props=()))
     assert previews(far)[0].touch is None
+
+
+@pytest.mark.parametrize("move", [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0)])
+@pytest.mark.parametrize("strafe", [False, True])
+def test_who_holds_it_until_the_ring_stops_leaps_as_far_as_he_can(somebody, move, strafe):
+    """Ahead, aside and back, and turned there first or not; a ring that stops lies no nearer than he can leap."""
+    timeline, reach = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1)), somebody.parts["jump"].about
+    push, told, made = Wish(jump=True, move=move, strafe=strafe), [], None
+    for wish in [replace(push, move=(0.0, 0.0))] * 2 + [push] * 150 + [Wish(strafe=strafe)] * 130:
+        before = timeline.now
+        timeline.advance((wish.rounded(),))
+        told += refused(before, timeline.now)
+        made = made or jumping(timeline.now.after.characters[0].state)
+        if made is not None:
+            break
+    assert made is not None and not told
+    far = float(np.linalg.norm(made.plan.feet[:, [0, 2]].mean(0) - timeline.now.after.characters[0].state.pose.root[[0, 2]]))
+    assert far > 0.85 * reach(np.arctan2(-move[0], move[1]) if strafe else 0.0)
+
+
+@pytest.mark.parametrize("body", [{}, {"height": 1.2}, {"height": 2.1}, {"strength": 0.7}, {"strength": 2.0}])
+def test_where_the_ring_stops_is_little_beyond_what_bodies_reach(somebody, body):
+    who = person(physique=Physique(**body)) if body else somebody
+    jump, state = who.parts["jump"], who.active(who.start())[1]
+    for aside in (0.0, 1.6, 3.1):
+        way = 9.0 * np.array([np.sin(aside), 0.0, np.cos(aside)])
+        start, floor = jump.placed(state, Leap(way, heading=0.0))
+        middle = jump.middle(start, floor)
+        reaches = float(np.linalg.norm(jump.nearest(start, middle + way, floor) - middle))
+        assert 0.0 < jump.about(aside) + BEYOND - reaches < SLACK[False]

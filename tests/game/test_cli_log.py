@@ -1,11 +1,16 @@
 """Logs on the command line: filmed as they were seen, refused in one line, and kept whatever happens."""
 
+from pathlib import Path
+from types import SimpleNamespace
+
 import av
 import numpy as np
 import pytest
 
 from gambol.game import hosts
 from gambol.game.app.app import Play
+from gambol.game.cli.base import Preset
+from gambol.game.cli.play import show
 from gambol.game.hosts import DisplayError
 from gambol.game.hosts.events import KeyEvent
 from gambol.game.session.fingerprint import fingerprint
@@ -105,6 +110,7 @@ def test_what_was_played_is_kept_however_the_window_ends(log, tmp_path, monkeypa
     assert "b.gambol: 2 s; `gambol play --replay` shows it" in done.output
     kept = read(tmp_path / "new" / "b.gambol")
     assert kept.players == 2 and len(kept.ticks) == 100
+    assert "--character" not in done.output
     if end is None:
         *_, last = replay(kept, Glide())
         assert done.exit_code == 0 and fingerprint(last) == fingerprint(window.last)
@@ -115,3 +121,11 @@ def test_a_game_that_never_began_leaves_no_log(log, tmp_path, monkeypatch):
     monkeypatch.setattr(hosts, "run_window", lambda *_: 0)
     assert gambol("play").exit_code == 0
     assert [p.name for p in tmp_path.iterdir()] == ["a.gambol"]
+
+
+def test_what_shows_a_log_again_names_who_was_played(monkeypatch, capsys):
+    monkeypatch.setattr(hosts, "run_window", lambda *_: None)
+    game, log = SimpleNamespace(close=lambda: None), SimpleNamespace(begun=True, path=Path("a.gambol"), ticks=60)
+    show(game, (640, 360), Preset.full, log, SimpleNamespace(options=("--character", "my kid.glb"), finish=lambda say: None))
+    said = "".join(capsys.readouterr())
+    assert "`gambol play --replay a.gambol --character 'my kid.glb'` shows it, `gambol render --replay a.gambol --character 'my kid.glb'` films it" in said

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -231,10 +232,25 @@ def test_keys_open_hold_and_leave(walker):
     assert play.done
 
 
+def test_what_only_compiles_is_told_with_how_long_it_has(monkeypatch):
+    class Sleeps:
+        stdout, stderr, returncode = (), (), None
+
+        def __init__(self, *_, **__):
+            pass
+    monkeypatch.setattr("gambol.game.world.learnt_methods.subprocess.Popen", Sleeps)
+    now = iter([10.0, 14.6])
+    monkeypatch.setattr("gambol.game.world.learnt_methods.time", SimpleNamespace(monotonic=lambda: next(now)))
+    one = learning.Learning([("trackers", "6")])
+    assert one.so_far == "5 s; about a minute, the first time"
+    one.said = "the database 40 %"
+    assert one.so_far == "the database 40 %"
+
+
 def test_who_waits_for_it_may_take_it_back_and_meanwhile_holds_what_is_there(walker, monkeypatch):
     """X once more ends what gets ready; nothing of it comes later."""
     class Endless:
-        done, said, fault, stopped = False, "", "", 0
+        done, so_far, fault, stopped = False, "3 s", "", 0
 
         def __init__(self, *_):
             pass
@@ -252,6 +268,7 @@ def test_who_waits_for_it_may_take_it_back_and_meanwhile_holds_what_is_there(wal
     assert play.held_points.wanted is not None and play.now.comparison.pins is not None
     for _ in range(3):
         play.do("study_ghosts")
+    assert "getting ready for 2 points: 3 s" in play.held_points.status(play.now, str)
     assert play.kept.notices == ("one thing after the other: still getting ready for 2 points",), "said once"
     play.do("study")
     ticks(play, 2)

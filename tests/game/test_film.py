@@ -143,6 +143,17 @@ def test_following_cameras_keep_out_of_walls(tmp_path):
     assert np.linalg.norm(eyes[0] - pictures[0][1][0].camera.target) < 3
 
 
+def test_an_orbit_whose_distance_is_told_keeps_it_whatever_comes_between_and_is_in_nothing(tmp_path):
+    """A post stands between, and a block where the camera goes."""
+    shot = '\n[[shots]]\nkind = "orbit"\ntarget = [0, 0.8, 0]\ndistance = 7\nturn = 360'
+    things = 'props = [{ kind = "pillar", foot = [-1.5, 0, 0], radius = 0.15, height = 1.5 }, { centre = [0, 1.5, 7], size = [1, 3, 1] }]'
+    scenario, pictures = filmed(tmp_path, HEAD + things + shot + ACTORS)
+    eyes = np.array([scenes[0].camera.eye for _, scenes in pictures])
+    assert all(blocked(eye, scenario.stage(), margin=0.0) is None for eye in eyes)
+    off = np.linalg.norm(eyes - [0.0, 0.8, 0.0], axis=1)
+    assert off.min() > 6.2 and np.mean(np.abs(off - 7.0) < 1e-9) > 0.9
+
+
 def test_an_actor_is_there_from_when_it_enters_until_it_leaves(tmp_path):
     """Meanwhile it moves as it would from the beginning; before and afterwards nobody sees it and it costs nothing."""
     text = HEAD + SHOTS + ACTORS

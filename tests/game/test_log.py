@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from gambol.controllers.mocap import Reading, write_bvh
 from gambol.game.files.paths import OutputError
 from gambol.game.input import Wish
 from gambol.game.session.fingerprint import fingerprint
-from gambol.game.session.input_log import LogWriter, read
+from gambol.game.session.input_log import Log, LogWriter, read
 from gambol.game.session.log_lines import LogError
 from gambol.game.session.replay import of_library, performer_of, replay, strayed
 from gambol.game.session.settings import SETTINGS
@@ -97,8 +98,18 @@ def test_whoever_writes_seldom_writes_lines_that_can_be_read(tmp_path):
 def test_another_library_is_told_before_anything_moves(tmp_path, locomotion):
     path = tmp_path / "a.gambol"
     play(path, walk(10))
-    with pytest.raises(LogError, match="as the mannequin, and with another gait library.*--library and --character"):
+    with pytest.raises(LogError, match=r"a\.gambol: was played with another gait library: name it with --library$"):
         of_library(read(path), locomotion)
+
+
+@pytest.mark.parametrize(("played", "now", "says"), [
+    ("kid", "", "was played as the character 'kid': name its file with --character"), ("", "kid", "was played as the mannequin: leave out --character"),
+    ("kid", "kid", "was played with another gait library, or another character 'kid': name them with --library and --character")])
+def test_another_body_is_told_by_what_is_known_of_it(monkeypatch, played, now, says):
+    monkeypatch.setattr(Glide, "body", SimpleNamespace(name=now) if now else None)
+    with pytest.raises(LogError) as told:
+        of_library(Log(1, "another", played, (), path=Path("a.gambol")), GLIDE)
+    assert str(told.value) == f"a.gambol: {says}"
 
 
 def test_a_replay_that_goes_another_way_is_noticed(tmp_path):

@@ -1,5 +1,6 @@
 """A body that follows points: taken over and handed back without a pop, whatever is lost, as a pure function."""
 
+import warnings
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -299,3 +300,16 @@ def test_methods_tell_their_motions_apart():
     """By the same points."""
     kinds = {Reconstruction(type(name, (), {})(), parse("4", SKELETON)).kind for name in ("One", "Other")}  # type: ignore[arg-type]
     assert len(kinds) == 2
+
+
+def test_points_that_are_nowhere_are_unseen_and_nothing_is_reckoned_with_them(follower, known):  # noqa: F811
+    """Infinite ones as those that are NaN, in a loop of fewer steps than the method has frames."""
+    frames, ends = follower.controls.extract(known[1][0])[:40:2], []
+    for nowhere in (np.inf, np.nan):
+        state = follower.begin(frames[0])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for k, seen in enumerate(frames):
+                state, pose = follower.step(state, Intent(points=np.where(k in (5, 6, 7), nowhere, seen)), 2 * DT)
+        ends.append(pose)
+    assert np.array_equal(ends[0].rotations, ends[1].rotations) and np.array_equal(ends[0].root, ends[1].root)
