@@ -91,9 +91,12 @@ class Tracking(Controller):
         if sighting is not None:
             there = np.asarray(sighting.place, float)
             track, age = _shifted(self.tracker.step(_shifted(track, -there), sighting.pictures), there), 0.0
+        found = sighting is not None and track.restarted
         offset, rate = settle(watching.offset, watching.rate, FADE, dt)
         before, now = (local_turns(self.tracker.surface.chain, one) for one in (track.before, track.now))
         seen = _part(before, now, min((age + dt) * self.tracker.rate, 1.0))
+        if found:  # arms that were lost go to where they are, and don't jump there
+            offset[1:], rate[1:] = log(np.swapaxes(seen.rotations, -1, -2) @ np.asarray(state.pose.rotations, float)), 0.0
         pose = Pose(seen.root + offset[0] + self.beside, seen.rotations @ exp(offset[1:]))
         return driven(state, self.skeleton, pose, Watching(track, age, offset, rate), dt), pose
 

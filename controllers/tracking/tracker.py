@@ -6,15 +6,15 @@ body at the pose that is expected, the pose is fitted to that, and so on by turn
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from .cameras import Lens
-from .pose import (SETTINGS, Evidence, Fit, Glimpse, SolverSettings, brought, calmed, carried, in_hindsight, judged, observed, overlap, part_way,
-                   penalty_of, predicted, solve)
+from .pose import (SETTINGS, Doubt, Evidence, Fit, Glimpse, Observed, Penalty, SolverSettings, brought, calmed, carried, held, in_hindsight, judged, observed,
+                   overlap, part_way, penalty_of, predicted, solve)
 from .segmentation import SEGMENTATION, Segmentation, Segmented, segmented
 from .silhouettes import Surface, View, hidden, is_mask, own, redrawn, rendered, skinned
 from .together import together
@@ -34,6 +34,8 @@ FASTEST = 12.0
 """Nobody's hips go faster [m/s]."""
 SURE = 0.9
 """A pose that covers so much of the usual in every silhouette is one to begin with again when somebody was lost."""
+CLEARLY = 0.02
+"""By so much do silhouettes agree more in all with arms that are held otherwise, without the camera that says most for it: a rectangle is in one."""
 PAST = 8
 """So many frames before the one that is looked back at say how it moved."""
 
@@ -44,7 +46,8 @@ class TrackerSettings:
     pace: how far joints go on as before where the penalty draws them, 1 as the paper's eq. (16), 0 not at all.
     gate: leave out cameras whose picture is not what could be expected. firmness: of the penalty, times what bounds on
     acceleration say. carriage: how firmly arms are drawn to how people carry them where contours are ROUGH [1/rad²]. rounds: of segmentation and pose, where pictures are seen; pictures: the solver of each.
-    lag: so many frames late may a pose come, by `Tracker.hindsight`; 0 keeps nothing for that."""
+    restarts: try arms as people hold them where contours stay worse than usual. lag: so many frames late may a pose come, by `Tracker.hindsight`;
+    0 keeps nothing for that."""
 
     start: Literal["prediction", "last"] = "prediction"
     penalty: bool = True
@@ -52,6 +55,7 @@ class TrackerSettings:
     gate: bool = True
     firmness: float = FIRM
     carriage: float = 0.0
+    restarts: bool = False
     solver: SolverSettings = SETTINGS
     rounds: int = 2
     pictures: SolverSettings = replace(SETTINGS, outer=2)
@@ -63,7 +67,7 @@ class TrackerSettings:
 class Track:
     """What is known after a frame. now, before: the last two poses. fit: how the last one was found; None at the start.
     recent: what the last frames said, where a pose may come late. unseen: for so many frames nobody has been seen.
-    sure: the last pose that was as it looked."""
+    sure: the last pose that was as it looked. doubt: whether arms are where they seem. restarted: they were found elsewhere in this frame."""
 
     now: Configuration
     before: Configuration
@@ -72,6 +76,8 @@ class Track:
     recent: tuple[Glimpse, ...] = ()
     unseen: int = 0
     sure: Configuration | None = None
+    doubt: Doubt = Doubt()
+    restarted: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,11 +111,13 @@ class Tracker:
         start = target if chosen.start == "prediction" else track.now
         rough = ROUGH if track.fit is None else min(max(track.fit.residual, CLEANEST), ROUGHEST)
         firmness = chosen.firmness * (rough / ROUGH) ** 2
-        penalty = None
-        if chosen.penalty:
-            penalty = penalty_of(chain, calmed(chain, track.now, target, chosen.pace), self.rate, firmness)
-            if chosen.carriage:
-                penalty = carried(chain, penalty, chosen.carriage * (rough / ROUGH) ** 2)
+
+        def drawn_to(where: Configuration) -> Penalty | None:
+            if not chosen.penalty:
+                return None
+            made = penalty_of(chain, where, self.rate, firmness)
+            return carried(chain, made, chosen.carriage * (rough / ROUGH) ** 2) if chosen.carriage else made
+        penalty = drawn_to(calmed(chain, track.now, target, chosen.pace))
         hiding = [hidden(one) for one in seen]
         evidence, believed, found, drawn = track.evidence, there, None, None
         for k in range(chosen.rounds if shown.any() else 1):
@@ -124,6 +132,7 @@ class Tracker:
             views = together(observed, self.lenses, [one.mask for one in found], hiding)
             fit = solve(self.surface, views, start, penalty, believe, chosen.pictures if shown.any() else chosen.solver, drawn)
             start = fit.where
+        doubt, restarted = track.doubt, False
         blind, now = not fit.matrix.any(), track.now
         if chosen.gate and (blind or (there & ~fit.believed).any()) and (
                 second := self._second_look(seen, there, shown, track, target, evidence)) is not None:
@@ -131,13 +140,18 @@ class Tracker:
             blind, now = False, now if led else fit.where  # who is found elsewhere did not go there within a frame
         else:
             fit = replace(fit, where=target if blind else self._bounded(now, fit.where))
+            if chosen.restarts and not blind:
+                doubt = doubt.after(fit.residual, self.rate)
+                if doubt.way is not None and (other := self._otherwise(views, held(chain, fit.where, doubt.way), fit, drawn_to)) is not None:
+                    fit, restarted = other, True
+                    doubt, now = doubt.mended(fit.residual), Configuration(now.root, fit.where.angles)  # nobody's arms went there within a frame
         recent: tuple[Glimpse, ...] = ()
         if chosen.lag:
             sure = (ROUGH / min(max(fit.residual, CLEANEST), ROUGHEST)) ** 2
             recent = (*track.recent, Glimpse(fit.where, sure * fit.matrix, sure * fit.vector))[-(PAST + 1 + chosen.lag):]
         told = there & ~np.isnan(fit.overlaps)
         sure = fit.where if (fit.overlaps[told] >= SURE * evidence.usual[told]).all() and not blind else track.sure
-        return Track(fit.where, now, evidence, fit, recent, track.unseen + 1 if blind else 0, sure)
+        return Track(fit.where, now, evidence, fit, recent, track.unseen + 1 if blind else 0, sure, doubt, restarted)
 
     def hindsight(self, track: Track) -> list[Configuration]:
         """The poses of the last frames as they look now, the newest last: the one `settings.lag` before it is as good as it gets."""
@@ -174,6 +188,17 @@ class Tracker:
             if fit is not None and told.any() and (overlaps[told] >= usual[told]).all():
                 return fit, Evidence(evidence.usual, np.where(there, 0, evidence.doubted)), k < led
         return None
+
+    def _otherwise(self, views: Sequence[Observed], start: Configuration, fit: Fit, drawn_to: Callable[[Configuration], Penalty | None]) -> Fit | None:
+        """The fit from another start, if it clearly explains silhouettes better than this frame's; of cameras that are believed."""
+        other = solve(self.surface, views, start, drawn_to(start), lambda _: fit.believed, self.settings.solver)
+
+        def agreement(where: Configuration) -> np.ndarray:
+            vertices = skinned(self.surface, *posed(self.surface.chain, where)[:2])
+            return np.array([overlap(view.mask, rendered(view.lens, vertices, self.surface.triangles).mask, view.hidden)
+                             for view, told in zip(views, fit.believed) if told])
+        gains = np.nan_to_num(agreement(other.where) - agreement(fit.where))
+        return replace(other, overlaps=fit.overlaps) if gains.sum() - max(gains.max(initial=0.0), 0.0) >= CLEARLY else None
 
     def _bounded(self, now: Configuration, target: Configuration) -> Configuration:
         """A pose no farther from another than people go within a frame."""

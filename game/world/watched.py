@@ -115,7 +115,7 @@ def tracked_of(performer: Any, watches: Watches, rate: float, penalty: bool = Tr
 
     surface = surface_of(watches.surface.chain.skeleton, "full", level="middle")
     someone = walker_of(performer)
-    tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty, carriage=CARRIAGE))
+    tracker = Tracker(surface, watches.lenses, rate / watches.every, TrackerSettings(penalty=penalty, carriage=CARRIAGE, restarts=True))
     controllers = {"locomotion": someone.parts.get("locomotion", someone), "tracking": Tracking(tracker, watches.beside)}
     return Embodied(controllers, performer.body, performer.factor) if isinstance(performer, Embodied) else Supervisor(controllers)
 
