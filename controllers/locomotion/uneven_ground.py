@@ -29,7 +29,8 @@ RISES, SINKS = 0.4, 0.5
 DROPS, CLIMBS = 2.0, 4.0
 """A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
 HASTE = 50.0, 300.0
-"""A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose knee is bent as it leaves: a straight one would be thrown."""
+"""A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose
+knee is bent as it leaves: a straight one would be thrown."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
 GRAVITY = 9.81
@@ -226,8 +227,8 @@ def _beneath(m, tops, floor, foot, highest, place):
     heel_x, heel_z = place[0], place[1]
     shown_kernel(m, 2 * foot + 1, place)
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    for k in range(5):  # a little behind the heel, heel, ball, toes' end, a little before that
-        along = (-REACHES / FOOT, 0.0, 1.0, 1.0 + TOE / FOOT, 1.0 + (TOE + REACHES) / FOOT)[k]
+    for k in range(4):  # heel, ball, toes' end
+        along = (0.0, 1.0, 1.0 + TOE / FOOT, 1.0 + (TOE + REACHES) / FOOT)[k]
         x, z = heel_x + along * (place[0] - heel_x), heel_z + along * (place[1] - heel_z)
         if ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground) and ground[0] < highest:
             high = max(high, ground[0])
