@@ -127,15 +127,18 @@ def rolled(physique: Physique, made: Plan) -> Plan:
     meets = (centres[4] - centres[0]) * 0.25 * RATE
     up, count = np.array([0.0, 1.0, 0.0]), round(TIPS * RATE)
     centres += (made.centres[n] + 0.5 * TIPS * (going + meets) - centres[0]) * (1.0 - up)
-    rolling, lift = (local, centres), np.zeros((count + len(local), 1))
-    for _ in range(2):  # hands stay on the floor when what would be below it is lifted
+    rolling = local, centres
+
+    def laid(lift: np.ndarray) -> tuple[np.ndarray, ...]:
+        """All of it, lifted by so much (N, 1) [m]: rotations, mass centres, roots, what may touch the floor and how far that is over it; and what is still below it."""
         tipping, tips = tipped(physique, made, n, rolling, meets, heading, lift[:count], 1.0 / RATE)
         local, centres = np.concatenate([tipping, rolling[0]]), np.concatenate([tips, rolling[1] + up * lift[count:]])
         positions, turned = forward_kinematics(skeleton, np.zeros((len(local), 3)), local)
         roots = centres - centre_of_mass(physique.anatomy, positions, turned)
         where, over = places(physique, positions + roots[:, None], turned)
-        more = _lifts(np.maximum(floor - over.min(1), 0.0))
-        lift = lift + more
+        return local, centres, roots, where, over, _lifts(np.maximum(floor - over.min(1), 0.0))
+
+    local, centres, roots, where, over, more = laid(laid(np.zeros((count + len(local), 1)))[-1])  # hands stay on the floor when what would be below it is lifted
     roots, centres, over = roots + up * more, centres + up * more, over + more
     feet = where[:, -FEET:].reshape(-1, 2, 3, 3)[:, :, :2].reshape(-1, 4, 3)
     flows = np.asarray(np.gradient(feet, 1.0 / RATE, axis=0))
