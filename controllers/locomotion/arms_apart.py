@@ -33,14 +33,14 @@ def apart(skeleton: Skeleton, root: np.ndarray, local: np.ndarray, rate: float) 
         for a, (one, thick) in enumerate(arms[0]):
             for b, (other, wide) in enumerate(arms[1]):
                 if a or b:
-                    gap, way, at = _between(one, other)
+                    gap, way, at = between_bones(one, other)
                     signed = _sides(gap, way, thick + wide)[:, None] * way
                     missing = GIVES * np.maximum(thick + wide - gap * (signed * way).sum(-1), 0.0)[:, None] * signed
                     for side, bone, where, sign in ((0, one, at[:, :1], -1.0), (1, other, at[:, 1:], 1.0)):
                         _larger(wanted[side], _turn(positions[:, shoulders[side]], bone[0] + where * (bone[1] - bone[0]), sign * missing))
         for side in range(2):
             for bone, thick in arms[side][1:]:
-                gap, way, at = _between(bone, trunk)
+                gap, way, at = between_bones(bone, trunk)
                 missing = np.minimum(gap - thick - TRUNK[2], 0.0)[:, None] * way
                 wanted[side] += _turn(positions[:, shoulders[side]], bone[0] + at[:, :1] * (bone[1] - bone[0]), missing)
         if not wanted.any():
@@ -83,7 +83,7 @@ def _evenly(turns: np.ndarray, width: float) -> np.ndarray:
     return gaussian_filter1d(turns, width, axis=1)
 
 
-def _between(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def between_bones(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far bones are from each other (T,) [m], the way (T, 3) of length 1 from the one to the other where they are nearest, and where on them that is (T, 2), 0 … 1."""
     first, second, off = one[1] - one[0], other[1] - other[0], one[0] - other[0]
     a, e, b = ((p * q).sum(-1) for p, q in ((first, first), (second, second), (first, second)))

@@ -1,6 +1,6 @@
 """Measure walks up and down stairs of all kinds, by bodies of all sizes, as fast as they are asked to; and runs over single kerbs.
 
-    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs]
+    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs] [--knees]
 
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
@@ -9,6 +9,7 @@ who set a foot down over nothing, or did not arrive. Labels: points said to be i
 in the standard body's size. Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
 Kerbs: up one of 6–16 cm after five metres, on for 0.5–6 m, down again, straight on and askew; at least so fast meanwhile, as a share of
 the fastest before.
+Knees: up at 0.5 m/s, facing each way; how much a knee's velocity changes at most from one frame to the next, and how many frames it changes by more than 3 m/s.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import DEFAULT_LIBRARY, Locomotion
 
 FPS = 60
+FACING = {"ahead": (0.0, 0.5, 0.0), "backward": (np.pi, -0.5, 0.0), "to the left": (-0.5 * np.pi, 0.0, 0.5), "to the right": (0.5 * np.pi, 0.0, -0.5)}
+"""Who goes up so faces this way [rad], and goes so fast ahead and to the left [m/s]."""
 SOLE = 0.02
 """How high heels, balls and toes' ends are in flat stance [m]."""
 TREADS, RISES = (0.22, 0.25, 0.27, 0.29, 0.35), (0.12, 0.15, 0.17, 0.20)
@@ -154,12 +157,31 @@ def kerbs(locomotion, heights) -> None:
         print(row(name, found[name]) + f" · at least {100 * np.median([one.slowest for one in found[name]]):.0f} % of the speed", flush=True)
 
 
+def knees(locomotion) -> None:
+    """Print how hard knees are thrown of who climbs ahead, backward and aside, each from four places."""
+    joints = [locomotion.skeleton.index(side + "Leg") for side in ("Left", "Right")]
+    for name, (facing, ahead, left) in FACING.items():
+        for rise, tread in ((0.17, 0.30), (0.12, 0.40)):
+            around, _ = flight(rise, tread, 1.0)
+            state, places = locomotion.start(np.array([(0.4 * k, 0.8 + 0.1 * k, facing) for k in range(4)])), []
+            for _ in range(9 * FPS):
+                off = np.pi - (np.pi - facing + np.asarray(state.ground)[:, 2]) % (2.0 * np.pi)
+                state, pose = locomotion.step(state, Intent(np.stack([np.full(4, ahead), -2.0 * off, np.full(4, left)], -1), around=around), 1 / FPS)
+                places.append(forward_kinematics(locomotion.skeleton, pose.root, pose.rotations)[0][:, joints])
+            change = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max(-1) * FPS
+            print(f"  {name:18} {100 * rise:.0f} × {100 * tread:.0f} cm  knees by {change.max():3.1f} m/s in a frame, {change.max(0).min():3.1f} at least · over 3 m/s in {(change > 3.0).sum() / 4:4.1f} frames a climb")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--library", default=DEFAULT_LIBRARY)
     parser.add_argument("--only", nargs="+", type=float, help="only bodies so tall [m]")
     parser.add_argument("--kerbs", action="store_true", help="only runs over kerbs")
+    parser.add_argument("--knees", action="store_true", help="only knees of who climbs ahead, backward and aside")
     arguments = parser.parse_args()
+    if arguments.knees:
+        knees(Locomotion.load(arguments.library))
+        return
     locomotion, found = Locomotion.load(arguments.library), defaultdict(list)
     kerbs(locomotion, arguments.only or HEIGHTS)
     if arguments.kerbs:

@@ -163,7 +163,7 @@ def test_arms_that_lie_in_each_other_are_taken_apart(locomotion):
     made = arms_apart.apart(skeleton, root, local, 60.0)
     def nearest(poses):
         (left, right), trunk = arms_apart._bones(skeleton, root, poses)
-        return arms_apart._between(left[1][0], right[1][0])[0].min(), min(arms_apart._between(arm[1][0], trunk)[0].min() for arm in (left, right))
+        return arms_apart.between_bones(left[1][0], right[1][0])[0].min(), min(arms_apart.between_bones(arm[1][0], trunk)[0].min() for arm in (left, right))
     assert nearest(local)[0] < 0.02
     assert nearest(made)[0] > 0.06 and nearest(made)[1] > 0.12
     others = [k for k, name in enumerate(skeleton.names) if name not in ("LeftArm", "RightArm")]
@@ -181,4 +181,4 @@ def test_nobody_who_stands_about_has_one_arm_in_the_other(locomotion):
             poses.append(pose.rotations)
     joints, skeleton = len(locomotion.skeleton), locomotion.skeleton
     (left, right), _ = arms_apart._bones(skeleton, np.array(roots, float).reshape(-1, 3), np.array(poses, float).reshape(-1, joints, 3, 3))
-    assert arms_apart._between(left[1][0], right[1][0])[0].min() > 0.05
+    assert arms_apart.between_bones(left[1][0], right[1][0])[0].min() > 0.05
