@@ -31,7 +31,7 @@ def test_a_clip_that_is_in_the_database_is_followed(known, clip, points):
     seen = controller.controls.extract(clip)
     states = played(controller, controller.begin(seen[0], (seen[1] - seen[0]) / DT), seen[1:])
     away = position_error(bodies(SKELETON, states), clip.kinematics()[0][1:])
-    assert away.mean() < (0.02 if len(controller.controls) > 2 else 0.06)
+    assert away.mean() < (0.02 if len(controller.controls) > 2 else 0.065)
     assert np.median([np.abs(controller.follower.points(s.pose) - p).max() for s, p in zip(states, seen[1:])]) < 0.01
 
 
@@ -287,12 +287,12 @@ def test_the_floor_below_the_performer_carries_the_follower():
 def test_a_walker_goes_to_points_that_are_too_far_away(follower, points):
     someone = person(follower)
     state, duty = someone.start((0.0, 0.0, 2.0)), []
-    there = points[0] + [2.0, 0.0, 3.0]
+    there = points[20] + [2.0, 0.0, 3.0]
     for _ in range(600):
         state, _ = someone.step(state, Intent(towards(state, there), points=there), DT)
         duty.append(state.memory.active)
     assert duty[0] == "locomotion" and duty[-1] == "reconstruction"
-    assert np.abs(follower.controls.on(*_placed([state]))[0] - there).max() < 0.03
+    assert np.abs(follower.controls.on(*_placed([state]))[0] - there).max() < 0.01
     assert not towards(state, there * np.nan).any()
 
 
