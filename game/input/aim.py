@@ -181,7 +181,7 @@ class Aim:
         floor = float(state.floor)
         x, z = (place[k] - float(state.ground[k]) for k in (0, 1))
         aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring first
-        share = (reaches(aside) + BEYOND) / math.hypot(x, z)
+        share = (reaches(aside) + BEYOND) / max(math.hypot(x, z), 1e-9)
         if share >= 1.0 or floor_at(*place, around, floor + UP) < floor - LOWER:
             return place
         return float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
