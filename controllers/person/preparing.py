@@ -34,7 +34,7 @@ from ..navigation.passing import NEAR, drawn_in, slow_kernel, walls_of, way_kern
 from ..struck import Struck, rehearse as rehearse_strike
 
 PARTS = ("walk", "jump")
-KERNELS = 334
+KERNELS = 402
 """So many kernels are compiled for both parts, about: for those only who ask how far it is."""
 
 

@@ -148,6 +148,8 @@ class Play(Game):
         self.kept.tend(seconds)
         if self.preparing is not None:
             self.preparing.tend(self.now.after.characters[0].controller)
+            if self.preparing.jumps:
+                self.held_points.ahead()
         if due := self.held_points.learnt():
             self._ask(due, 0) if not due.startswith("!") else self.kept.say(due[1:])
         if self.helping:

@@ -12,7 +12,7 @@ import numpy as np
 from ..explain import RADIUS, Row
 from ..scene import Camera, Dot, Figure, Ink
 from ..session import SessionState, Comparison, written
-from ..world import SHIPPED, Learning, Methods
+from ..world import SHIPPED, Learning, Methods, compiled
 from .point_picking import Grip, nearest
 
 HELD = (0.95, 0.95, 0.92)
@@ -38,7 +38,7 @@ class HeldPoints:
         self.wanted: Comparison | None = None
         self.usual = Comparison()
         self.panel: Any = None
-        self._fault = ""
+        self._fault, self._foreseen = "", False
 
     # --- keys
 
@@ -77,14 +77,35 @@ class HeldPoints:
         missing = [(name, wanted.points) for name in wanted.methods if not self.methods.knows(name, wanted.points)]
         if not missing:
             return wanted.action, ""
-        self.wanted, self.learning = wanted, Learning(missing, self.methods.file)
+        self.wanted = wanted
+        ships = all(name == SHIPPED for name, _ in missing)
+        if ships and compiled():
+            self._begin_reading(wanted)
+        elif not (ships and self.learning is not None):  # else the one that is under way
+            self._stop()
+            self.learning = Learning(missing, self.methods.file)
         return "", ""
+
+    def ahead(self) -> None:
+        """Have what ships compiled by another program before anybody asks for it, so that nobody waits for it."""
+        if not self._foreseen and self.learning is None and self.reading is None:
+            self._foreseen = True
+            if not compiled():
+                self.learning = Learning([(SHIPPED, Comparison().points)], self.methods.file)
+
+    def _begin_reading(self, wanted: Comparison) -> None:
+        self.reading = threading.Thread(target=self._read, args=(wanted,), daemon=True)
+        self.reading.start()
+
+    def _stop(self) -> None:
+        if self.learning is not None:
+            self.learning.stop()
+            self.learning = None
 
     def _give_up(self) -> None:
         """Want nothing any more; what was learnt or compiled so far is kept."""
-        if self.learning is not None:
-            self.learning.stop()
-        self.wanted = self.learning = None
+        self._stop()
+        self.wanted = None
 
     @property
     def _meanwhile(self) -> str:
@@ -95,21 +116,24 @@ class HeldPoints:
 
     def learnt(self) -> str:
         """The action that opens what has been learnt by now, or "!" and why it can't be; empty otherwise."""
-        if self.wanted is None or self.learning is not None and not self.learning.done:
-            return ""
-        if self.learning is not None:  # it lies on disk now: read it beside the game
+        if self.learning is not None:
+            if not self.learning.done:
+                return ""
             fault, self.learning = self.learning.fault, None
-            if fault:
+            if self.wanted is not None and fault:
                 self.wanted = None
                 return f"!{fault}"
-            self.reading = threading.Thread(target=self._read, args=(self.wanted,), daemon=True)
-            self.reading.start()
+            if self.wanted is not None:  # it lies on disk now: read it beside the game
+                self._begin_reading(self.wanted)
+        if self.wanted is None:
+            return ""
         if self.reading is not None and self.reading.is_alive():
             return ""
         wanted, self.wanted, self.reading = self.wanted, None, None
         return f"!{self._fault}" if self._fault else wanted.action
 
     def _read(self, wanted: Comparison) -> None:
+        self._fault = ""
         try:
             for name in wanted.methods:
                 self.methods(name, wanted.points)
@@ -218,8 +242,7 @@ class HeldPoints:
 
     def close(self) -> None:
         """Give everything back."""
-        if self.learning is not None:
-            self.learning.stop()
+        self._stop()
         if self.panel is not None:
             self.panel.release()
             self.panel = None

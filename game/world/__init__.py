@@ -7,7 +7,7 @@ from .courtesy import avoiding
 from .course import COURSE, STAGES
 from .embodied import Embodied
 from .followers import KEPT, Errors, Follows, Hidden, beginning, follower_of, lately
-from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, TURNING, Learning, Methods, methods, taught, usual
+from .learnt_methods import METHODS, NAMES, SHIPPED, TINTS, TURNING, Learning, Methods, compiled, methods, taught, usual
 from .performers import walker_of
 from .primitive import nearest, posed
 from .recorded import Recorded, performance
@@ -19,7 +19,7 @@ from .world import DT, RATE, Character, FixedStep, World, figures, ground_betwee
 __all__ = [
     "COURSE", "DT", "KEPT", "METHODS", "NAMES", "RATE", "SHIPPED", "STAGES", "TINTS", "TURNING", "Character", "Embodied", "Errors",
     "Filmed", "FixedStep", "Follows", "Hidden", "Learning", "Methods", "Recorded", "Watches", "World", "avoiding", "beginning",
-    "figures", "follower_of",
+    "compiled", "figures", "follower_of",
     "ground_between", "jump_of", "lately", "methods", "nearest", "performance", "physique_of", "pose_between", "posed", "rig", "stopped", "switched", "taught",
     "tracked_of", "tracked_vertices", "tracker_ready", "tracking_of", "usual", "walker_of", "watches_of",
 ]

@@ -10,14 +10,16 @@ import re
 import subprocess
 import sys
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from gambol.controllers.compiled import cache_folder
 
 if TYPE_CHECKING:  # what reconstructs is loaded by the functions that need it: a game without a study starts without
     from gambol.controllers.reconstruction import ControlPoints
@@ -41,6 +43,10 @@ TURNING = "turning"
 """The one that is learnt for trackers which tell how they are turned."""
 NETWORK = ".npz"
 """A file that ends so is somebody's own network, which `gambol database tune` taught, in the place of a database."""
+KERNELS = 28
+"""So many kernels are compiled for the one that ships, about, beside those of a person: for those only who ask how far it is."""
+READY = "points.ready"
+"""A file beside the kernels once all of them are there."""
 PROGRESS = re.compile(r"(.+): (\d+) of (\d+)")
 
 Progress = Callable[[str, int, int], None]
@@ -142,7 +148,14 @@ def shipped(controls: ControlPoints, own: Path | None = None) -> Any:
 
     method = Trackers(Network.load() if own is None else Network.load(own), controls)
     rehearse(method, controls)
+    with suppress(OSError):  # nothing can be kept
+        (cache_folder() / READY).touch()
     return method
+
+
+def compiled() -> bool:
+    """Whether the method that ships, of any points, was compiled here before: it is then ready in half a second."""
+    return (cache_folder() / READY).exists()
 
 
 def usual(points: str, file: str | Path | None = None, turns: bool = False) -> str:
@@ -177,13 +190,13 @@ def rehearse(method: Any, controls: ControlPoints) -> None:
 class Learning:
     """Another program that learns methods, (name, points) each, so that this one finds them on disk.
 
-    said: how far it is, in words.
+    said: how far it is, in words. ships: whether all of them only have to be compiled.
     """
 
     def __init__(self, wanted: Sequence[tuple[str, str]], file: Path | None = None, progress: Progress | None = None):
         arguments = [f"{name}@{points}" for name, points in wanted]
         command = [sys.executable, "-P", "-m", "gambol.game.world.learnt_methods", str(file or ""), *arguments]
-        self.said, self._told, self._began = "", progress or _silent, time.monotonic()
+        self.said, self._told, self.ships = "", progress or _silent, all(name == SHIPPED for name, _ in wanted)
         # small matrices are learnt many times faster on one thread, and the game keeps the other cores
         self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                          stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
@@ -208,8 +221,11 @@ class Learning:
 
     @property
     def so_far(self) -> str:
-        """How far it is, in words; what only compiles tells for how long it has."""
-        return self.said or f"{time.monotonic() - self._began:.0f} s; about a minute, the first time"
+        """How far it is, in words; what only compiles tells how much there is of it."""
+        if self.said or not self.ships:
+            return self.said
+        share = sum(1 for _ in cache_folder().glob("gambol.controllers.reconstruction.*.nbc")) / KERNELS
+        return f"{100 * min(share, 0.99):.0f} %"
 
     @property
     def done(self) -> bool:
