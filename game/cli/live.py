@@ -18,6 +18,7 @@ FPS = 60
 SUFFIX = ".packets"
 _BEHIND, _SENDING_BEHIND = 10.0, 0.5  # s by which frames of a take, and frames that are sent on, may come late before some are left out
 _TELL = 3.0  # s between words about what is waited for
+_VAST = 3.0  # m from their middle no body's points are
 _WAITED = 30.0  # s that are waited at least for somebody to stand still, where the time is limited
 
 
@@ -241,9 +242,10 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
         if over or now - told > _TELL:
             missing = _missing(source, np.isfinite(seen).all(-1))
             if over:
-                raise Mistake(f"nobody has stood still for {wait:g} s" + (f": nothing is heard of {', '.join(missing)}" if missing else "")
+                vast = f": {_vast(seen)}" if _vast(seen) else ""
+                raise Mistake(f"nobody has stood still for {wait:g} s" + (f": nothing is heard of {', '.join(missing)}" if missing else vast)
                               + "".join(f"; {line}" for line in _amiss(source)))
-            say(f"waiting for {', '.join(missing)}" if missing else "waiting for somebody who stands still")
+            say(f"waiting for {', '.join(missing)}" if missing else _vast(seen) or "waiting for somebody who stands still")
             for line in _amiss(source):
                 say(line)
             told = now
@@ -272,6 +274,14 @@ def _met(source: Any, say: Callable[[str], None], wait: float | None) -> None:
 def _live(source: Any) -> bool:
     """Whether a source is heard as it comes, and is no file of packets."""
     return not hasattr(source, "duration")
+
+
+def _vast(points: Any) -> str:
+    """That points (n, 3) are farther from each other than a body's, as they are in another unit than the protocol's; "" where they are not."""
+    import numpy as np
+
+    apart = float(np.linalg.norm(points - np.mean(points, 0), axis=-1).max())
+    return f"trackers are {apart:.0f} m from their middle, as no body's are: they must be sent in metres" if apart > _VAST else ""
 
 
 def _missing(source: Any, there: Any) -> list[str]:

@@ -59,7 +59,8 @@ class Script:
     @property
     def stands(self) -> str:
         """What is told of who gets no farther."""
-        return "stands on the way to ({:g}, {:g}), which goes past nothing that is in it; go_to does".format(*self.moves[self.index].points[-1])
+        x, z = self.moves[self.index].points[-1]
+        return f"stands on the way to ({x:g}, {z:g}), which goes past nothing that is in it, as go_to does, nor up a step higher than 0.12 of his height"
 
     def held(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
         """The same script, and what it asks of a character in `state` in this step, who on a run-up comes to rest before what he can't leap."""

@@ -106,6 +106,14 @@ def test_waiting_for_somebody_to_stand_still_ends_where_time_is_limited(clock, t
     assert ("two programs" in " ".join(said)) == bool(rivals)
 
 
+def test_who_sends_centimetres_is_told_so(clock):
+    said, source = [], Restless()
+    with pytest.raises(Mistake, match="stood still for 40 s: trackers are .* m from their middle"):
+        source.at = lambda time: np.array([[0.0, 178.0, 10.0 * time], [12.0, 9.0, 3.0]])
+        live.stand(source, STATURE, say=said.append, wait=40.0)
+    assert "in metres" in " ".join(said)
+
+
 class Idler:
     """A controller that could always go on, and is never asked to."""
 
