@@ -168,6 +168,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("moment", "f4"), ("luck", "u4"), ("alert", "i4"), ("cramped", "i4"),  # where in the recorded idling it is, and what comes next; whether walls leave arms or feet no room
         ("looks", "i4"), ("look", "f4", 3),  # whether there is a place to look at, and which
         ("gaze", "f4", 2), ("gaze_rate", "f4", 2),  # how far the head turns and nods
+        ("braked", "f4", 2),  # how far the trunk leans against its braking, and how fast
     ], align=True)
 
 

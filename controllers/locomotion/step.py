@@ -23,6 +23,7 @@ from .foot_points import foot_points, on_floor, toe_ends
 from .kernel import ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCRATCH, duration_kernel, pose_kernel, series_kernel
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, cadence_kernel, follow_command, locate, tempo_kernel, to_world_kernel
+from .sitting_back import sit_back
 from .turning_back import pivots, turn_back, turn_corner
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
@@ -87,6 +88,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
             blend_series(m, settings, table, fresh, legs, dt)
         add_idle(m, idle, fresh)
         add_start(m, start, fresh)
+        sit_back(m, legs.neck, fresh, dt)
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
         follow_command(m, dt)

@@ -65,6 +65,14 @@ class Motion:
         return self._second(self.com)
 
     @cached_property
+    def lean(self) -> np.ndarray:
+        """How far trunks, from hips to neck, lean ahead of upright as the hips face (T, N) [°]."""
+        positions, orientations = self.kinematics
+        trunk, ahead = positions[..., self.skeleton.index("Neck"), :] - positions[..., 0, :], orientations[..., 0, :, 2]
+        along = (trunk[..., [0, 2]] * ahead[..., [0, 2]]).sum(-1) / np.linalg.norm(ahead[..., [0, 2]], axis=-1)
+        return np.degrees(np.arctan2(along, trunk[..., 1]))
+
+    @cached_property
     def running(self) -> np.ndarray:
         """Who runs when (T, N): faster than RUNS, or at more than half of it with a flight a third of a second away."""
         speed = np.linalg.norm(self.com_velocity[..., [0, 2]], axis=-1)

@@ -39,6 +39,10 @@ def recorded(folder: Path, library: Library) -> None:
         if rows:
             print(f"  {name} ({len(rows)}): " + told([row for row, _ in rows], False))
             speed = [np.linalg.norm(m.com_velocity[..., [0, 2]], axis=-1)[:, 0] for _, m in rows]
+            if name == "stops":
+                rest = [np.median(m.lean[-m.rate // 3:]) for _, m in rows]
+                print("    trunk's lean as the speed falls, from that at rest: " + ", ".join(
+                    f"{np.percentile(m.lean[int(s.argmax()):, 0], 5) - r:+.0f}°" for (_, m), s, r in zip(rows, speed, rest)))
             if name == "idles":
                 print("    " + "; ".join(f"{len(m.roots) / m.rate:.0f} s: " + at_rest(m) for _, m in rows))
             if name == "starts":

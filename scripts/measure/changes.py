@@ -122,7 +122,8 @@ def stops(bench: Bench) -> None:
     stops = np.array([(np.flatnonzero(s > 0.15)[-1] + 1) / FPS for s in speed.T])
     way = motion.com[-1, :, 2] - motion.com[0, :, 2]
     print(f"  3.0 m/s → stop: lowest speed {lowest.mean():.2f}, worst {lowest.min():.2f} m/s; peak {np.median(peak):.1f}, worst {peak.max():.1f} m/s²; "
-          f"{stops.mean():.2f} s (slowest {stops.max():.2f}), {way.mean():.2f} m (longest {way.max():.2f})")
+          f"{stops.mean():.2f} s (slowest {stops.max():.2f}), {way.mean():.2f} m (longest {way.max():.2f}); "
+          f"trunk leans {motion.lean[0].mean():+.0f}° before, {motion.lean.mean(1).min():+.0f}° as he brakes, {motion.lean[-1].mean():+.0f}° in the end")
     state = bench.at_all_phases((0, 0, 0))
     motion = bench.motion(bench.played(state, [(1.3, 0, 0)] * round(3 * FPS)))
     peak = np.linalg.norm(motion.com_acceleration[:45][..., [0, 2]], axis=-1).max(0)
