@@ -4,17 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
 
+import numpy as np
+
+from gambol.controllers.navigation import gap
+
 from ..camera import seen_past
 from ..explain import AT_ONCE, Preview, broken, explained, ghosts, led, pointed, preview, stepping
-from ..scene import Camera, Overlays, Scene
+from ..scene import Camera, Figure, Overlays, Scene
 from ..session import Log, SessionState, replay, strayed
 from ..world import RATE, figures
 
 
 Previews = tuple[Preview | None, ...]
+FAINT = 0.3
+"""So much is seen of a body that is in something …"""
+NEAR, WITHIN = 0.15, -0.05
+"""… and all of one that is nowhere nearer to it than the first [m]."""
 
 
 def previews(moment: SessionState, before: Previews = (), crew: Executor = AT_ONCE) -> Previews:
@@ -41,9 +50,24 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     text = tuple((*lines, *broken(seen.told)) if seen is not None and seen.fault else lines
                  for lines, seen in zip(text, aimed, strict=True))
     held = _held(moment)
-    return tuple(Scene(camera, people if player.camera.flown else seen_past(people, camera, (i, *held)), moment.after.props, overlays, lines,
+    def seen(people: tuple[Figure, ...], i: int, camera: Camera) -> tuple[Figure, ...]:
+        return people if moment.players[i].camera.flown else seen_past(people, camera, (i, *held))
+    return tuple(Scene(camera, _through(seen(people, i, camera), moment), moment.after.props, overlays, lines,
                        part=(i * width, 0.0, width, 1.0))
-                 for i, (player, camera, lines) in enumerate(zip(moment.players, cameras, text, strict=True)))
+                 for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))
+
+
+def _through(people: tuple[Figure, ...], moment: SessionState) -> tuple[Figure, ...]:
+    """The figures, fainter where a body that does beside somebody what he does goes through what stands there."""
+    drawn = list(people)
+    for number, one in enumerate(moment.after.characters):
+        if one.follows is None and one.watches is None or not moment.after.props:
+            continue
+        trunk = np.ascontiguousarray(drawn[number].positions[: one.controller.skeleton.index("Head") + 1], float)  # from the hips up
+        far = min(float(gap(trunk, thing).min()) for thing in moment.after.props)
+        share = min(max((far - WITHIN) / (NEAR - WITHIN), 0.0), 1.0)
+        drawn[number] = replace(drawn[number], cover=min(drawn[number].cover, FAINT + (1.0 - FAINT) * share * share * (3.0 - 2.0 * share)))
+    return tuple(drawn)
 
 
 def _held(moment: SessionState) -> list[int]:

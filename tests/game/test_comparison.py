@@ -10,11 +10,14 @@ import pytest
 from gambol.controllers.mocap import write_bvh
 from gambol.game.app.app import Play
 from gambol.game.app.point_picking import project
+from gambol.game.app.views import scenes
+from gambol.game.camera import Follow, between
 from gambol.game.explain.points import rows
 from gambol.game.hosts.events import KeyEvent, MouseMove, Scroll
 from gambol.game.hud.legend import cells
 from gambol.game.input import Wish
 from gambol.game.output.recorder import motion_clip
+from gambol.game.scene import Box
 from gambol.game.session.comparison import Comparison, opened, written
 from gambol.game.session.input_log import LogWriter, read
 from gambol.game.session.log_lines import LogError
@@ -413,3 +416,21 @@ def test_the_legend_lies_in_the_first_player_s_part_and_lines_keep_off_it(walker
     assert second.ink is None and second.taken == (0.0, 0.0)
     assert not len(game.scene((200, 150))[0].ink.vertices), "none where it has no room"
     game.close()
+
+
+def test_a_body_beside_that_goes_through_what_stands_there_is_faint_and_nobody_else_is(walker):
+    play = game(walker)
+    play.do("study")
+    ticks(play, 3)
+    moment = play.now
+    x, _, z = moment.after.characters[1].state.pose.root
+
+    def covers(*props):
+        camera = Follow.behind(np.zeros(3), yaw=0.0)
+        seen = replace(moment, after=replace(moment.after, props=props))
+        return [one.cover for one in scenes(seen, 1.0, (between(camera, camera, 1.0),), play.showing.overlays)[0].figures[:2]]
+    assert covers() == [1.0, 1.0]
+    own, other = covers(Box((float(x), 1.0, float(z)), (0.6, 2.0, 0.6)))
+    assert own == 1.0 and other == pytest.approx(0.3)
+    beside = [covers(Box((float(x + far), 1.0, float(z)), (0.2, 2.0, 0.2)))[1] for far in (0.1, 0.15, 0.2, 0.25, 0.35)]
+    assert beside == sorted(beside) and beside[0] < 0.5 and beside[-1] == 1.0
