@@ -99,3 +99,20 @@ def test_a_senders_clock_may_be_set(jump):
         line.heard(time, np.array([time, 0.0, 0.0]), 5.0 + time + (jump if k >= 120 else 0.0))
         if k > 30 and not 120 <= k < 140:
             assert line.at(time)[0] == pytest.approx(time - 1 / 60, abs=0.02)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_packets_that_are_late_by_as_much_as_they_are_apart_are_never_flown_off_from(seed):
+    """Two that seem to be from almost the same moment made a slope without bounds."""
+    rng, rate = np.random.default_rng(seed), 90.0
+    sent = np.arange(0.0, 20.0, 1.0 / rate)
+    sent = sent[rng.random(len(sent)) >= 0.1]
+    arrived = sent + np.abs(rng.normal(0.0, 0.008, len(sent)))
+    line, off, k = Timeline(), 0.0, 0
+    order = np.argsort(arrived, kind="stable")
+    for now in np.arange(1.0, 19.0, 1.0 / 60.0):
+        while arrived[order[k]] <= now:
+            line.heard(arrived[order[k]], 3.0 * sent[order[k]] + hand(sent[order[k]]))  # of a runner
+            k += 1
+        off = max(off, float(np.linalg.norm(line.at(now) - 3.0 * now - hand(now))))
+    assert 0.03 < off < 0.8

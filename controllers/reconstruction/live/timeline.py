@@ -33,6 +33,8 @@ COUNTED = 20
 """So many packets are counted before their pace is believed."""
 ANEW = 0.1
 """A packet later than this [s], and than four are apart, begins anew."""
+NEAREST = 0.5
+"""A packet that seems to be from so nearly the same moment as another, in times the pace, tells nothing: cubics through both would fly off."""
 KEPT = 16
 """So many packets are kept."""
 AHEAD = 3.0
@@ -75,9 +77,10 @@ class Timeline:
         shown = (self.at(time), self.at(time + step)) if waited else None
         before, self.last = self.last, time
         moment = self._by_pace(time, before, place) if sent is None else self._by_clock(time, sent)
-        self._count += 1
-        insort(self._known, (moment, self._count, place, turn))
-        del self._known[:-KEPT]
+        if not any(abs(moment - one[0]) < NEAREST * self.period for one in self._known[-4:]):
+            self._count += 1
+            insort(self._known, (moment, self._count, place, turn))
+            del self._known[:-KEPT]
         if shown is not None:
             self._mend = (-math.inf, np.zeros(3), np.zeros(3))
             off, later = shown[0] - self.at(time), shown[1] - self.at(time + step)
