@@ -33,6 +33,8 @@ FARTHEST = 1.4
 """How far from a standing body the ring may be, over how far it leaps over level ground: so far it may leap down."""
 BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
+CLIMBS = 1.5
+"""Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
 LOWER = 0.05
@@ -181,10 +183,12 @@ class Aim:
         floor = float(state.floor)
         x, z = (place[k] - float(state.ground[k]) for k in (0, 1))
         aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring first
-        share = (reaches(aside) + BEYOND) / max(math.hypot(x, z), 1e-9)
-        if share >= 1.0 or floor_at(*place, around, floor + UP) < floor - LOWER:
+        there = floor_at(*place, around, floor + UP)
+        share = (reaches(aside) - CLIMBS * max(there - floor, 0.0) + BEYOND) / max(math.hypot(x, z), 1e-9)
+        if share >= 1.0 or there < floor - LOWER:
             return place
-        return float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
+        near = float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
+        return near if floor_at(*near, around, floor + UP) > there - LOWER else place  # else it is too far off for any leap, which is told
 
     def _askew(self, state: CharacterState) -> bool:
         """Whether a standing body still has to turn to the ring."""

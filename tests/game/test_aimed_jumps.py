@@ -20,7 +20,7 @@ from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box, Overlays, Patch
 from gambol.game.session.state import begin, opening
 from gambol.game.session.tick import Timeline, advance, refused
-from gambol.game.world.world import Character, World
+from gambol.game.world.world import DT, Character, World
 
 
 @pytest.fixture(scope="module")
@@ -238,6 +238,19 @@ def test_who_holds_it_until_the_ring_stops_leaps_as_far_as_he_can(somebody, move
     assert made is not None and not told
     far = float(np.linalg.norm(made.plan.feet[:, [0, 2]].mean(0) - timeline.now.after.characters[0].state.pose.root[[0, 2]]))
     assert far > 0.85 * reach(np.arctan2(-move[0], move[1]) if strafe else 0.0)
+
+
+@pytest.mark.parametrize(("high", "away"), [(0.3, 0.6), (0.3, 1.0), (0.4, 0.8), (0.5, 0.6)])
+@pytest.mark.parametrize("hold", [0.9, 1.4, 2.0])
+def test_who_pushes_the_ring_far_onto_a_box_lands_on_it(somebody, high, away, hold):
+    """However long it is pushed: on a box the ring stops where bodies come up to."""
+    box = Box((0.0, high / 2, away + 1.5), (3.0, high, 3.0))
+    timeline, told = Timeline(begin(World((Character("A", somebody, somebody.start()),), (box,)), 1)), []
+    for wish in [Wish(jump=True, move=(0.0, 1.0))] * round(hold / DT) + [Wish()] * 130:
+        before = timeline.now
+        timeline.advance((wish.rounded(),))
+        told += refused(before, timeline.now)
+    assert not told and timeline.now.after.characters[0].state.floor == pytest.approx(high)
 
 
 @pytest.mark.parametrize("body", [{}, {"height": 1.2}, {"height": 2.1}, {"strength": 0.7}, {"strength": 2.0}])
