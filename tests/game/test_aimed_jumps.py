@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from gambol.controllers.body import contact_points
 from gambol.controllers.contract import Leap
 from gambol.controllers.jump import SETS_FEET, Physique
 from gambol.controllers.person import person
@@ -263,3 +264,18 @@ def test_where_the_ring_stops_is_little_beyond_what_bodies_reach(somebody, body)
         middle = jump.middle(start, floor)
         reaches = float(np.linalg.norm(jump.nearest(start, middle + way, floor) - middle))
         assert 0.0 < jump.about(aside) + BEYOND - reaches < SLACK[False]
+
+
+@pytest.mark.parametrize("hold", [1.2, 1.3])
+def test_who_was_pushed_as_he_aimed_keeps_to_the_floor_until_he_leaps(somebody, hold):
+    """He straightens up as he begins the leap: a slow wind-up went on upward, and carried him off by 11 cm for half a second."""
+    timeline, highest = Timeline(begin(World((Character("A", somebody, somebody.start()),)), 1)), 0.0
+    for n in range(round(4.2 / DT)):
+        time = n * DT
+        pushed = ("push",) if abs(time - 1.4) < 0.5 * DT else ()
+        timeline.advance((Wish(jump=0.6 <= time < 1.4 + hold, pressed=pushed).rounded(),))
+        state = timeline.now.after.characters[0].state
+        points = contact_points(somebody.skeleton, *timeline.now.after.characters[0].joints)[..., 1]
+        if np.asarray(state.contacts).any():
+            highest = max(highest, float(points.min()))
+    assert 0.0 < highest < 0.04

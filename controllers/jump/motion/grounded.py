@@ -33,8 +33,9 @@ HOPELESS = 0.12
 """Nor where the pressure would have to lie so far outside them at first [m]: of 460 courses that could be kept to in the end none began with more than 0.06."""
 AGES = 12.0
 """Nobody winds up and pushes longer [s √(m/s²)] than this over the root of gravity."""
-LIGHTEST = 0.1
-"""A slower wind-up leaves so much of its weight on the floor at least."""
+LIGHTEST, TALLER = 0.1, 0.02
+"""A slower wind-up leaves so much of its weight on the floor at least, and rises no higher than so much [m], at standard height, before it goes down:
+who straightens up as he begins would be carried off the floor."""
 
 
 def grounded(physique: Physique, start: Start, way: Path, floor: float) -> Path:
@@ -48,8 +49,10 @@ def grounded(physique: Physique, start: Start, way: Path, floor: float) -> Path:
     best = None
     for scale in SLOWER if start.single is None and start.low is None else SLOWER[:1]:
         slower = replace(way, wind_up=scale * way.wind_up)
-        if scale > 1.0 and (sinking(slower, start, np.linspace(0.0, slower.wind_up, KNOTS))[2][:, 1] < (1.0 - LIGHTEST) * way.gravity[1]).any():
-            break
+        if scale > 1.0:
+            sunk, _, bent = sinking(slower, start, np.linspace(0.0, slower.wind_up, KNOTS))
+            if (bent[:, 1] < (1.0 - LIGHTEST) * way.gravity[1]).any() or sunk[:, 1].max() > start.centre[1] + TALLER * physique.size:
+                break
         course = _course(physique, start, slower, planted, floor, None)
         for _ in range(AGAIN if course.outside < HOPELESS * physique.size else 0):
             if not np.linalg.norm(course.place[-1] - way.leave[[0, 2]]) < ASTRAY * physique.size:
