@@ -45,7 +45,8 @@ def test_it_takes_over_from_a_walker_and_gives_back_without_a_pop(follower, clip
     assert felt.max() < 2.5 * truth
     positions = bodies(SKELETON, states)
     assert position_error(positions[90:-90], clip.kinematics()[0][100:]).mean() < 0.02
-    assert np.linalg.norm(positions[-1] - positions[-2], axis=-1).max() / DT < 0.05  # it stands
+    last = np.linalg.norm(positions[-1] - positions[-2], axis=-1) / DT
+    assert last.max() < 0.1 and np.median(last) < 0.05  # it stands, its trunk straightening
 
 
 def test_it_takes_hold_of_points_of_quite_another_pose(follower, clip, points):
