@@ -242,8 +242,8 @@ def _stood(source: Any, height: float | None, calibrating: bool, posing: bool, t
         if over or now - told > _TELL:
             missing = _missing(source, np.isfinite(seen).all(-1))
             if over:
-                vast = f": {_vast(seen)}" if _vast(seen) else ""
-                raise Mistake(f"nobody has stood still for {wait:g} s" + (f": nothing is heard of {', '.join(missing)}" if missing else vast)
+                why = f"nothing is heard of {', '.join(missing)}" if missing else _vast(seen)
+                raise Mistake(f"nobody has stood still for {wait:g} s" + (f": {why}" if why else "")
                               + "".join(f"; {line}" for line in _amiss(source)))
             say(f"waiting for {', '.join(missing)}" if missing else _vast(seen) or "waiting for somebody who stands still")
             for line in _amiss(source):

@@ -29,7 +29,7 @@ WALKS = (0.4, 1.7)
 
 
 def angles(skeleton: Skeleton, roots: np.ndarray, turns: np.ndarray, rate: int) -> dict[str, np.ndarray]:
-    """Of T frames of N bodies (T − 2 s, N), s of them in 1/30 s: face from chest and chest from hips [°], a head's change of turning [°/s²],
+    """Of T frames of N bodies (T − 2 s, N), s of them in 1/30 s: face from chest [°], a head's change of turning [°/s²],
     hips' turning [rad/s], speed [m/s]."""
     positions, orientations = forward_kinematics(skeleton, np.asarray(roots, float), np.asarray(turns, float))
     step = max(1, round(rate / 30))
@@ -41,7 +41,7 @@ def angles(skeleton: Skeleton, roots: np.ndarray, turns: np.ndarray, rate: int) 
     smooth = np.array([hips[min(t + wide, len(hips) - 1)] - hips[max(t - wide, 0)] for t in range(len(hips))]) * rate / (2 * wide)
     inner = slice(step, -step)
     speed = np.linalg.norm(positions[2 * step:, :, 0] - positions[:-2 * step, :, 0], axis=-1) * rate / (2 * step)
-    return {"head": np.degrees(np.abs(wrap(head - chest)))[inner], "chest": np.degrees(np.abs(wrap(chest - hips)))[inner],
+    return {"head": np.degrees(np.abs(wrap(head - chest)))[inner],
             "sudden": np.degrees(np.abs(head[2 * step:] - 2.0 * head[inner] + head[:-2 * step])) * (rate / step) ** 2,
             "turning": np.abs(smooth)[inner], "speed": speed}
 
