@@ -1,6 +1,6 @@
 """What other people call the joints of a human.
 
-Every tool has its own names: `LeftUpLeg`, `lfemur`, `L_Hip`, `mixamorig:LeftUpLeg`, `thigh.L`, `J_Bip_L_UpperLeg`.
+Every tool has its own names: `LeftUpLeg`, `lfemur`, `L_Hip`, `mixamorig:LeftUpLeg`, `thigh.L`, `J_Bip_L_UpperLeg`, `左足`.
 Only limbs, hips and head are told by name; which joints make up the trunk and the neck follows
 from the tree (from the hips to where the arms part, and on to the head), whatever they are called.
 """
@@ -8,6 +8,7 @@ from the tree (from the hips to where the arms part, and on to the head), whatev
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,16 +18,18 @@ from ..body import Skeleton
 # our name → what it is called elsewhere, the best first. Order matters: a name goes to the first
 # joint that asks for it, so that `LeftShoulder` is the upper arm only where nothing better is.
 _LIMBS = {
-    "UpLeg": ("upleg", "upperleg", "thigh", "thighbend", "femur", "hip"),
-    "Leg": ("leg", "lowerleg", "lowleg", "shin", "calf", "knee", "tibia"),
+    "UpLeg": ("upleg", "upperleg", "upperleg01", "thigh", "thighbend", "femur", "hip"),
+    "Leg": ("leg", "lowerleg", "lowerleg01", "lowleg", "shin", "calf", "knee", "tibia"),
     "Foot": ("ankle", "foot"),
     "Toe": ("toebase", "toes", "toe", "toe0", "ball", "foot"),
-    "Arm": ("arm", "uparm", "upperarm", "humerus", "shldr", "shldrbend", "shoulder"),
-    "ForeArm": ("forearm", "forearmbend", "lowerarm", "lowarm", "elbow", "radius"),
+    "Arm": ("arm", "uparm", "upperarm", "upperarm01", "humerus", "shldr", "shldrbend", "shoulder"),
+    "ForeArm": ("forearm", "forearmbend", "lowerarm", "lowerarm01", "lowarm", "elbow", "radius"),
     "Hand": ("fingerbase", "hand", "wrist"),
     "Shoulder": ("shoulder1", "collar", "clavicle", "shoulder"),
 }
-_MIDLINE = {"Hips": ("hips", "hip", "pelvis", "root"), "Head": ("head", "spine006")}
+_MIDLINE = {"Hips": ("hips", "hip", "pelvis", "root"), "Head": ("head", "head1", "spine006")}
+_JAPANESE = {"左": "left", "右": "right", "つま先": "toe", "足首": "ankle", "ひざ": "knee", "足": "upleg", "手首": "wrist", "ひじ": "elbow", "腕": "arm", "肩": "collar", "頭": "head",
+             "腰": "hips", "センター": "root"}
 _NEEDED = tuple(side + limb for side in ("Left", "Right") for limb in ("UpLeg", "Leg", "Foot", "Arm", "ForeArm"))
 
 
@@ -53,7 +56,9 @@ class NoHuman(ValueError):
 
 
 def plain(name: str) -> str:
-    """A joint's name without namespace, punctuation, case and a tool's prefix."""
+    """A joint's name without namespace, punctuation, case and a tool's prefix; in English, where it is Japanese."""
+    for theirs, english in _JAPANESE.items():
+        name = name.replace(theirs, english)
     short = re.sub(r"[^a-z0-9]", "", name.split(":")[-1].lower())
     return re.sub(r"^(mixamorig\d*|valvebipedbip0*1|bip0*1|ccbase|jbipc?|def)(?=.)", "", short)
 
@@ -63,9 +68,29 @@ def roles(skeleton: Skeleton) -> Roles:
 
     NoHuman, naming the missing parts and the names there are, if it has no legs, arms or head.
     """
+    names, first = [plain(name) for name in skeleton.names], None
+    for spelt in _spelt(names):
+        try:
+            return _roles(skeleton, spelt)
+        except NoHuman as none:
+            first = first or none
+    assert first is not None
+    raise first
+
+
+def _spelt(names: list[str]) -> Iterator[list[str]]:
+    """Joints' names as they are, then without what stands before or after `head` in one of them, as before `Character1_Head` or after `head_jnt`: a figure's own name, say."""
+    yield names
+    for before, _, after in sorted((name.partition("head") for name in names if "head" in name), key=lambda parts: sum(map(len, parts))):
+        if before or after:
+            yield [name.removeprefix(before).removesuffix(after) for name in names]
+
+
+def _roles(skeleton: Skeleton, spelt: list[str]) -> Roles:
+    """The same of joints that are called so."""
     known = {}
-    for number, name in enumerate(skeleton.names):
-        known.setdefault(plain(name), number)
+    for number, name in enumerate(spelt):
+        known.setdefault(name, number)
     found: dict[str, int] = {}
     for side, marks in (("Left", ("left", "l")), ("Right", ("right", "r"))):
         for limb, bases in _LIMBS.items():

@@ -164,6 +164,23 @@ def test_other_peoples_names_play_the_same_parts(own, names):
     assert roles(own.skeleton).trunk == tuple(own.skeleton.index(n) for n in ("Spine", "Spine1", "Spine2"))
 
 
+@pytest.mark.parametrize("spelt", ["Character1_{}", "Bob {}", "m_avg_{}", "{}_jnt", "Rig1|Ctrl_{}_bind", "ValveBiped.Bip01_{}"])
+def test_what_stands_before_or_after_every_name_is_no_part_of_it(own, spelt):
+    assert roles(renamed(own, {name: spelt.format(name) for name in own.skeleton.names}).skeleton) == roles(own.skeleton)
+
+
+def test_names_with_numbers_are_known(own):
+    limbs = {"LeftUpLeg": "upperleg01.L", "LeftLeg": "lowerleg01.L", "LeftArm": "upperarm01.L", "LeftForeArm": "lowerarm01.L", "LeftHand": "wrist.L", "LeftFoot": "foot.L"}
+    limbs |= {k.replace("Left", "Right"): _other_side(v) for k, v in limbs.items()} | {"Head": "ValveBiped.Bip01_Head1"}
+    assert roles(renamed(own, limbs).skeleton) == roles(own.skeleton)
+
+
+def test_japanese_names_are_known(own):
+    limbs = {"LeftUpLeg": "左足", "LeftLeg": "左ひざ", "LeftFoot": "左足首", "LeftToe": "左つま先", "LeftShoulder": "左肩", "LeftArm": "左腕", "LeftForeArm": "左ひじ", "LeftHand": "左手首"}
+    limbs |= {k.replace("Left", "Right"): v.replace("左", "右") for k, v in limbs.items()} | {"Hips": "センター", "Spine": "上半身", "Head": "頭"}
+    assert roles(renamed(own, limbs).skeleton) == roles(own.skeleton)
+
+
 def _other_side(name):
     for left, right in (("Left", "Right"), ("L_", "R_"), (".L", ".R")):
         if left in name:
