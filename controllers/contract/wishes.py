@@ -49,7 +49,8 @@ class Leap:
     airtime: [s], or None for the least effort. slack: who can't reach the place may land so far from it [m]: a runner
     who comes too near for it farther on.
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
-    on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or run on.
+    on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or to walk or run on.
+    stays: whether who walks lands on both feet, to come to rest; else he walks on, on one. A runner runs on.
     how: along which arc it was found that it can be made, see `Controller.found`, which is tried first; None where that was not.
     """
 
@@ -59,6 +60,7 @@ class Leap:
     heading: float | None = None
     on: Literal["left", "right", "both"] | None = None
     how: Any = None
+    stays: bool = False
 
     def __post_init__(self):
         if self.place is not None:
@@ -71,7 +73,7 @@ class Leap:
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
-        return (other is not None and (self.airtime, self.slack, self.heading, self.on) == (other.airtime, other.slack, other.heading, other.on)
+        return (other is not None and (self.airtime, self.slack, self.heading, self.on, self.stays) == (other.airtime, other.slack, other.heading, other.on, other.stays)
                 and (self.place is None) == (other.place is None) and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
 
 

@@ -16,7 +16,7 @@ from .body import FLAT, Physique, Start, raised, soles, vectors
 from .motion import PLANT, Plan
 from .reach import Onward
 
-RUNNING = 1.2
+RUNNING = 0.85
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
 FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""
@@ -117,6 +117,8 @@ def turning(start: Start, leap: Leap | None) -> Start:
     are half a turn."""
     if leap is not None and leap.on in FEET:
         start = replace(start, onto=FEET.index(leap.on))
+    if leap is not None and leap.stays:
+        start = replace(start, stays=True)
     if leap is None or leap.heading is None or not math.isfinite(leap.heading):
         return start
     turn = math.remainder(leap.heading - start.heading, math.tau)

@@ -200,7 +200,7 @@ class Locomotion(Controller):
         standing or walking on from its pose, its motion and its feet. A whole batch begins anew."""
         if self._knows(state.memory):
             return state
-        return entered(self, state) if np.ndim(state.ground) == 1 else self.start(state.ground, state.floor)
+        return entered(self, state, float(np.asarray(intent.velocity, float)[..., 0].max())) if np.ndim(state.ground) == 1 else self.start(state.ground, state.floor)
 
     def pushed(self, state: CharacterState, change: np.ndarray) -> CharacterState | None:
         """One who walks or runs, pushed no harder than its next steps take in; else None."""

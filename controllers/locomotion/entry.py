@@ -13,6 +13,7 @@ import numpy as np
 from ..body import Pose, contact_height, contact_points, exp, forward_kinematics, log, settle, yaw
 from ..contract import CharacterState
 from . import fourier
+from .command import LEAST_STRETCH, MOST_STRETCH
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel, time_kernel
 from .library import DURATION, HIPS, LABELS
 from .memory import RUN, WALK
@@ -34,11 +35,12 @@ PHASES, LEAD = 64, 0.1
 """So many phases are compared; a difference of 1 m/s counts as one of so many metres."""
 
 
-def entered(locomotion: Any, state: CharacterState) -> CharacterState:
+def entered(locomotion: Any, state: CharacterState, wish: float = 0.0) -> CharacterState:
     """The state (no batch axes) of a body that walks or stands on from where it is.
 
     state: any, with pose, ground, contacts and, if it moves, previous and elapsed. At rest it stands on
-    the spot; faster it takes the left foot off next, at the velocity that the state says.
+    the spot; faster it takes the left foot off next, at the velocity that the state says. wish: how fast ahead it wants to go [m/s]: who wants to run does, if he is
+    as fast as a runner.
     """
     ground = _under_the_feet(locomotion, state)
     rest = locomotion.start(ground, state.floor)
@@ -49,14 +51,14 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
         on, velocity = stands.reshape(2, 2).any(1), np.asarray(state.velocity, float)
         sides = np.flatnonzero(on)
         # no run has a phase in which both feet stand: it goes on off the one that it is more like, lest the other, left behind, pulls its leg straight
-        if len(sides) == 1 or len(sides) == 2 and _gait(locomotion, velocity)[0]:
-            strides = [_stride(locomotion, state, velocity, int(side)) for side in sides]
+        if len(sides) == 1 or len(sides) == 2 and _gait(locomotion, velocity, wish)[0]:
+            strides = [_stride(locomotion, state, velocity, int(side), wish) for side in sides]
             like = int(np.argmin([apart for _, apart in strides]))
             on = np.arange(2) == sides[like]
             stands &= np.repeat(on, 2)
-            _set_off(locomotion, memory, velocity, strides[like][0])
+            _set_off(locomotion, memory, velocity, strides[like][0], wish)
         else:
-            _set_off(locomotion, memory, velocity, ABOUT_TO_STEP)
+            _set_off(locomotion, memory, velocity, ABOUT_TO_STEP, wish)
         if on.sum() == 1:  # its hips go on where they are
             ground = _under_the_hips(state, memory["row"])
             memory["ground"] = ground
@@ -91,19 +93,20 @@ def entered(locomotion: Any, state: CharacterState) -> CharacterState:
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 
-def _gait(locomotion: Any, velocity: np.ndarray) -> tuple[bool, np.ndarray, np.ndarray, np.ndarray]:
-    """Whether a velocity (3,) is run, the nearest one that there is, the primitives of that gait and what they weigh in it."""
-    running = velocity[0] > locomotion.settings.run_above and locomotion.run is not None
+def _gait(locomotion: Any, velocity: np.ndarray, wish: float) -> tuple[bool, np.ndarray, np.ndarray, np.ndarray]:
+    """Whether a velocity (3,) is run by who wishes for so much [m/s], the nearest one that there is, the primitives of that gait and what they weigh in it."""
+    settings = locomotion.settings
+    running = velocity[0] > (settings.walk_below if wish > settings.run_above else settings.run_above) and locomotion.run is not None
     family = "run" if running else "walk"
     space = locomotion.space(family)
     query = space.clamp(velocity)
     return running, query, locomotion.library.family(family), space.weights(query)
 
 
-def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: int) -> tuple[float, float]:
+def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: int, wish: float) -> tuple[float, float]:
     """The phase in which a gait at a velocity (3,) is most like a body that stands on one foot, 0 left or 1 right, and how unlike [m²]: feet about the hips, and
     how they move about them."""
-    _, _, members, weights = _gait(locomotion, velocity)
+    _, _, members, weights = _gait(locomotion, velocity, wish)
     library = locomotion.library
     rows = fourier.evaluate(np.tensordot(weights, library.coefficients[members], 1), np.arange(PHASES) / PHASES)
     local = library.reference @ exp(rows[:, :HIPS].reshape(PHASES, -1, 3))
@@ -162,17 +165,18 @@ def _under_the_hips(state: CharacterState, row: np.ndarray) -> np.ndarray:
     return np.array([place[0], place[2], heading])
 
 
-def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray, phase: float) -> None:
-    """Walking or running at a velocity (3,), from a phase of the gait."""
-    running, query, members, weights = _gait(locomotion, velocity)
+def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray, phase: float, wish: float) -> None:
+    """Walking or running at a velocity (3,), from a phase of the gait; a little faster or slower than any that was recorded, too, as gaits are stretched to it."""
+    running, query, members, weights = _gait(locomotion, velocity, wish)
+    stretch = float(np.clip(velocity[0] / query[0], LEAST_STRETCH, MOST_STRETCH)) if query[0] > WALKS_ON else 1.0
     memory["weights"] = 0.0
     memory["weights"][members] = weights
     memory["family"] = RUN if running else WALK
-    memory["command"] = memory["velocity"] = query
+    memory["command"] = memory["velocity"] = query * [stretch, 1.0, 1.0]
     memory["settled"], memory["phase"] = 0, phase
     row = np.empty(COLUMNS, np.float32)
     series_kernel(locomotion.tables.series, memory["weights"], np.float32(phase), row)
-    memory["row"], memory["stretch"] = row, 1.0
+    memory["row"], memory["stretch"] = row, stretch
 
 
 def _rate(locomotion: Any, memory: np.ndarray) -> np.ndarray:

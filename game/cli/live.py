@@ -294,7 +294,9 @@ def _amiss(source: Any) -> list[str]:
     from gambol.controllers.reconstruction import NAMES
 
     lines = [_twice(source)] if source.rivals else []
-    if _live(source) and not source.heard and source.local:
+    if source.about and not source.heard:
+        lines.append(f"what comes is about {source.about}, and of no tracker: let the program send /VMC/Ext/Tra/Pos and Hmd/Pos, or /tracking/trackers")
+    elif _live(source) and not source.heard and source.local:
         lines.append("nobody was heard on this machine; trackers on another one need --host 0.0.0.0")
     left = [name for name in source.unknown if name in NAMES]
     if left:

@@ -70,6 +70,7 @@ class Aim:
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
+    rests: whether the stick that moved him was let go, so that he is to come to rest where he lands.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -80,6 +81,7 @@ class Aim:
     place: tuple[float, float] | None = None
     heading: float | None = None
     spent: bool = False
+    rests: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf) -> Aim:
@@ -91,13 +93,14 @@ class Aim:
         x, z = self._there(state)
         stays = not self.moving and (cramped or self.place is not None)
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
+        rests = not any(wish.move)
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests)
             sets = state.refused == SETS_FEET
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
             pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
-            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place)
+            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place, rests=rests)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
         moving, heading, place = speed > MOVING, None, None
@@ -111,7 +114,7 @@ class Aim:
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests)
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
@@ -164,7 +167,7 @@ class Aim:
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
-        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=self.heading)
+        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=self.heading, stays=self.moving and self.rests)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
                 reaches: Reaches = anywhere) -> Leap | None:

@@ -29,7 +29,7 @@ THERE, RESTS = 0.3, 0.1
 """So near to that place [m], slower than this [m/s], he stays."""
 RUNS = 1.8
 """Hands that ask for more than this [m/s] run [m/s]: a leap that they hold goes off by itself; who walks comes to rest before what is ahead, and aims."""
-AHEAD = 0.60, 0.53
+AHEAD = 0.70, 0.52
 """How far ahead the ring lies of a walker: at no speed [m], and for each m/s [s]."""
 NEARER = 0.2, 0.0, 0.4, -0.2, 0.6, 0.8
 """A leap that goes off by itself lands so much nearer than the ring is [m]: a little, if it can, where he need not become faster for it."""

@@ -52,6 +52,8 @@ class Script:
             script = script._next(state)
         if not script.done:
             now, intent = script.now.step(script.moves[script.index], state, dt)
+            if intent.leap is not None and not _goes_on(script.moves[script.index + 1:]):
+                intent = but(intent, leap=replace(intent.leap, stays=True))
             told = now.stuck(dt) and not script.leaps  # else it is told as the jump is given up
             script = replace(script, now=now, refused=(*script.refused, script.stands) if told else script.refused)
         return script, but(intent, strike=reduce(both, hits)) if hits else intent
@@ -107,6 +109,11 @@ class Script:
             while index < len(self.moves) and _hops(self.moves[index]):
                 index += 1
         return replace(self, index=index, refused=refused, now=Making(hopped=self.now.hops if self.now.jumped else None))
+
+
+def _goes_on(moves: Sequence[Move]) -> bool:
+    """Whether the first of these moves, if there is one, goes anywhere."""
+    return bool(moves) and (moves[0].runs or moves[0].goal is not None)
 
 
 def _hops(move: Move) -> bool:

@@ -1,9 +1,9 @@
-"""Measure how a jump begins and goes on in play: from letting go to the air, and over the ring in a run.
+"""Measure how a jump begins and goes on in play: from letting go to the air, and over the ring in a walk or a run.
 
     python scripts/measure/jump_starts.py [--targets 100] [--phases 8] [--leaps 100] [--seed 0]
 
-Somebody stands, aims at random targets for a while and lets go. Runners of many speeds aim as one plays, let go at many moments of
-their strides, leap over the ring and run on. Others leap from walks and runs to random places ahead: how much faster along the floor they leave than they came. Some leap from a stand, a walk
+Somebody stands, aims at random targets for a while and lets go. Walkers and runners of many speeds aim as one plays, let go at many moments of
+their strides, leap over the ring and go on. Others leap from walks and runs to random places ahead: how much faster along the floor they leave than they came. Some leap from a stand, a walk
 or a run to random places all over what is before them: how deep soles come into the floor, and how far hips are off their way as walking takes over. Or somebody lets go
 in the midst of a turn, a side step or an arc, and leaps: how near his legs come to each other. Everything but how fast they leave is told from the poses
 that are played.
@@ -21,7 +21,7 @@ import numpy as np
 from _limbs import legs_apart
 from jump_trials import FPS
 
-from gambol.controllers.body import forward_kinematics, sole_corners
+from gambol.controllers.body import forward_kinematics, log, sole_corners
 from gambol.controllers.contract import CharacterState, Intent, Leap, Unable
 from gambol.controllers.jump import Jumping
 from gambol.controllers.jump.motion import Plan
@@ -36,7 +36,9 @@ PATIENCE = 0.9
 """So long a jump that was asked waits, in play [s]."""
 BEFORE = 4
 """So many steps before a leap are looked at, too."""
-SPEEDS = 2.2, 2.6, 3.0, 3.4
+SPEEDS = 1.0, 1.3, 1.6, 2.2, 2.6, 3.0, 3.4
+WALKS, LANDS = 1.8, 18
+"""Who is slower than the first [m/s] walks, and takes two steps in 1.1 s, who runs in 0.75; legs give for so many steps after touch-down."""
 MOVES = {"turns on the spot": [(0.0, turn, 0.0) for turn in (1.0, 2.0, 3.0, -1.0, -2.0, -3.0)],
          "side and diagonal steps, backward": [(0.0, 0.0, 0.6), (0.0, 0.0, -0.6), (0.6, 0.0, 0.5), (0.6, 0.0, -0.5), (-0.5, 0.0, 0.4), (-0.5, 0.0, -0.4), (-0.7, 0.0, 0.0)],
          "arcs": [(0.5, 2.0, 0.0), (0.5, -2.0, 0.0)]}
@@ -85,20 +87,21 @@ def report_release(someone: Supervisor, targets: int, rng: np.random.Generator) 
 
 
 def report_strides(someone: Supervisor, phases: int) -> None:
-    """Runs over the ring and on, let go at many moments of the stride."""
-    print("Running over the ring: of how many, refused; lands on one foot; speed before; least of hips over 0.1 s from before touch-down to 0.6 s "
-          "later, over that: median, worst; waited s (median, longest)")
-    kept_all, refused_all, all_ = [], 0, 0
+    """Walks and runs over the ring and on, let go at many moments of the stride."""
+    print("Walking or running over the ring: of how many, refused; lands on one foot; least of hips over 0.1 s from before touch-down to 0.6 s "
+          "later, over the speed before: median, worst; waited s (median, longest); in the air s, rises cm (medians); knee bent as it lands ° (median, worst)")
+    kept_all, refused_all, all_, legs = [], 0, 0, [someone.skeleton.index(side + "Leg") for side in ("Left", "Right")]
     for speed in SPEEDS:
         wish = np.array([speed, 0.0, 0.0])
         base = led(someone, someone.start(), Intent(wish), 3.5)
-        single, kept, waits, refused = 0, [], [], 0
+        single, kept, waits, refused, air, knees = 0, [], [], 0, [], []
         for k in range(phases):
-            state = led(someone, base, Intent(wish), 0.75 * k / phases)
-            leap, made, way = Aim().step(Wish(jump=True), 0.0, state, False, 1 / FPS).target(state, (), 9.81), None, []
+            state = led(someone, base, Intent(wish), (0.75 if speed > WALKS else 1.1) * k / phases)
+            leap, made, way, bent = Aim().step(Wish(jump=True, move=(0.0, 1.0)), 0.0, state, False, 1 / FPS).target(state, (), 9.81), None, [], []
             for n in range(150):
                 state, pose = someone.step(state, Intent(wish, leap if made is None and n < PATIENCE * FPS else None), 1 / FPS)
                 way.append(float(pose.root[2]))
+                bent.append(np.degrees(np.linalg.norm(log(pose.rotations[legs]), axis=-1)))
                 if made is None and isinstance(state.memory.memory, Jumping):
                     made, begun = state.memory.memory.plan, n
             if made is None:
@@ -108,9 +111,12 @@ def report_strides(someone: Supervisor, phases: int) -> None:
             down = begun + int(made.touch_down * FPS)
             single += made.path.lands is not None
             waits.append(begun / FPS)
+            air.append((made.path.airtime, 50.0 * made.path.velocity[1]**2 / 9.81))
+            knees.append(float(np.array(bent)[down:down + LANDS, slice(None) if made.path.lands is None else made.path.lands].max()))
             kept.append(float(pace[down - 6:down + 36].min()) / speed)
         kept_all, refused_all, all_ = kept_all + kept, refused_all + refused, all_ + phases
-        print(f"  {speed:g} m/s: {phases}, {refused}; {single}; {100.0 * np.median(kept):.0f} %, {100.0 * min(kept):.0f} %; {np.median(waits):.2f}, {max(waits):.2f}")
+        print(f"  {speed:g} m/s: {phases}, {refused}; {single}; {100.0 * np.median(kept):.0f} %, {100.0 * min(kept):.0f} %; {np.median(waits):.2f}, {max(waits):.2f}; "
+              f"{np.median(air, 0)[0]:.2f}, {np.median(air, 0)[1]:.0f}; {np.median(knees):.0f}, {max(knees):.0f}")
     print(f"  all: refused {refused_all} of {all_}; at least 80 % of the speed kept in {100.0 * np.mean(np.array(kept_all) >= 0.8):.0f} %")
 
 

@@ -41,6 +41,14 @@ def test_the_stick_pushes_the_ring_as_the_camera_looks_and_not_too_far(yaw, stic
     assert aim.stands and aim.facing == pytest.approx(math.atan2(*aim.offset))
 
 
+def test_who_let_go_of_the_stick_is_to_come_to_rest_where_he_lands():
+    walks = standing((1.3, 0.0, 0.0))
+    for move, rests in (((0.0, 1.0), False), ((0.0, 0.0), True)):
+        aim = aimed(Wish(jump=True, move=(0.0, 1.0)), 0.2, walks).step(Wish(move=move), 0.0, walks, False, DT)
+        assert aim.asked(walks, (), 9.81).stays is rests
+    assert not aimed(HELD, 0.5, standing()).step(FREE, 0.0, standing(), False, DT).asked(standing(), (), 9.81).stays, "who stands comes to rest anyway"
+
+
 def test_nothing_is_asked_for_while_the_button_is_held():
     aim = aimed(HELD, 0.5, standing())
     assert aim.aiming and aim.asked(standing(), (), 9.81) is None

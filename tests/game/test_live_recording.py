@@ -85,7 +85,7 @@ def test_who_ends_it_twice_ends_it_at_once(clock):
 class Restless:
     """A stream of somebody who never stands still; of nobody, where there is none."""
 
-    host, port, local, heard, unknown, rivals, turns, worn = "127.0.0.1", 9000, True, {}, [], (), None, None
+    host, port, local, heard, unknown, rivals, turns, worn, about = "127.0.0.1", 9000, True, {}, [], (), None, None, ""
     controls = parse("lwrist,rwrist", SKELETON)
 
     def __init__(self, there=True, rivals=()):
@@ -174,6 +174,14 @@ def test_whoever_is_calibrated_is_waited_for(clock, worn):
     assert "listening at 127.0.0.1, port 9000" in said and "on no point: LHR-1; --map says where they are" in said
     with pytest.raises(Mistake, match="nothing is heard of lwrist, rwrist for 40 s; .*on no point: LHR-1"):
         live.stand(Late(1e9), STATURE, worn, say=said.append, wait=40.0)
+
+
+def test_who_sends_bones_is_told_so_and_not_of_other_machines(clock):
+    said, bones = [], Restless(False)
+    bones.about = "/VMC/Ext/Bone/Pos"
+    with pytest.raises(Mistake, match="what comes is about /VMC/Ext/Bone/Pos, and of no tracker: let the program send /VMC/Ext/Tra/Pos"):
+        live.stand(bones, STATURE, say=said.append, wait=40.0)
+    assert "--host" not in " ".join(said)
 
 
 def test_points_that_are_heard_but_not_followed_are_told_how_to_be(clock, worn):

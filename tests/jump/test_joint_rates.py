@@ -109,8 +109,11 @@ def walkers(locomotion):
 def test_a_walkers_free_leg_swings_no_faster_than_peoples_and_clears_the_floor(jump, walkers):
     found = []
     for state in walkers:
+        intent = Intent(WALK, Leap(np.array([state.ground[0], 0.0, state.ground[1] + 1.4])))
+        if not jump.precondition(state, intent):
+            continue
         try:
-            made = jump.plan(state, Intent(WALK, Leap(np.array([state.ground[0], 0.0, state.ground[1] + 1.4]))))
+            made = jump.plan(state, intent)
         except Unable:
             continue
         if made.path.single:

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from gambol.controllers.body import contact_points, forward_kinematics, sole_corners
+from gambol.controllers.body import contact_points, forward_kinematics, log, sole_corners
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jumping
+from gambol.game.input.run_up import AHEAD
 
 FPS = 60
 PACE = 3.0
@@ -156,3 +157,43 @@ def test_no_knee_flips_as_a_runner_who_comes_down_lower_runs_on(person, jump, ru
     shown = states[taken - 4:taken + 16]
     at, _ = forward_kinematics(jump.skeleton, np.stack([s.pose.root for s in shown]).astype(float), np.stack([s.pose.rotations for s in shown]).astype(float))
     assert np.linalg.norm(np.diff(at, 2, axis=0), axis=-1).max() * FPS**2 < 400.0, "it was up to 3,200 m/s²"
+
+
+def leapt(person, pace, late, stays=False):
+    """The plan of who walks or runs and leaps as hands let him, how fast his hips go once they have come down [m/s], over 0.1 s, and how far his knees bend as he lands [rad]."""
+    wish, state, made, way = np.array([pace, 0.0, 0.0]), person.start(), None, []
+    for _ in range(150 + late):
+        state, _ = person.step(state, Intent(wish), 1 / FPS)
+    leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + AHEAD[0] + AHEAD[1] * pace]), slack=SLACK, stays=stays)
+    knees = []
+    for _ in range(130):
+        state, pose = person.step(state, Intent(wish, leap if made is None else None), 1 / FPS)
+        way.append(pose.root[2])
+        knees.append(np.linalg.norm(log(pose.rotations[[person.skeleton.index(side + "Leg") for side in ("Left", "Right")]]), axis=-1))
+        if made is None and isinstance(state.memory.memory, Jumping):
+            made, begun = state.memory.memory.plan, len(way)
+    assert made is not None, state.refused
+    down = begun + int(made.touch_down * FPS)
+    return made, (np.array(way)[6:] - np.array(way)[:-6])[down + 3:down + 40] * FPS / 6, np.array(knees)[down:down + 18]
+
+
+@pytest.mark.parametrize("late", [0, 9, 19, 28, 38, 47])
+def test_who_walks_on_lands_on_one_foot_and_does_not_come_to_rest(person, late):
+    """On two he stood still after every leap, 0.01 of his speed left, and squatted to 96°."""
+    made, pace, knees = leapt(person, 1.3, late)
+    assert made.path.lands is not None and made.path.airtime > 0.4 and pace.min() > 0.45 * 1.3
+    assert np.degrees(knees[:, made.path.lands].max()) < 90.0
+
+
+@pytest.mark.parametrize("late", [0, 19, 38])
+def test_who_wants_to_stay_there_lands_on_both(person, late):
+    made, pace, _ = leapt(person, 1.3, late, stays=True)
+    assert made.path.lands is None and pace.min() < 0.2
+
+
+@pytest.mark.parametrize("pace", [2.4, 3.0])
+def test_a_runner_rises_as_who_leaps_and_lands_on_a_leg_that_bends_as_recorded(person, pace):
+    """He rose 6 cm, as in a long step; recorded ones rise 21 to 39, athletes' all."""
+    found = [leapt(person, pace, late) for late in (0, 11, 22)]
+    assert np.median([made.path.velocity[1] ** 2 / 19.62 for made, *_ in found]) > 0.13
+    assert np.median([np.degrees(knees[:, made.path.lands].max()) for made, _, knees in found]) < 91.0

@@ -73,6 +73,12 @@ def test_places_come_in_the_order_of_the_points_and_right_handed(stream, send):
     assert np.allclose(stream.at(0.0), [[0.5, 1.1, 0.3], [-0.5, 1.0, 0.2], [0.1, 0.1, 0.0]])
 
 
+def test_a_packet_of_bones_says_what_it_is_about():
+    bones = bundle(message("/VMC/Ext/OK", 1), message("/VMC/Ext/Bone/Pos", "Hips", 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0), message("/VMC/Ext/T", 1.0))
+    assert understood(bones).about == "/VMC/Ext/Bone/Pos" and not understood(bones).trackers
+    assert not understood(bundle(message("/VMC/Ext/OK", 1), message("/VMC/Ext/T", 1.0))).about
+
+
 def test_all_that_programs_send_is_understood():
     with Stream({"hmd": "head", "1": "root", "con": "lwrist"}, 0, "127.0.0.1") as stream:
         send = Sender(stream)

@@ -22,8 +22,8 @@ GROUND_RATE, AIR_RATE = 72.0, 90.0
 """Poses a second over planted feet, in the air."""
 SHORT = 0.5
 """Flights that last longer [s] are slower, and need fewer poses a second."""
-RUNS_ON = 0.06, 0.14
-"""Who lands on one foot runs on from the lowest point, so soon at least and at most [s]."""
+RUNS_ON = 0.06, 0.26
+"""Who lands on one foot walks or runs on once his leg has given and he is over it, so soon at least and at most [s]: by then who walks has come up again."""
 PASSES = 0.12
 """The leg that swings on passes the other in so long at least [s], as recorded, however soon that has given."""
 WAITS = 0.06
@@ -204,7 +204,7 @@ class Airborne:
             pose(feet, self.air_roots[-1].copy(), roots, local)
         return after, (roots, local, c, v, a), feet[..., 4] <= HEEL, (
             max(landing.until(after), self.lowest) if self.way.lands is None else
-            self._steps_on() if self.way.hops else float(np.clip(self.lowest, *RUNS_ON)))
+            self._steps_on() if self.way.hops else float(np.clip(max(self.lowest, landing.over(after)), *RUNS_ON)))
 
     def _steps_on(self) -> float:
         """When [s] after touch-down one who could hop on, but is not asked to, stands on both feet, or walks on if he can't stop."""

@@ -28,8 +28,8 @@ BACKWARD, BELOW = 0.4, 0.4
 softly. Not of who needs all of his reach, and leaves in haste."""
 TILTED, HARD = 0.7, (4.4, 5.4)
 """A runner, who passes over his feet as legs give, lands lower by so much of that, and so does who falls faster [m/s], by and by, and needs his legs to stop."""
-LEAST_AIRTIME = 0.30
-"""Shorter flights look like stumbling [s]; on Earth, at standard height."""
+LEAST_AIRTIME, RUNS_UP = 0.30, 0.42
+"""Shorter flights look like stumbling [s], and off one foot of who walks or runs like a long step: recorded ones take 0.44 to 0.60; on Earth, at standard height."""
 TURN_SETTLES = 0.25
 """So long after it touched down [s] a body has made all of its turn."""
 KEEPS = 0.95, 1.4
@@ -40,9 +40,9 @@ SPINS = 6.0, 8.0
 HIGHER = 0.14, 0.9
 """Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
 ahead, the sooner he is off."""
-STRIDES = 1.8, 3.7
-"""A runner lands on one foot who comes down faster ahead than the first, which no gait has aside, and falls slower than the second [m/s], from 0.7 m: a leg
-then bears 4.8 times the weight."""
+STRIDES, FALLS, ASTRAY = (0.7, 1.8), 3.7, 0.45
+"""Who pushes off one foot lands on the other, to walk or run on, if he comes down faster ahead than the first, or the second if he wants to stay there, and falls slower than
+that [m/s], from 0.7 m: a leg then bears 4.8 times the weight. But not if he goes aside by more than that share of it: no gait does, as fast."""
 FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])
 """By so much more than recorded hip and knee of a free leg are bent [rad] as the other lands, and in the rows before."""
 FOLDED = 0.64
@@ -163,7 +163,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
-            (LEAST_AIRTIME + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
+            ((RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         fall = g * flight - float(velocity[1])
         features = [prior.features(speed, ahead, pace, size, start.runs)
@@ -208,9 +208,10 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
 
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
     """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
-    if start.single is None or velocity @ yaw(start.lands)[:, 2] < STRIDES[0] * np.sqrt(size):
+    aside, _, ahead = velocity @ yaw(start.lands)
+    if start.single is None or ahead < STRIDES[start.stays] * np.sqrt(size) or abs(aside) > ASTRAY * ahead:
         return None
-    return 1 - start.single if -(velocity + gravity * flight)[1] < STRIDES[1] * np.sqrt(size) else None
+    return 1 - start.single if -(velocity + gravity * flight)[1] < FALLS * np.sqrt(size) else None
 
 
 def _folded(keys: np.ndarray, lands: int | None) -> np.ndarray:

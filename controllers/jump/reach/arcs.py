@@ -14,11 +14,13 @@ from ...navigation import floor_at, gap, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, path
 from ..prior import Prior
-from .feasibility import HARD, fault, meant
+from .feasibility import HARD, PACE, fault, meant
 from .seeking import PATH, Pieces, whole
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
+LOWER = 0.9, 0.8, 0.7
+"""And of who leaps off one foot that can't push as usual, so that he leaps lower."""
 WAYS = (False, False), (False, True), (True, True)
 """With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
 LITTLE, RISES = 0.06, 0.03
@@ -84,8 +86,17 @@ class Arcs:
     def arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
              around: Sequence[Any] = (), heights: Sequence[float] = HEIGHTS) -> Looks:
         """The arcs to a place, the usual one first; where something stands about then with
-        the legs drawn up and the arms down and, without an airtime, higher: by `heights` times the airtime, which begin with 1. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
+        the legs drawn up and the arms down and, without an airtime, higher: by `heights` times the airtime, which begin with 1; of a runner whose foot can't push so,
+        lower. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
         in the plan along the last of them leaves out those along which it would as well. Before each path that is made, what that costs."""
+        usual = yield from self._arcs(start, place, floor, airtime, around, heights)
+        for share in LOWER if start.runs and airtime is None else ():
+            if usual is not None and (yield from self._arcs(start, place, floor, share * usual, around, heights[:1])) is None:
+                return
+
+    def _arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any],
+              heights: Sequence[float]) -> Generator[Arc | int, float | None, float | None]:
+        """The same of one usual airtime [s], None for that of least effort. What comes of it is how long that is where the foot can't push so."""
         first, hits = None, dict[bool, tuple[float, float]]()
         for higher in heights:
             flight = airtime if first is None else first.airtime * higher
@@ -118,10 +129,13 @@ class Arcs:
                 first = first or tried.path
                 if deep is not None:
                     hits[low] = tried.path.airtime, deep
+                if start.runs and first is tried.path and tried.path.strong and tried.why.startswith((HARD, *PACE)) and deep is None:
+                    return first.airtime
                 if not tried.path.strong or tried.why.startswith(HARD):
-                    return
+                    return None
             if airtime is not None or not len(around):
-                return
+                return None
+        return None
 
     def _still(self, airtime: float, deep: float, longer: float) -> bool:
         """Whether something that lay so deep [m] in a plan would still lie in one that flies longer [s], and so much higher."""

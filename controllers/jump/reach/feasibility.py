@@ -41,6 +41,8 @@ MOMENTARY = BESIDE, SETS_FEET
 """Why a leap is refused for a moment only: the next footfall may be another."""
 HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
+PACE = "too far for this ", "too near for this "
+"""And one for which the foot that pushes would have to speed up or brake too much."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
 RUNS_TURNED = 0.8
@@ -105,7 +107,7 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
                 f"where {'this one has' if way.single else 'these have'} {gives:.1f}")
     if way.course is not None and (way.course.outside > ASIDE * physique.size or way.course.lean > SLIP):
         gains = np.linalg.norm(way.velocity * FLAT) > np.linalg.norm(way.course.velocity[0])
-        return f"too {'far' if gains else 'near'} for this {'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"
+        return f"{PACE[0] if gains else PACE[1]}{'run' if way.running else 'pace'}: no foot {'speeds up' if gains else 'brakes'} so much in one step"
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
     return stopped(physique, way, ROLLED if rolls(physique, way) else 1.0) or blocked(physique, way, around)

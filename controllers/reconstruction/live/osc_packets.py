@@ -26,6 +26,7 @@ MIRRORED = np.array([1.0, -1.0, -1.0, 1.0])
 _VMC = re.compile(r"/VMC/Ext/(Hmd|Con|Tra)/Pos")
 _VRCHAT = re.compile(r"/tracking/trackers/([1-8]|head)/(position|rotation)")
 _CLOCK = "/VMC/Ext/T"
+_ASIDE = _CLOCK, "/VMC/Ext/OK", "/VMC/Ext/Root/Pos"  # every program says these of itself
 LONGEST_NAME = 100
 """Letters of a tracker's name."""
 MOST_PARTS = 1024
@@ -49,10 +50,12 @@ class Reading(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """Trackers of a packet, each one once. sent: when by the sender's clock [s]; None where it does not say."""
+    """Trackers of a packet, each one once. sent: when by the sender's clock [s]; None where it does not say. about: the address of a message about something else, ""
+    where there is none."""
 
     trackers: list[Reading]
     sent: float | None = None
+    about: str = ""
 
 
 def understood(packet: bytes) -> Seen | None:
@@ -64,7 +67,7 @@ def understood(packet: bytes) -> Seen | None:
     except (ParseError, ValueError, IndexError, RecursionError):
         return None
     found: dict[str, Reading] = {}
-    sent = None
+    sent, about = None, ""
     for message in messages:
         values = message.params
         if match := _VMC.fullmatch(message.address):
@@ -77,13 +80,15 @@ def understood(packet: bytes) -> Seen | None:
         else:
             if message.address == _CLOCK and len(values) == 1 and type(values[0]) in (int, float) and abs(values[0]) < 1e9:
                 sent = float(values[0])
+            elif message.address not in _ASIDE:
+                about = message.address
             continue
         if reading is None:
             return None
         before = found.get(reading.serial)
         found[reading.serial] = reading if before is None else reading._replace(
             place=np.where(np.isnan(reading.place), before.place, reading.place), turn=np.where(np.isnan(reading.turn), before.turn, reading.turn))
-    return Seen(list(found.values()), sent)
+    return Seen(list(found.values()), sent, about)
 
 
 def _parts(packet: bytes) -> int:

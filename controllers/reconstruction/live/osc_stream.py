@@ -44,7 +44,7 @@ class Trackers:
     points: what each tracker is on, a point as `controls.parse` has it by serial number, "hmd" for any head-set.
     A tracker that is called like the joint of one of these points, as "head" is, is on that joint. stale: [s] see STALE. placement: into the world; `placing`
     finds one. heard: when each tracker was last heard of [s], by serial number, of those on no point the first 64. broken: how
-    many packets were no OSC that we know. foreign: how many came from another machine than the one that is listened to. rivals: addresses of two programs on it that lately sent the same tracker in turns, if there are.
+    many packets were no OSC that we know. about: what the last one was about that told of no tracker, "" if there was none. foreign: how many came from another machine than the one that is listened to. rivals: addresses of two programs on it that lately sent the same tracker in turns, if there are.
     turns: (n, 3, 3) how the joints below the trackers are turned, as of when the points were told last; NaN where not known; the
     trackers' own turns until a placement knows how they are mounted. worn: who makes joints of what trackers say, places (n, 3) [m] and turns
     (n, 3, 3) of the room, instead of the placement (`calibration.Wearer`).
@@ -55,7 +55,7 @@ class Trackers:
         named = {name.partition("+")[0]: n for n, name in enumerate(self.controls.names)}
         self._index = named | {serial: n for n, serial in enumerate(points)}
         self._on_joints = set(named) - set(points)
-        self.stale, self.placement, self.heard, self.broken, self.foreign = stale, Placement(), {}, 0, 0
+        self.stale, self.placement, self.heard, self.broken, self.foreign, self.about = stale, Placement(), {}, 0, 0, ""
         self.worn: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
         self._lines = [Timeline() for _ in points]
         self.turns = np.full((len(points), 3, 3), np.nan)
@@ -80,6 +80,8 @@ class Trackers:
             return
         if seen.trackers:
             self._from = machine, time
+        elif seen.about:
+            self.about = printable(seen.about)
         for serial, kind, place, turn in seen.trackers:
             if serial in self._index or serial in self.heard or len(self.heard) < _MOST_NAMES + len(self._index):
                 self.heard[serial] = time
