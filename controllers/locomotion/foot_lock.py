@@ -22,6 +22,7 @@ from .foot_points import on_floor, shown_kernel
 from .kernel import LABELS_AT
 from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
+from .root_motion import as_runner, sooner
 from .short_leg import give_way
 from .memory import WALK
 from .swing import SWING, swing_kernel, swing_progress
@@ -37,6 +38,8 @@ GATE = 0.035
 GRIP_RATE = 30.0, 25.0
 """How fast a grip may change [1/s]: walking, where both feet are as high; and on stairs, where a foot that stops sooner ends in a riser, and running, since who runs pushes only while a foot
 grips."""
+RUNNER_HALFLIFE = 0.1
+"""Who runs onto stairs, or off them, comes to a runner's steps there, or leaves them, with this half-life [s]."""
 AIM_HALFLIFE = 0.02
 """A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 STEEPLY, FREED = (2.5, 1.2), 0.02
@@ -81,8 +84,9 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     else:
         leave_level(m)
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
+    m.runner += ((as_runner(m) if m.stairs > 0.0 else 0.0) - m.runner) * (1.0 - 2.0 ** (-dt / RUNNER_HALFLIFE))
     for k in range(4):
-        take_hold(m, k, legs.height, GRIP_RATE[0 if m.family == WALK and m.base[0] == m.base[1] else 1] * dt, dt)
+        take_hold(m, k, legs.height, sooner(m) * GRIP_RATE[0 if m.family == WALK and m.base[0] == m.base[1] else 1] * dt, dt)
     for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)

@@ -17,8 +17,12 @@ PATIENCE, HURRY, MOST_HURRY = 0.08, 0.25, 0.6
 
 SHORTEST = 0.3
 """No blend's cycle is shorter [s]."""
-BRISKEST = 1.4
-"""Who must take shorter steps takes them at most this many times as often."""
+BRISKEST = 1.4, 2.2
+"""Who must take shorter steps takes them at most this many times as often, walking, and running up or down stairs: some 3.5 steps a second, as recorded people."""
+SOONEST = 1.35
+"""Feet of who runs on stairs take hold, rise and sink so many times as soon: later, and they graze treads; sooner, and they are thrown."""
+RUNNER = 1.5, 2.5
+"""Who wishes to go ahead no faster than the first [m/s] walks on stairs, who wishes the second runs."""
 
 
 @kernel
@@ -47,7 +51,19 @@ def tempo_kernel(m):
 @kernel
 def briskness(m):
     """How many times as often somebody takes his steps where they must be short, as on stairs: the gait of a slower walk, played faster."""
-    return min(1.0 / max(m.pace, 0.1), BRISKEST)
+    return min(1.0 / max(m.pace, 0.1), BRISKEST[0] + m.runner * (BRISKEST[1] - BRISKEST[0]))
+
+
+@kernel
+def sooner(m):
+    """How many times as soon feet take hold, rise and sink of who runs on stairs as of who walks there, and his body after them."""
+    return 1.0 + m.runner * (SOONEST - 1.0)
+
+
+@kernel
+def as_runner(m):
+    """How much of a runner somebody wishes to be on stairs: 0 who walks, or goes backward or aside, 1 who runs ahead."""
+    return min(max((m.wished[1] - RUNNER[0]) / (RUNNER[1] - RUNNER[0]), 0.0), 1.0)
 
 
 @kernel

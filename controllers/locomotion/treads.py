@@ -14,7 +14,7 @@ from ..compiled import kernel
 from ..navigation.passing import STEP
 from .beside_walls import out_of_walls
 from .memory import RUN, WALK
-from .root_motion import cadence_kernel
+from .root_motion import as_runner, cadence_kernel
 from .tops import SAME, ground_kernel
 
 FOOT, TOE = 0.175, 0.095
@@ -53,13 +53,13 @@ LOOKS, FINER = 0.05, 4
 """… which goes by such strides [m]; where the edge is, is found by halving one so often."""
 FLIGHT = 0.8
 """Edges no farther apart than this are stairs; others are kerbs [m]."""
-STEPS, RISES, STAIRS = 2.6, 0.42, (0.5, 1.0)
-"""Nobody goes up or down stairs faster than so many treads a second, and so much up or down [m/s], within these [m/s] …"""
+STEPS, RISES, LEAST, MOST = (2.6, 3.5), (0.42, 0.55), 0.5, (1.0, 1.4)
+"""Nobody goes up or down stairs faster than so many treads a second, walking and running, and so much up or down [m/s], no slower than the third [m/s], nor faster than the last …"""
 KERB, RUN_OVER = 1.4, 0.24
 """… nor over a kerb than the first [m/s]: but who runs goes on running over one no higher or deeper than the second [m]."""
 BRAKES, BEFORE, LATE = 1.5, 0.45, 0.35
-"""Who comes to them brakes by the first [m/s²], to be as slow so far before them [m] as feet reach ahead; the third is how late speed
-follows a wish [s]."""
+"""Who comes to them brakes by the first [m/s²], to be as slow so far before them [m] as feet reach ahead; the third is how late his speed, not
+what he wishes, follows [s]: who has braked need not brake as early as who has not."""
 BEHIND = 0.3
 """So far beyond the last edge one foot is still to come over it [m]."""
 ON, AROUND = 0.25, 0.6
@@ -190,11 +190,11 @@ def most_speed(m, tops, floor):
     along_x, along_z = (c * m.wished[0] + s * m.wished[1]) / speed, (-s * m.wished[0] + c * m.wished[1]) / speed
     now = math.hypot(m.velocity[0], m.velocity[2])
     goes = max(speed, now)
-    sees = BEFORE + LATE * goes + max(speed * speed - STAIRS[0] ** 2, 0.0) / (2.0 * BRAKES)
+    sees = BEFORE + LATE * goes + max(speed * speed - LEAST**2, 0.0) / (2.0 * BRAKES)
     ground = np.empty(3)
     ground_kernel(tops, m.ground[0] - BEHIND * along_x, m.ground[1] - BEHIND * along_z, floor, m.level, ground)
     before = ground[0] if ground[0] > m.level - 2.0 * STEP else m.level  # what one has the brink of behind one is no ground
-    first, limit = -9.0, m.stairs if m.stairs > 0.0 else 9.0
+    first, rose, limit = -9.0, 0.0, m.stairs if m.stairs > 0.0 else 9.0
     for k in range(1, 2 + int((sees + BEHIND + FLIGHT) / LOOKS)):
         far = k * LOOKS - BEHIND
         ground_kernel(tops, m.ground[0] + far * along_x, m.ground[1] + far * along_z, floor, before, ground)
@@ -211,11 +211,11 @@ def most_speed(m, tops, floor):
         far = _edge(m, tops, floor, along_x, along_z, far, before, rise, before, ground)
         tread, at = far - first, far
         if tread < FLIGHT:
-            most, at = _on_treads(tread, rise), first
+            most, at = _on_treads(tread, rise, as_runner(m) if rise * rose > 0.0 else 0.0), first  # over what leads down again at once nobody runs
         else:
             most = 9.0 if m.wanted == RUN and abs(rise) < RUN_OVER else KERB
-        first, before = far, before + rise
-        limit = min(limit, math.sqrt(most * most + 2.0 * BRAKES * max(at - BEFORE - LATE * goes, 0.0)))
+        first, rose, before = far, rise, before + rise
+        limit = min(limit, math.sqrt(most * most + 2.0 * BRAKES * max(at - BEFORE - LATE * now, 0.0)))
         if far > sees:
             break
     return max(limit, 1e-3) if limit < speed else 0.0
@@ -237,9 +237,10 @@ def _edge(m, tops, floor, along_x, along_z, far, before, rise, level, ground):
 
 
 @kernel
-def _on_treads(tread, rise):
-    """How fast one may go over treads so long that rise by so much [m/s]."""
-    return min(max(min(STEPS, RISES / abs(rise)) * tread, STAIRS[0]), STAIRS[1])
+def _on_treads(tread, rise, runs):
+    """How fast one may go over treads so long that rise by so much [m/s], the faster the more of a runner he is to be, 0 … 1."""
+    steps = min(STEPS[0] + runs * (STEPS[1] - STEPS[0]), (RISES[0] + runs * (RISES[1] - RISES[0])) / abs(rise))
+    return min(max(steps * tread, LEAST), MOST[0] + runs * (MOST[1] - MOST[0]))
 
 
 @kernel
@@ -260,7 +261,7 @@ def on_stairs(m, tops, floor):
             if abs(rise) >= EDGE:
                 far = _edge(m, tops, floor, x, z, far, before, rise, m.level, ground)
                 if max(abs(rise), abs(rose)) <= STEP and rise * rose > 0.0 and far - last < FLIGHT and last < ON and far > -ON:
-                    limit = min(limit, _on_treads(far - last, rise))
+                    limit = min(limit, _on_treads(far - last, rise, as_runner(m)))
                 last, rose = far, rise
             before = before + rise
     return limit if limit < 9.0 else 0.0

@@ -16,6 +16,7 @@ from ..navigation.passing import STEP
 from .foot_points import shown_kernel
 from .memory import WALK
 from .minimum_jerk import smooth
+from .root_motion import sooner
 from .swing import SAMPLES, line_ahead, swept_line
 from .tops import SAME, ground_kernel
 from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, under_kernel
@@ -27,7 +28,7 @@ RECOVERS = 0.35
 RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
 DROPS, CLIMBS = 2.0, 4.0
-"""A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s]."""
+"""A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s], but of who steps oftener as he runs on stairs."""
 HASTE = 50.0, 300.0
 """A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose
 knee is bent as it leaves: a straight one would be thrown."""
@@ -56,7 +57,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     bent = max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1) if m.family == WALK else 0.0
-    haste = HASTE[0] + (HASTE[1] - HASTE[0]) * bent
+    haste, faster = HASTE[0] + (HASTE[1] - HASTE[0]) * bent, sooner(m)
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -105,8 +106,8 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             up, down = smooth(progress / RISES), smooth((progress - SINKS) / (1.0 - SINKS))
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
-        before, goal = m.base[foot], max(path, rising, m.base[foot] - DROPS * dt)
-        m.base[foot] = min(goal, before + min(m.climb[foot] + haste * dt, CLIMBS, math.sqrt(2.0 * haste * max(goal - before, 0.0))) * dt)
+        before, goal = m.base[foot], max(path, rising, m.base[foot] - faster * DROPS * dt)
+        m.base[foot] = min(goal, before + min(m.climb[foot] + haste * dt, faster * CLIMBS, math.sqrt(2.0 * haste * max(goal - before, 0.0))) * dt)
         m.climb[foot] = max(m.base[foot] - before, 0.0) / dt
         m.high[foot] = m.base[foot] - under[0]
         bears[foot] = min(m.base[foot], bearing)
@@ -118,7 +119,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     before, rate = m.level, m.level_rate
     m.middle = min(0.5 * (low + high), low + LOW + 0.25 * (high - low))
     climbs = _climbs(m)
-    m.level, m.level_rate = spring_kernel(m.level, m.level_rate - climbs, m.middle - m.lower, LEVEL_HALFLIFE, dt)
+    m.level, m.level_rate = spring_kernel(m.level, m.level_rate - climbs, m.middle - m.lower, LEVEL_HALFLIFE / faster, dt)
     m.level, m.level_rate = m.level + climbs * dt, m.level_rate + climbs
     if m.level_rate < rate - GRAVITY * dt:  # nobody sinks faster than they fall
         m.level_rate = rate - GRAVITY * dt

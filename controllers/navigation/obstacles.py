@@ -16,7 +16,9 @@ from numpy.typing import ArrayLike
 from ..compiled import kernel
 
 STEP = 0.21
-"""No higher step is taken without a jump [m]."""
+"""No higher step is taken without a jump [m], by nobody who is no taller than the standard body …"""
+REACHES = 0.298
+"""… nor than this in the standard body's size: the highest that legs take (`passing.STEP`), a hair less. Of a child of 1.2 m it is 0.206 m, of one of 1.0 m 0.171 m."""
 STEEPEST = 0.7
 """A ramp that rises by more metres a metre is not walked on: it is met like a block as high as it rises."""
 HEAD = 1.9
@@ -61,6 +63,16 @@ class Pillar(Protocol):
     def radius(self) -> float: ...
     @property
     def height(self) -> float: ...
+
+
+def highest_step(size: float = 1.0) -> float:
+    """The highest step of a body so many times as large as the standard one, in the standard body's size [m]: a small one steps as high as others, as far as its legs let it."""
+    return max(STEP, min(STEP / size, REACHES))
+
+
+def step_among(around: Sequence[Any]) -> float:
+    """The highest step [m] of who walks among things: the standard body's, unless they are those of a smaller world, which says it by its `step`."""
+    return getattr(around, "step", STEP)
 
 
 def is_box(thing: Any) -> TypeGuard[Box]:

@@ -1,6 +1,6 @@
 """Measure walks up and down stairs of all kinds, by bodies of all sizes, as fast as they are asked to; and runs over single kerbs.
 
-    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs] [--knees]
+    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs] [--knees] [--paces]
 
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
@@ -10,6 +10,7 @@ in the standard body's size. Jerk: of feet's joints, the highest [km/s³], and t
 Kerbs: up one of 6–16 cm after five metres, on for 0.5–6 m, down again, straight on and askew; at least so fast meanwhile, as a share of
 the fastest before.
 Knees: up at 0.5 m/s, facing each way; how much a knee's velocity changes at most from one frame to the next, and how many frames it changes by more than 3 m/s.
+Paces: how fast who asks for a walk and who asks for a run gets up and down.
 """
 
 from __future__ import annotations
@@ -172,13 +173,34 @@ def knees(locomotion) -> None:
             print(f"  {name:18} {100 * rise:.0f} × {100 * tread:.0f} cm  knees by {change.max():3.1f} m/s in a frame, {change.max(0).min():3.1f} at least · over 3 m/s in {(change > 3.0).sum() / 4:4.1f} frames a climb")
 
 
+def paces(locomotion, heights) -> None:
+    """Print how fast stairs are walked and run, up and down."""
+    for height in heights:
+        size = height / STANDARD
+        for rise, tread in ((0.12, 0.35), (0.15, 0.33), (0.17, 0.29), (0.20, 0.25)):
+            around, end = flight(rise, tread, size)
+            for speed in (1.3, 3.0):
+                state, on = locomotion.start((0.0, -1.0, 0.0)), np.zeros(2)
+                wish = Intent(np.array([speed / math.sqrt(size), 0.0, 0.0]), around=around)
+                while state.ground[1] < end:
+                    state, _ = locomotion.step(state, wish, 1 / FPS)
+                    at = float(state.ground[1]) * size
+                    on += (0.0 < at - 2.0 < (COUNT - 1) * tread, 0.0 < at - 2.0 - COUNT * tread - LANDING < (COUNT - 1) * tread)
+                up, down = (COUNT - 1) * tread * FPS / on / math.sqrt(size)
+                print(f"  {height:g} m tall, {100 * rise:.0f} × {100 * tread:.0f} cm, asked {speed:g} m/s  up {up:4.2f}, down {down:4.2f} m/s", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--library", default=DEFAULT_LIBRARY)
     parser.add_argument("--only", nargs="+", type=float, help="only bodies so tall [m]")
     parser.add_argument("--kerbs", action="store_true", help="only runs over kerbs")
     parser.add_argument("--knees", action="store_true", help="only knees of who climbs ahead, backward and aside")
+    parser.add_argument("--paces", action="store_true", help="only how fast stairs are walked and run")
     arguments = parser.parse_args()
+    if arguments.paces:
+        paces(Locomotion.load(arguments.library), arguments.only or (1.2, STANDARD))
+        return
     if arguments.knees:
         knees(Locomotion.load(arguments.library))
         return

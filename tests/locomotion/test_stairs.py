@@ -59,6 +59,28 @@ def test_short_steps_are_brisk(locomotion):
     assert 0.45 < 4 * 0.29 / (on / 60) < 0.7
 
 
+@pytest.mark.parametrize("height", (1.2, 1.74))
+def test_who_runs_is_faster_up_and_down_stairs_than_who_walks(locomotion, height):
+    """Recorded people run up stairs at about 1 m/s, a step at a time, where they walk at 0.55; and brake no farther before them than it takes."""
+    size = height / 1.74
+    around, end = flight(0.17, 0.29, size)
+    times, near = [], 0.0
+    for speed in (1.3, 3.0):
+        state, on = locomotion.start((0.0, -2.0, 0.0)), np.zeros(2)
+        wish = Intent(np.array([speed / np.sqrt(size), 0.0, 0.0]), around=around)
+        for _ in range(1500):
+            before = float(state.ground[1]) * size
+            state, _ = locomotion.step(state, wish, 1 / 60)
+            at = float(state.ground[1]) * size
+            near = (at - before) * 60 / np.sqrt(size) if before < 1.0 <= at else near  # a metre before the first step
+            on += (2.0 < at < 2.0 + 5 * 0.29, 0.0 < at - 4.5 - 6 * 0.29 < 5 * 0.29)
+        assert state.ground[1] > end, "up and down again"
+        times.append(on / 60 * np.sqrt(size))
+    walks, runs = 5 * 0.29 / np.array(times)
+    assert (runs > 1.2 * walks).all() and (runs > (0.85 if height > 1.5 else 0.7)).all() and (walks < 0.7).all()
+    assert near > 1.4
+
+
 @pytest.mark.parametrize("height, rise", ((1.2, 0.25), (1.74, 0.33)))
 def test_nobody_walks_into_what_is_too_high_for_a_step(locomotion, height, rise):
     """They come to a stop before it, as before a wall."""
@@ -77,7 +99,9 @@ def test_who_stands_on_stairs_keeps_to_their_speed_whichever_way_he_turns(locomo
     memory["velocity"] = speed * np.cos(wish), 0.0, speed * np.sin(wish)
     memory["stairs"] = on_stairs(memory, tops(around), 0.0)
     most = most_speed(memory, tops(around), 0.0)
-    assert 0.5 - 1e-6 <= most <= min(max(2.6 * tread * 1.1, 0.5), 1.0) or speed <= 1.0 and most == 0.0
+    runs = min(max(speed * np.cos(wish) - 1.5, 0.0), 1.0)
+    fastest = min(max((2.6 + 0.9 * runs) * tread * 1.1, 0.5), 1.0 + 0.4 * runs)
+    assert 0.5 - 1e-6 <= most <= fastest or speed <= fastest and most == 0.0
 
 
 def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
@@ -97,7 +121,7 @@ def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
         soles = sole_corners(locomotion.skeleton, *forward_kinematics(locomotion.skeleton, np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float)))
         under = high[np.clip(np.floor((soles[..., 2] - 2.0) / 0.29).astype(int) + 1, 0, 8)]
         bare = np.where((np.abs(soles[..., 1] - under) < 0.02).any(-1), 0, bare + 1)
-        assert (bare * on).max() <= 0.15 * 60, "no sole touches a tread"
+        assert (bare * on).max() <= 0.3 * 60, "no sole touches a tread, longer than a heel rises over an edge on the way down"
     assert turned.all() and longest < 0.5
 
 

@@ -4,10 +4,14 @@ import pickle
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gambol.controllers.contract import Goal, Intent
 from gambol.controllers.jump import Physique
 from gambol.controllers.locomotion import Locomotion
+from gambol.controllers.navigation.obstacles import highest_step
+from gambol.controllers.navigation.passing import STEP
 from gambol.controllers.person import person
 from gambol.controllers.scaled import Scaled
 from gambol.controllers.supervisor import Supervisor
@@ -58,6 +62,31 @@ def test_who_is_tall_walks_up_stairs_that_are_too_high_for_others(library):
     child = walker(library, 0.9)
     last = going(child, goal, stairs(0.17), 1.0)[-1]
     assert child.status(last).kind == "failed" and np.hypot(*last.ground[:2]) < 0.05, "he does not walk there to be held up"
+
+
+@pytest.mark.parametrize("height, rise", [(1.0, 0.17), (1.2, 0.2), (1.35, 0.2)])
+def test_a_child_walks_up_the_stairs_of_grown_ups(library, height, rise):
+    """Children of 1.1 m climb stairs of 17 cm, a larger share of their height than grown-ups do; and down again."""
+    child, goal = walker(library, height), Goal((0.0, 4.2))
+    states = going(child, goal, stairs(rise))
+    assert child.status(states[-1]).kind == "done" and float(states[-1].floor) == pytest.approx(4 * rise) and np.hypot(*(states[-1].ground[:2] - goal.floor)) < 0.03
+    last = going(child, Goal((0.0, 0.5)), stairs(rise), state=states[-1])[-1]
+    assert child.status(last).kind == "done" and float(last.floor) == pytest.approx(0.0)
+
+
+def test_who_is_told_that_steps_are_too_high_is_told_his_own(library):
+    for height, most in ((1.0, "0.17"), (1.2, "0.21"), (1.5, "0.21"), (2.4, "0.29")):
+        someone = walker(library, height)
+        reason = someone.status(going(someone, Goal((0.0, 3.0)), (Box((0.0, 0.4, 3.0), (2.0, 0.8, 2.0)),), 1.0)[-1]).reason
+        assert f"steps rise by {most} m at most" in reason
+
+
+@given(st.floats(0.3, 3.0), st.floats(0.3, 3.0))
+def test_the_highest_step_goes_with_the_body(one, other):
+    """In its own metres a larger body's is no lower, a grown-up's is the standard one's; in the standard body's size none is higher than legs take."""
+    small, large = sorted((one, other))
+    assert highest_step(1.0) == 0.21 and highest_step(large) <= highest_step(small) < STEP
+    assert small * highest_step(small) <= large * highest_step(large) + 1e-12
 
 
 @pytest.mark.parametrize("height, under, round_it", [(0.9, 1.1, False), (2.1, 2.05, True), (2.1, 2.5, False)])

@@ -11,7 +11,6 @@ import numpy as np
 
 from ...contract import CharacterState, Controller, Intent, Leap, but
 from ..goal import wish
-from ..obstacles import STEP
 from .journeys import CLEAR, Crossing
 from .surfaces import levels_of
 
@@ -80,8 +79,8 @@ def start_of(walker: Controller, leap: Crossing, around: Sequence[Any], but_for:
         if but_for is not None and math.dist(begins, but_for) < ELSEWHERE:
             continue
         places = np.concatenate([leap.ground[:2] - np.linspace(0.0, back, 7)[:, None] * _ahead(leap), begins + CLEAR * ROUND])
-        which, heights = levels.ground(places, leap.height + STEP)
-        walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights) & (abs(heights - leap.height) <= STEP)
+        which, heights = levels.ground(places, leap.height + levels.step)
+        walked = (levels.regions[which] == levels.regions[which[0]]) & ~levels.shut(places, heights) & (abs(heights - leap.height) <= levels.step)
         if walked.all() and np.all(abs(heights[:7] - leap.height) <= LEVEL) and not levels.shut(begins[None], heights[6:7], CLEAR)[0] \
                 and goes_off(walker, FINE * math.ceil(far / FINE - 1e-6), HIGH * math.ceil(up / HIGH - 1e-6), back):
             return begins

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..obstacles import ASKEW, CREVICE, HEAD, STEP, is_box, is_pillar, ramp, slope, span
+from ..obstacles import ASKEW, CREVICE, HEAD, STEP, is_box, is_pillar, ramp, slope, span, step_among
 from ..routes import THIN
 
 OUTLINE = 0.1
@@ -54,11 +54,11 @@ class Outline(NamedTuple):
 class Levels:
     """The surfaces among things: those of B boxes by their number, and the floor, by B.
 
-    table: (B, 8) of boxes: centre, size [m], heading [rad], slope. pillars: (P, 5): foot, radius, height [m].
+    table: (B, 8) of boxes: centre, size [m], heading [rad], slope. pillars: (P, 5): foot, radius, height [m]. step: the highest that is taken [m].
     """
 
-    def __init__(self, table: np.ndarray, pillars: np.ndarray):
-        self.pillars = pillars
+    def __init__(self, table: np.ndarray, pillars: np.ndarray, step: float = STEP):
+        self.pillars, self.step = pillars, step
         self.centres, self.halves, self.headings, self.slopes = table[:, :3], 0.5 * table[:, 3:6], table[:, 6], table[:, 7]
         self.floor = len(table)
 
@@ -87,12 +87,12 @@ class Levels:
         """How high (P,) [m] somebody stands at one place (P, 2) after the other, who begins on a floor so high [m] and takes no higher step."""
         places, heights, brink = np.asarray(places, float), [], 0
         for k, row in enumerate(self.tops(places)):
-            before, floor = floor, float(row[row <= floor + STEP].max(initial=0.0))
-            if floor < before - STEP:
+            before, floor = floor, float(row[row <= floor + self.step].max(initial=0.0))
+            if floor < before - self.step:
                 brink = k  # where he comes down to something, or to a crevice
             elif brink and math.dist(places[k], places[brink - 1]) < ASKEW:
-                beyond = float(row[row <= heights[brink - 1] + STEP].max(initial=0.0))
-                if beyond >= heights[brink - 1] - STEP:
+                beyond = float(row[row <= heights[brink - 1] + self.step].max(initial=0.0))
+                if beyond >= heights[brink - 1] - self.step:
                     floor, heights[brink:], brink = beyond, [heights[brink - 1]] * (k - brink), 0
             heights.append(floor)
         return np.array(heights)
@@ -103,10 +103,10 @@ class Levels:
         over = np.clip(local, -half, half)
         tops = self.centres[:, 1] + self.halves[:, 1] + self.slopes * over[..., 1]
         near = np.linalg.norm(local - over, axis=-1) <= room + 1e-9
-        shut = np.any(near & (tops > heights[:, None] + STEP) & (tops - 2.0 * self.halves[:, 1] < heights[:, None] + HEAD), 1)
+        shut = np.any(near & (tops > heights[:, None] + self.step) & (tops - 2.0 * self.halves[:, 1] < heights[:, None] + HEAD), 1)
         for one in self.pillars:
             near = np.hypot(places[:, 0] - one[0], places[:, 1] - one[2]) <= one[3] + room
-            shut |= near & (one[1] < heights + HEAD) & (one[1] + one[4] > heights + STEP)
+            shut |= near & (one[1] < heights + HEAD) & (one[1] + one[4] > heights + self.step)
         return shut
 
     def outline(self, box: int, inset: float = 0.0, apart: float = OUTLINE) -> Outline:
@@ -135,14 +135,14 @@ class Levels:
             out = self.outline(box)
             within, without = out.places - BESIDE * out.normals, out.places + BESIDE * out.normals
             here = self.tops(within)[:, box]
-            own = (self.ground(within, here + STEP)[0] == box) & ~self.shut(within, here)
-            onto, there = self.ground(without, here + STEP)
+            own = (self.ground(within, here + self.step)[0] == box) & ~self.shut(within, here)
+            onto, there = self.ground(without, here + self.step)
             open_ = own & ~self.shut(without, np.maximum(there, here))
-            step = open_ & (here - there <= STEP)
+            step = open_ & (here - there <= self.step)
             widths = np.arange(2.0 * BESIDE, CREVICE + BESIDE, BESIDE)
             over = (without + widths[:, None, None] * out.normals).reshape(-1, 2)
-            beyond, high = self.ground(over, np.tile(here + STEP, len(widths)))
-            lands = (abs(np.tile(here, len(widths)) - high) <= STEP) & ~self.shut(over, np.maximum(np.tile(here, len(widths)), high))
+            beyond, high = self.ground(over, np.tile(here + self.step, len(widths)))
+            lands = (abs(np.tile(here, len(widths)) - high) <= self.step) & ~self.shut(over, np.maximum(np.tile(here, len(widths)), high))
             for there, could in zip(beyond.reshape(len(widths), -1), lands.reshape(len(widths), -1)):  # nearest first
                 across = open_ & ~step & could
                 onto, step = np.where(across, there, onto), step | across
@@ -161,7 +161,7 @@ class Levels:
 
     def under(self, place: np.ndarray, floor: float) -> int:
         """The surface under somebody at a place (2,), who stands so high [m]."""
-        return int(self.ground(np.asarray(place, float)[None], floor + STEP)[0][0])
+        return int(self.ground(np.asarray(place, float)[None], floor + self.step)[0][0])
 
     def meant(self, place: np.ndarray, region: int) -> int:
         """The surface that a goal (2,) lies on: one of this region, if it has one there that can be stood on; else what is highest there."""
@@ -200,24 +200,24 @@ class Levels:
     def _counts(self, place: np.ndarray, low: float, high: float, mine: np.ndarray) -> bool:
         """Whether what reaches from low to high [m] at a place (2,) is in the way of somebody on these surfaces (B + 1,)."""
         tops = np.where(mine, self.tops(place[None])[0], -np.inf)
-        floors = tops[(tops > -np.inf) & (tops <= low + STEP)]
+        floors = tops[(tops > -np.inf) & (tops <= low + self.step)]
         if not len(floors):  # it stands beside them
             aside = np.maximum(np.abs(self.local(place[None])[0]) - self.halves[:, [0, 2]], 0.0)
             near = np.where(mine[:-1], np.hypot(aside[:, 0], aside[:, 1]), np.inf)
             which = int(near.argmin()) if len(near) else 0
             floors = np.zeros(1) if mine[-1] or not len(near) else (self.centres + self.halves)[which:which + 1, 1]
-        return bool(high > floors.max() + STEP and low < floors.max() + HEAD)
+        return bool(high > floors.max() + self.step and low < floors.max() + HEAD)
 
 
 def levels_of(around: Sequence[Any]) -> Levels:
     """The levels among boxes and pillars, the same for the same ones."""
     table = [(*box.centre, box.size[0], span(box)[1] - span(box)[0], box.size[2], box.heading, slope(box) if ramp(box) else 0.0) for box in around if is_box(box)]
-    return _levels(np.array(table, float).tobytes(), np.array([(*one.foot, one.radius, one.height) for one in around if is_pillar(one)], float).tobytes())
+    return _levels(np.array(table, float).tobytes(), np.array([(*one.foot, one.radius, one.height) for one in around if is_pillar(one)], float).tobytes(), step_among(around))
 
 
 @lru_cache(maxsize=8)
-def _levels(table: bytes, pillars: bytes) -> Levels:
-    return Levels(np.frombuffer(table).reshape(-1, 8), np.frombuffer(pillars).reshape(-1, 5))
+def _levels(table: bytes, pillars: bytes, step: float) -> Levels:
+    return Levels(np.frombuffer(table).reshape(-1, 8), np.frombuffer(pillars).reshape(-1, 5), step)
 
 
 def _rail(place: np.ndarray, size: np.ndarray, heading: float) -> Rail:

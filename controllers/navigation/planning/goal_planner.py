@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..goal import wish
-from ..obstacles import DEPTH, SHOULDER, STEP
+from ..obstacles import DEPTH, SHOULDER, highest_step
 from ..routes import distance, ends_ground, grid_way, shapes_of
 from ..steering import in_world
 from .guesses import faced, guesses
@@ -143,7 +143,7 @@ def _unfit(goal: np.ndarray, shapes: np.ndarray, clearance: float, size: float) 
         if there < needed:
             what = "an edge" if edge else "something"
             if there <= 0.0:
-                return f"the goal lies in something, or on it and no way leads up: steps rise by {STEP * size:.2f} m at most"
+                return f"the goal lies in something, or on it and no way leads up: steps rise by {highest_step(size) * size:.2f} m at most"
             return f"the goal is {there * size:.2f} m from {what}, {needed * size:.2f} m are needed"
     return ""
 

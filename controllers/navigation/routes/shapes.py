@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...compiled import kernel
-from ..obstacles import HEAD, STEP, is_box, is_pillar, ramp, span
+from ..obstacles import HEAD, is_box, is_pillar, ramp, span, step_among
 THIN = 0.001
 """The end of the ground is a shape so thick [m], and no wall is."""
 
@@ -24,7 +24,7 @@ def shapes_of(around: Sequence[Any], floor: float = 0.0) -> np.ndarray:
 
     What ends no higher than a step or hangs higher than a head stops nobody; nor does a ramp that can be walked.
     """
-    found = []
+    found, step = [], step_among(around)
     for thing in around:
         if is_box(thing) and not ramp(thing):
             low, high = span(thing)
@@ -34,7 +34,7 @@ def shapes_of(around: Sequence[Any], floor: float = 0.0) -> np.ndarray:
             shape = (thing.foot[0], thing.foot[2], 0.0, 0.0, 0.0, thing.radius)
         else:
             continue
-        if high > floor + STEP and low < floor + HEAD:
+        if high > floor + step and low < floor + HEAD:
             found.append(shape)
     return np.array(found, float).reshape(-1, 6)
 

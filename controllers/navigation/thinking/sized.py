@@ -15,7 +15,7 @@ import numpy as np
 from ...body import Pose, Skeleton
 from ...contract import CharacterState, Controller, Goal, Intent, Leap, Status, but
 from ..levels import Crossing
-from ..obstacles import checked, is_box, is_pillar, slope
+from ..obstacles import STEP, checked, highest_step, is_box, is_pillar, slope
 from .going import Going
 
 if TYPE_CHECKING:  # who never goes to a goal loads no planner
@@ -42,9 +42,10 @@ class SmallPillar:
 
 
 class SmallThings(tuple[Any, ...]):
-    """What stands about in a smaller world. own: the same in one's own."""
+    """What stands about in a smaller world. own: the same in one's own; step: the highest that its body takes there [m]."""
 
     own: Sequence[Any] = ()
+    step: float = STEP
 
 
 def shrunk(around: Sequence[Any], factor: float) -> SmallThings:
@@ -54,7 +55,7 @@ def shrunk(around: Sequence[Any], factor: float) -> SmallThings:
     except (AttributeError, TypeError, ValueError):
         checked(around)
         raise
-    small.own = around
+    small.own, small.step = around, highest_step(factor)
     return small
 
 
