@@ -286,7 +286,7 @@ def _vast(points: Any) -> str:
 
 def _missing(source: Any, there: Any) -> list[str]:
     """The names of the points that are not there. there: (n,) bool."""
-    return [name for name, is_there in zip(source.controls.names, there) if not is_there]
+    return [name.partition("+")[0] for name, is_there in zip(source.controls.names, there) if not is_there]
 
 
 def _amiss(source: Any) -> list[str]:

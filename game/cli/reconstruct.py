@@ -19,7 +19,7 @@ from .play import watch
 @app.command()
 @plainly
 def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC file whose points are taken, or the packets of trackers that --keep kept.")] = None,
-                points: Annotated[str | None, typer.Option(help="Points on the body, with commas: lwrist,rwrist,lankle,rankle, or a set of the paper, 2 … 6. 4 by default.")] = None,
+                points: Annotated[str | None, typer.Option(help="Points on the body, with commas: lwrist,rwrist,lankle,rankle, or a set of the paper, 2 … 6. By default 4, wrists and ankles; of a stream the head, the waist and both feet.")] = None,
                 out: Annotated[Path | None, typer.Option("-o", "--out", help="A .bvh file of the motion, or a .glb file of the body in motion; a window shows it by default.")] = None,
                 method: Annotated[str | None, typer.Option(help="trackers, the network that ships, by default; ours, learnt from --database, or turning, the same for trackers that tell how they are turned; or one that these are measured against: lpcr, lpca, mousas, nearest, network, ridge, gplvm.")] = None,
                 database: Annotated[Path | None, typer.Option("--database", "--network", help="A motion database to learn from, Gambol's own motion by default; or the network, .npz, that gambol database tune taught.")] = None,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Strike, but
-from gambol.controllers.navigation import follow
+from gambol.controllers.navigation import STEP, follow
 from gambol.controllers.supervisor import both
 
 from .making import Making, way_of
@@ -62,7 +62,7 @@ class Script:
     def stands(self) -> str:
         """What is told of who gets no farther."""
         x, z = self.moves[self.index].points[-1]
-        return f"stands on the way to ({x:g}, {z:g}), which goes past nothing that is in it, as go_to does, nor up a step higher than 0.12 of his height"
+        return f"stands on the way to ({x:g}, {z:g}), which goes past nothing that is in it, as go_to does, nor up a step higher than {STEP:g} m"
 
     def held(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
         """The same script, and what it asks of a character in `state` in this step, who on a run-up comes to rest before what he can't leap."""

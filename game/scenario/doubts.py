@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from gambol.controllers.navigation import floor_at
+from gambol.controllers.navigation import floor_at, is_pillar
 
 from .scenario import Scenario
 
@@ -26,7 +26,10 @@ def doubts(scenario: Scenario) -> Iterator[str]:
             apart = math.dist(one.start[:2], other.start[:2])
             if apart < CLOSE and abs(one.enters - other.enters) < 1.0:
                 yield f"actors[{second}].start: {other.name} begins {apart:.2f} m from {one.name}, in actors[{first}]: they stand in each other"
+    pillars = [prop for prop in props if is_pillar(prop)]
     for number, actor in own:
+        if any(math.dist(actor.start[:2], (one.foot[0], one.foot[2])) < one.radius for one in pillars):
+            yield f"actors[{number}].start: {actor.name} begins in a pillar, which nobody stands on: a box can be stood on"
         if actor.enters >= scenario.duration:
             yield f"actors[{number}].enters: {actor.name} enters after {actor.enters:g} s, and the film is over after {scenario.duration:g} s: nobody sees him"
         for k, move in enumerate(actor.moves):
@@ -34,7 +37,9 @@ def doubts(scenario: Scenario) -> Iterator[str]:
             asked = max([move.speed or 0.0, *(abs(speed[0]) for speed in (move.velocity, move.until) if speed is not None)])
             if asked > FASTEST:
                 yield f"{where}: {asked:g} m/s, which is {3.6 * asked:.0f} km/h, is faster than anybody runs here: about 4.3 m/s"
-            if move.jump_to is not None and len(move.jump_to) == 3:
+            if move.jump_to is not None and any(math.dist((move.jump_to[0], move.jump_to[-1]), (one.foot[0], one.foot[2])) < one.radius for one in pillars):
+                yield f"{where}.jump_to: lies on a pillar, which nobody stands on: a box can be stood on"
+            elif move.jump_to is not None and len(move.jump_to) == 3:
                 x, y, z = move.jump_to
                 ground = floor_at(x, z, props, below=y + FLOATING)
                 if abs(y - ground) > FLOATING:

@@ -70,7 +70,7 @@ class StairsTable(Table):
 
 
 class PillarTable(Table):
-    """An upright cylinder, of kind pillar: the middle of its foot, radius and height [m]; its tint."""
+    """An upright cylinder, of kind pillar, which nobody stands on: the middle of its foot, radius and height [m]; its tint."""
 
     kind: Literal["pillar"]
     foot: Point3

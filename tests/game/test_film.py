@@ -233,6 +233,11 @@ def test_what_is_hardly_meant_is_told(tmp_path):
         kind = "box"
         centre = [0, 0.25, 3]
         size = [2, 0.5, 2]
+        [[props]]
+        kind = "pillar"
+        foot = [3, 0, 3]
+        radius = 0.5
+        height = 0.4
         [[actors]]
         name = "A"
         moves = [{ walk_to = [0, 1], speed = 1.3 }, { jump_to = [0, 0.5, 2.5] }]
@@ -246,6 +251,8 @@ def test_what_is_hardly_meant_is_told(tmp_path):
                            ("0.5, 2.5]", "1.2, 2.5]", "actors[0].moves[1].jump_to: (0, 1.2, 2.5) is 0.70 m above"),
                            ("start = [1, 0, 0]", "start = [0.1, 0, 0]", "actors[1].start: B begins 0.10 m from A"),
                            ("start = [1, 0, 0]", "start = [0.1, 0, 0]\nenters = 4", None),
+                           ("start = [1, 0, 0]", "start = [3.1, 3, 0]", "actors[1].start: B begins in a pillar, which nobody stands on"),
+                           ("0, 0.5, 2.5]", "3, 3.2]", "actors[0].moves[1].jump_to: lies on a pillar, which nobody stands on"),
                            ("start = [1, 0, 0]", "start = [1, 0, 0]\nenters = 99", "actors[1].enters: B enters after 99 s, and the film is over")):
         file.write_text(sound.replace(old, new))
         told = list(doubts(load(file)))

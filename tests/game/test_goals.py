@@ -76,7 +76,7 @@ moves = [{ walk_to = [0, 4] }]
     for act in film.acts(load(written(tmp_path, blocked)), walker):
         if act.world.time > 9:
             break
-    assert act.refused == ("A: stands on the way to (0, 4), which goes past nothing that is in it, as go_to does, nor up a step higher than 0.12 of his height",)
+    assert act.refused == ("A: stands on the way to (0, 4), which goes past nothing that is in it, as go_to does, nor up a step higher than 0.21 m",)
 
 
 def test_whoever_can_not_walk_goes_on_with_his_moves():

@@ -271,6 +271,14 @@ def test_points_of_nobody_who_stands_are_refused(wrong):
         placed(wrong(controls.on(*stances())[0]), controls)
 
 
+@pytest.mark.parametrize("mirrored", [1.0, -1.0])
+def test_who_is_sent_with_z_up_is_told_so(mirrored):
+    controls = parse("root,head,lwrist,rwrist,lankle,rankle", SKELETON)
+    stood = controls.on(*stances())[1] @ yaw(0.8).T
+    with pytest.raises(ValueError, match="Z points up"):
+        placed(stood[:, [0, 2, 1]] * [mirrored, -1.0, 1.0], controls)
+
+
 WORN_ANYHOW = "head", "root", "lwrist", "rwrist", "lankle", "rankle"
 
 

@@ -40,7 +40,7 @@ SPINS = 6.0, 8.0
 HIGHER = 0.14, 0.9
 """Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
 ahead, the sooner he is off."""
-STRIDES, FALLS, ASTRAY = (0.7, 1.8), 3.7, 0.45
+STRIDES, FALLS, ASTRAY = (0.5, 1.8), 3.7, 0.45
 """Who pushes off one foot lands on the other, to walk or run on, if he comes down faster ahead than the first, or the second if he wants to stay there, and falls slower than
 that [m/s], from 0.7 m: a leg then bears 4.8 times the weight. But not if he goes aside by more than that share of it: no gait does, as fast."""
 FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -10,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...contract import level
-from ...navigation import floor_at, gap, slope_at
+from ...navigation import floor_at, gap, is_pillar, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, path
 from ..prior import Prior
@@ -19,8 +20,8 @@ from .seeking import PATH, Pieces, whole
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
-LOWER = 0.9, 0.8, 0.7
-"""And of who leaps off one foot that can't push as usual, so that he leaps lower."""
+LOWER, FASTER = (0.9, 0.8, 0.7), 1.25
+"""And of who leaps off one foot that can't push as usual, so that he leaps lower, as long as he need not leave so many times as fast as he runs."""
 WAYS = (False, False), (False, True), (True, True)
 """With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
 LITTLE, RISES = 0.06, 0.03
@@ -72,6 +73,8 @@ class Arcs:
             if np.hypot(*slope) > STEEPEST:
                 return f"too steep to leap {way}: {np.degrees(np.arctan(np.hypot(*slope))):.0f}°, where {np.degrees(np.arctan(STEEPEST)):.0f}° can be"
         around = [thing for thing in around if not hasattr(thing, "place")]
+        if any(is_pillar(thing) and math.dist(place[[0, 2]], thing.foot[::2]) < thing.radius for thing in around):
+            return "that place lies on a pillar, which nobody stands on"
         if any(gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0 for thing in around):
             return "that place is inside something solid"
         below = floor_at(place[0], place[2], around, place[1] + FLUSH)
@@ -90,13 +93,16 @@ class Arcs:
         lower. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
         in the plan along the last of them leaves out those along which it would as well. Before each path that is made, what that costs."""
         usual = yield from self._arcs(start, place, floor, airtime, around, heights)
-        for share in LOWER if start.runs and airtime is None else ():
-            if usual is not None and (yield from self._arcs(start, place, floor, share * usual, around, heights[:1])) is None:
+        if usual is None or airtime is not None:
+            return
+        faster = float(np.linalg.norm(usual.velocity * FLAT)) / max(float(np.linalg.norm(start.velocity * FLAT)), 1e-6)
+        for share in LOWER:
+            if faster > FASTER * share or (yield from self._arcs(start, place, floor, share * usual.airtime, around, heights[:1])) is None:
                 return
 
     def _arcs(self, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any],
-              heights: Sequence[float]) -> Generator[Arc | int, float | None, float | None]:
-        """The same of one usual airtime [s], None for that of least effort. What comes of it is how long that is where the foot can't push so."""
+              heights: Sequence[float]) -> Generator[Arc | int, float | None, Path | None]:
+        """The same of one usual airtime [s], None for that of least effort. What comes of it is the usual path of a runner whose foot can't push so, else None."""
         first, hits = None, dict[bool, tuple[float, float]]()
         for higher in heights:
             flight = airtime if first is None else first.airtime * higher
@@ -130,7 +136,7 @@ class Arcs:
                 if deep is not None:
                     hits[low] = tried.path.airtime, deep
                 if start.runs and first is tried.path and tried.path.strong and tried.why.startswith((HARD, *PACE)) and deep is None:
-                    return first.airtime
+                    return first
                 if not tried.path.strong or tried.why.startswith(HARD):
                     return None
             if airtime is not None or not len(around):

@@ -110,6 +110,8 @@ def placed(seen: np.ndarray, controls: ControlPoints, height: float | None = Non
     away, placement = found[nearest]
     size = STATURE / placement.scale
     if not SIZES[0] <= size / STATURE <= SIZES[1] or away > LIKE:
+        if min(_align(seen[:, [0, 2, 1]] * [1.0, 1.0, -1.0], stance, None)[0] for stance in points) < LIKE < away:
+            raise ValueError("these points are a standing body's if Z points up, or a lying one's: trackers must be sent with Y up, as the protocols have it")
         tall = f" of one {size:.2f} m tall," if away < 2.0 * LIKE and size < 10.0 else ""  # what is like no body at all is not so tall
         raise ValueError(f"these points are no standing body's: at best{tall} {100 * away:.0f} cm away; "
                          "stand upright, in T-pose or with the arms down; is each tracker on the point that it is said to be?")
