@@ -28,6 +28,7 @@ from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, Script, Wish
+from gambol.game.input.run_up import AHEAD
 from gambol.game.scene import Box
 from gambol.game.session import Timeline, begin, refused
 from gambol.game.world import DT, Character, World, stopped
@@ -122,7 +123,7 @@ def planned(who: Any, state: CharacterState, things: tuple[Box, ...], far: float
         z, speed = float(state.ground[1]), float(np.hypot(state.velocity[0], state.velocity[2]))
         asked = Intent(np.array([pace, 0.0, 0.0]), leap=Leap(np.array([0.0, floor, z + 2.0])), around=things)
         stands = who.precondition(state, asked) >= 1.0
-        for to in z + 0.6 + 0.53 * speed - np.array(LANDS) if stands and not stood else ():
+        for to in z + AHEAD[0] + AHEAD[1] * speed - np.array(LANDS) if stands and not stood else ():
             place = np.array([0.0, floor_at(0.0, to, things, floor + 0.95), to])
             if to > far + wide + 0.1 and who.refusal(state, replace(asked, leap=Leap(place))) == "":
                 return True
