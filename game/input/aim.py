@@ -50,7 +50,9 @@ PATIENCE = 0.9
 TURNS = 0.3
 """That passes at this pace while a standing body still turns to the ring, sets its feet, or finds out how to leap: half a turn takes 2.2 s."""
 ASKEW = 0.35
-"""A standing body faces the ring to within this before it jumps [rad]."""
+"""A standing body that faces the ring to within this [rad] jumps as it stands; else it turns in the air."""
+TURNS_ROUND = 0.2
+"""Who holds the button for longer [s] turns to the ring on his feet meanwhile, and to one on something goes on with that when it is let go: one leaps farther ahead than aside."""
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
 
@@ -131,12 +133,16 @@ class Aim:
             heading = faces if math.hypot(*offset) < NEAR else math.atan2(*offset)
         return None if heading is None else math.remainder(heading + SWINGS * dt * wish.turn, math.tau)
 
+    def facing(self, state: CharacterState, around: Sequence[Any]) -> float | None:
+        """The heading [rad] that a body about to jump from a stand turns to on its feet, if any."""
+        x, z = self._there(state)
+        turns = self.aiming or self.waiting > 0.0 and floor_at(x, z, around, float(state.floor) + UP) > float(state.floor) + LOWER
+        return self._ahead if turns and self.held >= TURNS_ROUND else None
+
     @property
-    def facing(self) -> float | None:
-        """The heading [rad] that a body about to jump from a stand turns to, if any."""
-        if self.moving or self.heading is not None or not self.wants or math.hypot(*self.offset) < NEAR:
-            return None
-        return math.atan2(*self.offset)
+    def _ahead(self) -> float | None:
+        """The heading [rad] of the ring from a standing body, where nobody said in which to land."""
+        return None if self.moving or self.heading is not None or math.hypot(*self.offset) < NEAR else math.atan2(*self.offset)
 
     @property
     def looked(self) -> float | None:
@@ -167,19 +173,18 @@ class Aim:
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
-        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=self.heading, stays=self.moving and self.rests)
+        heading = self._ahead if self._askew(state) else self.heading
+        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=heading, stays=self.moving and self.rests)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
                 reaches: Reaches = anywhere) -> Leap | None:
-        """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it turns to it first."""
+        """The jump for which a standing body crouches meanwhile; None where nobody aims from a stand, or it may still turn to it."""
         return None if self.moving or not self.aiming or self._askew(state) else self.target(state, around, gravity, longest, SINKS, reaches)
 
     def asked(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
               reaches: Reaches = anywhere) -> Leap | None:
         """The jump that is wanted now that the button was let go; None while the body still turns to it."""
-        if self.aiming or self.waiting <= 0.0:
-            return None
-        return None if self._askew(state) else self.target(state, around, gravity, longest, 0.0, reaches)
+        return None if self.aiming or self.waiting <= 0.0 or self._askew(state) and self.facing(state, around) is not None else self.target(state, around, gravity, longest, 0.0, reaches)
 
     def _near(self, place: tuple[float, float], state: CharacterState, around: Sequence[Any], reaches: Reaches) -> tuple[float, float]:
         """A place x, z [m], or where on the way there the ring stops."""
@@ -194,5 +199,5 @@ class Aim:
         return near if floor_at(*near, around, floor + UP) > there - LOWER else place  # else it is too far off for any leap, which is told
 
     def _askew(self, state: CharacterState) -> bool:
-        """Whether a standing body still has to turn to the ring."""
-        return self.facing is not None and abs(math.remainder(self.facing - float(state.ground[2]), math.tau)) > ASKEW
+        """Whether a standing body does not face the ring."""
+        return self._ahead is not None and abs(math.remainder(self._ahead - float(state.ground[2]), math.tau)) > ASKEW

@@ -29,6 +29,8 @@ from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.person import person
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.input import Aim, Wish
+from gambol.game.session import Timeline, begin
+from gambol.game.world import Character, World
 
 AIMED = 1.2
 """So long one aims before one lets go [s]."""
@@ -37,6 +39,8 @@ PATIENCE = 0.9
 BEFORE = 4
 """So many steps before a leap are looked at, too."""
 SPEEDS = 1.0, 1.3, 1.6, 2.2, 2.6, 3.0, 3.4
+HELD, ASIDE = (0.15, 0.3, 0.5, 0.8), (30, 60, 90, 135, 180, -45, -90, -150)
+"""So long hands hold the button [s], and the stick so far aside of the way somebody faces [°]."""
 WALKS, LANDS = 1.8, 18
 """Who is slower than the first [m/s] walks, and takes two steps in 1.1 s, who runs in 0.75; legs give for so many steps after touch-down."""
 MOVES = {"turns on the spot": [(0.0, turn, 0.0) for turn in (1.0, 2.0, 3.0, -1.0, -2.0, -3.0)],
@@ -84,6 +88,28 @@ def report_release(someone: Supervisor, targets: int, rng: np.random.Generator) 
         some = [t for t, far in zip(took["after aiming"], fars) if low <= far < high]
         print(f"  {low:g} … {high:g} m: {np.median(some):.2f} s (median), {max(some):.2f} (worst)")
     print(f"  feet beside the target: {100.0 * np.median(missed):.1f} cm (median), {100.0 * max(missed):.1f} (worst); refused {refused}")
+
+
+def report_taps(someone: Supervisor) -> None:
+    """Somebody stands, holds the button for a moment with the stick aside, and lets go, as hands do."""
+    print("Standing, the stick aside by 30 … 180°: held s; from letting go to the air s, median, worst; refused")
+    for held in HELD:
+        took, refused = [], 0
+        for way in ASIDE:
+            line, made = Timeline(begin(World((Character("A", someone, someone.start()),)), 1)), None
+            for n in range(round((1.0 + held + 4.0) * FPS)):
+                pressed = 1.0 <= n / FPS < 1.0 + held
+                stick = (-np.sin(np.radians(way)), np.cos(np.radians(way))) if pressed else (0.0, 0.0)
+                line.advance((Wish(move=stick, jump=pressed).rounded(),))
+                memory = line.now.after.characters[0].state.memory.memory
+                if isinstance(memory, Jumping):
+                    made = memory
+                    break
+            if made is None:
+                refused += 1
+                continue
+            took.append((n + 1) / FPS + made.plan.take_off - made.time - 1.0 - held)
+        print(f"  {held:g}: {np.median(took):.2f}, {max(took):.2f}; {refused}")
 
 
 def report_strides(someone: Supervisor, phases: int) -> None:
@@ -240,6 +266,7 @@ def main() -> None:
     someone = person(Locomotion.load(settings=Settings(idle=0.0)))
     report_turns(someone)
     report_release(someone, given.targets, np.random.default_rng(given.seed))
+    report_taps(someone)
     report_strides(someone, given.phases)
     report_gains(someone, given.leaps, np.random.default_rng(given.seed))
     report_feet(someone, 4 * given.leaps, np.random.default_rng(given.seed))

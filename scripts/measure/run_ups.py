@@ -27,8 +27,7 @@ from gambol.controllers.jump import Jumping
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.navigation import floor_at
 from gambol.controllers.person import person
-from gambol.game.input import Jump, Move, Script, Wish
-from gambol.game.input.run_up import AHEAD
+from gambol.game.input import AHEAD, Jump, Move, Script, Wish
 from gambol.game.scene import Box
 from gambol.game.session import Timeline, begin, refused
 from gambol.game.world import DT, Character, World, stopped
