@@ -16,7 +16,7 @@ from .body import FLAT, Physique, Start, raised, soles, vectors
 from .motion import PLANT, Plan
 from .reach import Onward
 
-RUNNING = 0.85
+RUNNING = 0.95
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
 FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""

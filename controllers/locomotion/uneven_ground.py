@@ -127,7 +127,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
     m.stairs = on_stairs(m, tops, floor)
-    m.most = 0.0 if m.alert else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto
+    m.most = 0.0 if m.alert and m.stairs == 0.0 else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto, but runs on no treads that feet can't find
 
 
 @kernel

@@ -55,6 +55,8 @@ TURNS_ROUND = 0.2
 """Who holds the button for longer [s] turns to the ring on his feet meanwhile, and to one on something goes on with that when it is let go: one leaps farther ahead than aside."""
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
+RESTS, FALLING = 0.35, 0.1
+"""A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
 
 Reaches = Callable[[float], float]
 """About how far a standing body leaps [m], so far aside [rad] of the way it faces."""
@@ -72,7 +74,7 @@ class Aim:
     offset: x, z [m] of the ring from the feet, in the world. held: how long the button has been held [s].
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
-    rests: whether the stick that moved him was let go, so that he is to come to rest where he lands.
+    rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -84,6 +86,7 @@ class Aim:
     heading: float | None = None
     spent: bool = False
     rests: bool = False
+    tilt: float = 0.0
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf) -> Aim:
@@ -95,14 +98,15 @@ class Aim:
         x, z = self._there(state)
         stays = not self.moving and (cramped or self.place is not None)
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
-        rests = not any(wish.move)
+        tilt = math.hypot(*wish.move)
+        rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt <= self.tilt < 1.0
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt)
             sets = state.refused == SETS_FEET
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
             pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
-            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place, rests=rests)
+            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place, rests=rests, tilt=tilt)
         velocity = in_world(state.ground, state.velocity)
         speed = float(np.hypot(*velocity))
         moving, heading, place = speed > MOVING, None, None
@@ -116,7 +120,7 @@ class Aim:
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt)
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""

@@ -43,7 +43,7 @@ def test_the_stick_pushes_the_ring_as_the_camera_looks_and_not_too_far(yaw, stic
 
 def test_who_let_go_of_the_stick_is_to_come_to_rest_where_he_lands():
     walks = standing((1.3, 0.0, 0.0))
-    for move, rests in (((0.0, 1.0), False), ((0.0, 0.0), True)):
+    for move, rests in (((0.0, 1.0), False), ((0.0, 0.95), False), ((0.0, 0.66), True), ((0.0, 0.0), True)):
         aim = aimed(Wish(jump=True, move=(0.0, 1.0)), 0.2, walks).step(Wish(move=move), 0.0, walks, False, DT)
         assert aim.asked(walks, (), 9.81).stays is rests
     assert not aimed(HELD, 0.5, standing()).step(FREE, 0.0, standing(), False, DT).asked(standing(), (), 9.81).stays, "who stands comes to rest anyway"
