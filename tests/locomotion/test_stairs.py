@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
 from gambol.controllers.body import forward_kinematics, sole_corners  # noqa: E402
-from gambol.controllers.contract import Intent  # noqa: E402
+from gambol.controllers.contract import Intent, Leap  # noqa: E402
 from gambol.controllers.locomotion.memory import RUN  # noqa: E402
 from gambol.controllers.locomotion.tops import tops  # noqa: E402
 from gambol.controllers.locomotion.treads import most_speed, on_stairs  # noqa: E402
@@ -57,6 +57,20 @@ def test_short_steps_are_brisk(locomotion):
         on += 2.29 < state.ground[1] < 2.0 + 5 * 0.29
     assert state.ground[1] > end, "up and down again"
     assert 0.45 < 4 * 0.29 / (on / 60) < 0.7
+
+
+def test_who_runs_on_stairs_and_wants_to_leap_keeps_to_their_treads(locomotion):
+    """He ran on as on level ground, 3.2 m/s over treads that no foot finds, and flew up them."""
+    around, _ = flight(0.17, 0.29)
+    state, speeds = locomotion.start((0.0, -2.0, 0.0)), []
+    for _ in range(600):
+        on = 2.3 < state.ground[1] < 2.0 + 5 * 0.29
+        leap = Leap(np.array([0.0, float(state.floor), state.ground[1] + 2.0])) if on else None
+        before = float(state.ground[1])
+        state, _ = locomotion.step(state, Intent(np.array([3.0, 0.0, 0.0]), leap=leap, around=around), 1 / 60)
+        if on:
+            speeds.append((state.ground[1] - before) * 60)
+    assert len(speeds) > 30 and max(speeds[15:]) < 1.5
 
 
 @pytest.mark.parametrize("height", (1.2, 1.74))
