@@ -61,7 +61,7 @@ def test_short_steps_are_brisk(locomotion):
 
 def test_who_runs_on_stairs_and_wants_to_leap_keeps_to_their_treads(locomotion):
     """He ran on as on level ground, 3.2 m/s over treads that no foot finds, and flew up them."""
-    around, _ = flight(0.17, 0.29)
+    around, _ = flight(0.17, 0.29, 1.0)
     state, speeds = locomotion.start((0.0, -2.0, 0.0)), []
     for _ in range(600):
         on = 2.3 < state.ground[1] < 2.0 + 5 * 0.29
