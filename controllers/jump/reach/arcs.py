@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...contract import level
-from ...navigation import floor_at, gap, is_pillar, slope_at
+from ...navigation import floor_at, gap, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, path
 from ..prior import Prior
@@ -73,8 +72,6 @@ class Arcs:
             if np.hypot(*slope) > STEEPEST:
                 return f"too steep to leap {way}: {np.degrees(np.arctan(np.hypot(*slope))):.0f}°, where {np.degrees(np.arctan(STEEPEST)):.0f}° can be"
         around = [thing for thing in around if not hasattr(thing, "place")]
-        if any(is_pillar(thing) and math.dist(place[[0, 2]], thing.foot[::2]) < thing.radius for thing in around):
-            return "that place lies on a pillar, which nobody stands on"
         if any(gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0 for thing in around):
             return "that place is inside something solid"
         below = floor_at(place[0], place[2], around, place[1] + FLUSH)
