@@ -99,7 +99,7 @@ class Aim:
         stays = not self.moving and (cramped or self.place is not None)
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
         tilt = math.hypot(*wish.move)
-        rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt <= self.tilt < 1.0
+        rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         if not wish.jump:
             if self.aiming:
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt)
@@ -194,7 +194,7 @@ class Aim:
         """A place x, z [m], or where on the way there the ring stops."""
         floor = float(state.floor)
         x, z = (place[k] - float(state.ground[k]) for k in (0, 1))
-        aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring first
+        aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring, and to one on something first
         there = floor_at(*place, around, floor + UP)
         share = (reaches(aside) - CLIMBS * max(there - floor, 0.0) + BEYOND) / max(math.hypot(x, z), 1e-9)
         if share >= 1.0 or there < floor - LOWER:

@@ -27,8 +27,11 @@ def doubts(scenario: Scenario) -> Iterator[str]:
             if apart < CLOSE and abs(one.enters - other.enters) < 1.0:
                 yield f"actors[{second}].start: {other.name} begins {apart:.2f} m from {one.name}, in actors[{first}]: they stand in each other"
     pillars = [prop for prop in props if is_pillar(prop)]
+
+    def on_pillar(x: float, z: float) -> bool:
+        return any(math.dist((x, z), (one.foot[0], one.foot[2])) < one.radius for one in pillars)
     for number, actor in own:
-        if any(math.dist(actor.start[:2], (one.foot[0], one.foot[2])) < one.radius for one in pillars):
+        if on_pillar(actor.start[0], actor.start[1]):
             yield f"actors[{number}].start: {actor.name} begins in a pillar, which nobody stands on: a box can be stood on"
         if actor.enters >= scenario.duration:
             yield f"actors[{number}].enters: {actor.name} enters after {actor.enters:g} s, and the film is over after {scenario.duration:g} s: nobody sees him"
@@ -37,7 +40,7 @@ def doubts(scenario: Scenario) -> Iterator[str]:
             asked = max([move.speed or 0.0, *(abs(speed[0]) for speed in (move.velocity, move.until) if speed is not None)])
             if asked > FASTEST:
                 yield f"{where}: {asked:g} m/s, which is {3.6 * asked:.0f} km/h, is faster than anybody runs here: about 4.3 m/s"
-            if move.jump_to is not None and any(math.dist((move.jump_to[0], move.jump_to[-1]), (one.foot[0], one.foot[2])) < one.radius for one in pillars):
+            if move.jump_to is not None and on_pillar(move.jump_to[0], move.jump_to[-1]):
                 yield f"{where}.jump_to: lies on a pillar, which nobody stands on: a box can be stood on"
             elif move.jump_to is not None and len(move.jump_to) == 3:
                 x, y, z = move.jump_to
