@@ -33,6 +33,8 @@ PULLS = 0.1, 100.0
 """How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
 RISEN = 0.45
 """So long after touch-down [s] a jumper can walk on."""
+RISES = 0.1
+"""Who crouches, but still comes up faster than this [m/s], at standard height, goes down first: his legs can't pull."""
 SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
 SHIFTS = 8.0
@@ -310,7 +312,7 @@ class Jump(Reach, Controller):
         memory, leap = state.memory, intent.leap
         if leap is None:
             return state if memory.asked is None else replace(state, memory=replace(memory, refused="", asked=None, onward=None))
-        return self._leapt(state, intent, leap)
+        return state if memory.rate[1] > RISES * math.sqrt(self.physique.size) else self._leapt(state, intent, leap)
 
     def _leapt(self, state: CharacterState, intent: Intent, leap: Leap) -> CharacterState:
         """The state at the beginning of a leap; where it can't be made yet, or at all, as it is, and with why. What was refused is not asked again."""
@@ -327,7 +329,7 @@ class Jump(Reach, Controller):
         is none. What was asked for this jump is no other until it was let go."""
         memory, leap = state.memory, intent.leap
         if leap is None:
-            if intent.aim is not None and memory.rebounds and memory.time >= memory.plan.lowest:
+            if intent.aim is not None and (memory.rises or memory.rebounds and memory.time >= memory.plan.lowest):
                 return replace(state, memory=begun(self, self.start_of(state, around=intent.around), float(memory.plan.feet[:, 1].mean() - self.physique.tables.sole)))
             return state if memory.asked is None else replace(state, memory=replace(memory, asked=None, refused="", onward=None))
         return self._leapt(state, intent, leap) if memory.rebounds else state

@@ -75,6 +75,12 @@ class Jumping:
         return not self.fault and not made.rolls and (made.path.lands is None or made.path.hops) and made.touch_down + PLANT <= self.time < made.lowest + SPRINGS
 
     @property
+    def rises(self) -> bool:
+        """Whether it comes up again from a landing on both feet, and may go down into a crouch from there."""
+        made = self.plan
+        return not self.fault and not made.rolls and made.path.lands is None and made.lowest <= self.time
+
+    @property
     def landed(self) -> bool:
         """Whether the feet have come down."""
         return self.time >= self.plan.touch_down

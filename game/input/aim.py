@@ -58,6 +58,13 @@ LOOKED = 0.2
 RESTS, FALLING = 0.35, 0.1
 """A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
 
+def _ring(velocity: Sequence[float]) -> tuple[float, float]:
+    """Where x, z [m] the ring lies from somebody who goes with a velocity (2,) [m/s] along x and z."""
+    speed = max(float(np.hypot(*velocity)), 1e-9)
+    far = (AHEAD[0] + AHEAD[1] * speed) / speed
+    return far * float(velocity[0]), far * float(velocity[1])
+
+
 Reaches = Callable[[float], float]
 """About how far a standing body leaps [m], so far aside [rad] of the way it faces."""
 
@@ -104,6 +111,9 @@ class Aim:
             if self.aiming:
                 return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt)
             sets = state.refused == SETS_FEET
+            if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
+                offset = _ring(in_world(state.ground, state.velocity))
+                return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]))
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
             pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
             return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place, rests=rests, tilt=tilt)
@@ -111,8 +121,7 @@ class Aim:
         speed = float(np.hypot(*velocity))
         moving, heading, place = speed > MOVING, None, None
         if moving:
-            far = AHEAD[0] + AHEAD[1] * speed
-            offset = (far * float(velocity[0]) / speed, far * float(velocity[1]) / speed)
+            offset = _ring(velocity)
         else:
             pushed = in_view(wish.move, camera_yaw)
             x, z = (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))

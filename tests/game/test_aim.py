@@ -171,3 +171,14 @@ def test_a_body_that_turns_to_the_ring_behind_it_is_waited_for():
     turned = standing(heading=math.pi)
     assert aimed(FREE, PATIENCE - 0.1, turned, behind).asked(turned, (), 9.81) is not None
     assert not aimed(FREE, PATIENCE + 0.1, turned, behind).wants
+
+
+def test_the_ring_stays_ahead_of_who_lets_go_of_it_in_the_air_and_goes_on():
+    """It stayed where it was let go, and who had landed was too near to it: nothing came of leaps that were asked in the air."""
+    state = standing((2.5, 0.0, 0.0))
+    aim = aimed(HELD, 0.2, state).step(FREE, 0.0, state, False, DT, aloft=True)
+    down = replace(state, ground=state.ground + [0.0, 0.8, 0.0])
+    later = aim.step(FREE, 0.0, down, False, DT, aloft=True)
+    assert np.subtract(later.place, aim.place) == pytest.approx([0.0, 0.8]) and later.waiting == aim.waiting
+    landed = later.step(FREE, 0.0, down, False, DT)
+    assert landed.place == later.place and landed.waiting < later.waiting

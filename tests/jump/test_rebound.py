@@ -112,3 +112,25 @@ def test_who_still_aims_as_he_lands_waits_in_the_crouch(person, rest):
     height = np.array([s.pose.root[1] for s in seen])
     landed = [n for n, s in enumerate(seen) if isinstance(s.memory.memory, Crouching)]
     assert landed and np.abs(np.diff(height[landed[0] - 3:], 2)).max() < 0.008 and height[-1] < 0.9 * float(rest.pose.root[1])
+
+
+@pytest.mark.parametrize("late", [0.25, 0.35, 0.5])
+def test_who_aims_as_he_comes_up_again_goes_down_from_there(person, rest, late):
+    """He stood up first, and was off 1.13 s after he landed, whenever he was asked."""
+    state, down, went, heights = rest, None, None, []
+    for n in range(240):
+        memory = state.memory.memory
+        if down is None and isinstance(memory, Jumping) and memory.landed:
+            down = n
+        since = -1.0 if down is None else (n - down) / FPS
+        leap = Leap(None)
+        intent = Intent(leap=leap) if down is None and not isinstance(memory, Jumping) or since >= late + 0.1 and went is None else Intent(aim=leap if late <= since < late + 0.1 else None)
+        state, _ = person.step(state, intent, 1 / FPS)
+        heights.append(float(centre_of_mass(person.parts["jump"].physique.anatomy, *forward_kinematics(person.skeleton, state.pose.root.astype(float), state.pose.rotations.astype(float)))[1]))
+        if went is None and since >= late:
+            assert state.active == "jump" and (since < late + 0.02 or isinstance(state.memory.memory, Crouching | Jumping))
+            if isinstance(state.memory.memory, Jumping) and state.memory.memory.time < 0.1:
+                went = since + state.memory.memory.plan.take_off
+    assert went is not None and went < 0.6 + late
+    lifts = np.diff(heights, 2)[down + 3:down + round(FPS * went) - 6] * FPS**2 / 9.81
+    assert lifts.min() > -1.1  # the floor does not pull him down
