@@ -16,7 +16,7 @@ import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import SETS_FEET
-from gambol.controllers.navigation import floor_at, in_world
+from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top
 from .run_up import AHEAD
@@ -38,6 +38,8 @@ BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
 CLIMBS = 1.5
 """Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
+SLOPED = 2.0
+"""On the move, by so much for each metre a metre that ground rises there [m]: uphill a foot sends nobody as far, nor as near, as on level ground."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
 LOWER = 0.05
@@ -204,9 +206,10 @@ class Aim:
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])
+        steep = SLOPED * float(np.hypot(*slope_at(x, z, around, place[1] + LOWER))) if self.moving and len(around) else 0.0
         if self.moving and abs(float(state.velocity[1])) > ARC:  # he turns there as he flies, and goes on round it
-            return Leap(place, slack=ROUND, heading=self.course, stays=self.rests)
-        return Leap(place, slack=SLACK[self.moving], heading=self._ahead if self._askew(state) else self.heading, stays=self.moving and self.rests)
+            return Leap(place, slack=ROUND + steep, heading=self.course, stays=self.rests)
+        return Leap(place, slack=SLACK[self.moving] + steep, heading=self._ahead if self._askew(state) else self.heading, stays=self.moving and self.rests)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
                 reaches: Reaches = anywhere) -> Leap | None:

@@ -164,15 +164,19 @@ class Reach(Arcs):
     def nearby(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
                around: Sequence[Any]) -> Pieces[tuple[np.ndarray | None, Found | None]]:
         """What `nearest` gives of a place that can't be reached, in pieces, and the plan to there."""
+        def ground(there: np.ndarray) -> float:
+            """How high the floor is there: no higher than the place and than the slope on which it stands, as it goes on."""
+            return floor_at(there[0], there[2], around, max(place[1], floor, floor + float(start.rise(there))) + 1e-6)
+
         def reached(there: np.ndarray) -> Pieces[bool]:
             if len(around):
-                there[1] = floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
+                there[1] = ground(there)
             return not (yield from self.surveyed(start, there, floor, airtime, around, HEIGHTS[:1]))[1]
         stands = start.single is None and math.hypot(start.velocity[0], start.velocity[2]) < WALKS
         for back in SHORT if len(around) and stands and abs(place[1] - floor) > EVEN else ():
             way = (place - self.middle(start, floor)) * FLAT
             there = place - back / max(float(np.linalg.norm(way)), 1e-9) * way
-            if abs(floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6) - place[1]) < EVEN:
+            if abs(ground(there) - place[1]) < EVEN:
                 planned = (yield from self.planned(start, there, floor, airtime, around))[0]
                 if planned is not None:
                     return there, planned
@@ -195,7 +199,7 @@ class Reach(Arcs):
                 high = middle
         for share in BACK:
             there = begun + share * (found - begun)
-            there[1] = found[1] if not len(around) else floor_at(there[0], there[2], around, max(place[1], floor) + 1e-6)
+            there[1] = found[1] if not len(around) else ground(there)
             planned = (yield from self.planned(start, there, floor, airtime, around, TRIES))[0]
             if planned is not None:
                 return there, planned
