@@ -25,8 +25,7 @@ from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.person import person
 from gambol.game.input import Wish
 from gambol.game.scene import Box
-from gambol.game.session import SessionState, begin, refused
-from gambol.game.session.tick import advance
+from gambol.game.session import SessionState, Timeline, begin, refused
 from gambol.game.world import RATE, Character, World
 
 PRESSED, LED, STRIDE, AFTER = 0.15, 3.0, 0.8, 1.0
@@ -108,6 +107,13 @@ def wished(way: Way, moment: SessionState, seconds: float, jump: bool) -> Wish:
     return Wish(move=(-throw * float(np.sin(there - yaw)), throw * float(np.cos(there - yaw))), run=run, strafe=way.strafe, jump=jump).rounded()
 
 
+def advance(moment: SessionState, wish: Wish) -> SessionState:
+    """The moment a step later."""
+    line = Timeline(moment)
+    line.advance((wish,))
+    return line.now
+
+
 def hips(moment: SessionState) -> np.ndarray:
     """Where x, z [m] the hips are."""
     return np.asarray(moment.after.characters[0].state.pose.root)[[0, 2]]
@@ -124,7 +130,7 @@ def tapped(way: Way, moment: SessionState, seconds: float, seen: Callable[[Sessi
     gone, told, begun, step = [hips(moment)], "", None, 0
     while begun is None and step < (PRESSED + WAITS) * RATE:
         before = moment
-        moment = advance(moment, (wished(way, moment, seconds + step / RATE, step < PRESSED * RATE),))
+        moment = advance(moment, wished(way, moment, seconds + step / RATE, step < PRESSED * RATE))
         seen(moment)
         gone.append(hips(moment))
         told = "; ".join(refused(before, moment)) or told
@@ -139,7 +145,7 @@ def tapped(way: Way, moment: SessionState, seconds: float, seen: Callable[[Sessi
     made, at = begun.plan, step - round(begun.time * RATE)
     down = at + int(made.touch_down * RATE)
     while step < down + AFTER * RATE:
-        moment = advance(moment, (wished(way, moment, seconds + step / RATE, False),))
+        moment = advance(moment, wished(way, moment, seconds + step / RATE, False))
         seen(moment)
         gone.append(hips(moment))
         step += 1
@@ -192,7 +198,7 @@ def main() -> None:
         for step in range(last):
             if step in at:
                 made.append(tapped(way, moment, step / RATE))
-            moment = advance(moment, (wished(way, moment, step / RATE, False),))
+            moment = advance(moment, wished(way, moment, step / RATE, False))
         found.setdefault(way.group, {}).setdefault(way.name, []).extend(made)
     for group, lines in found.items():
         print(group)
