@@ -88,7 +88,7 @@ class Jump(Reach, Controller):
             return HOLDS
         if intent.leap is None:
             return READY if intent.aim is not None and self._stands(state) and not self._sets_feet(state) else 0.0
-        return READY if ready(self.physique, state) and self._on_its_floor(state, intent.around) else 0.0
+        return READY if ready(self.physique, state, intent.around) and self._on_its_floor(state, intent.around) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,

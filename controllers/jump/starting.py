@@ -20,6 +20,8 @@ RUNNING = 0.95
 """Faster than this [m/s] one foot pushes and the jump waits for it to strike."""
 FRESH = -0.06
 """A foot has just struck while the body is no further than this past it [m]: still behind it."""
+STEEP = 0.9
+"""Downhill that is seen from as high over it as mass centres are [m], at standard height: a foot strikes farther behind there, square to the ground."""
 HALF_TURN = 1e-3
 """So little short of half a turn [rad] is one."""
 FEET = "left", "right", "both"
@@ -177,15 +179,17 @@ def landed(physique: Physique, state: CharacterState, made: Plan) -> CharacterSt
                    memory=None, floor=float(made.feet[:, 1].mean() - physique.tables.sole), previous=None, elapsed=0.0)
 
 
-def ready(physique: Physique, state: CharacterState) -> bool:
-    """Whether a jump can start at this moment: standing feet, or a foot that has just struck."""
+def ready(physique: Physique, state: CharacterState, around: Sequence[Any] = ()) -> bool:
+    """Whether a jump can start at this moment: standing feet, or a foot that has just struck, among boxes and pillars around."""
     start = start_of(physique, state)
     speed = float(np.hypot(start.velocity[0], start.velocity[2]))
     if start.single is None:
         low = start.feet[:, 1] - float(state.floor) < physique.tables.sole + UP * physique.size
         return speed < RUNNING and bool(low.any())
     towards = start.velocity * FLAT / max(speed, 1e-9)
-    return bool((start.centre - start.feet[start.single, :3]) @ towards < FRESH) and not _comes_down(physique, state)[start.single]
+    falls = -float(on_ground(start, state, around).slope @ towards[[0, 2]]) if len(around) else 0.0
+    past = float((start.centre - start.feet[start.single, :3]) @ towards) - STEEP * physique.size * max(falls, 0.0)
+    return past < FRESH and not _comes_down(physique, state)[start.single]
 
 
 def on_its_floor(physique: Physique, start: Start, floor: float, around: Sequence[Any]) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import SETS_FEET
-from gambol.controllers.navigation import floor_at, in_world
+from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top
 from .run_up import AHEAD
@@ -25,6 +25,9 @@ from .wish import Wish, in_view
 
 MOVING = 0.9
 """Faster than this [m/s] the jump goes on the way one goes."""
+ARC, BENDS, BENT = 0.1, 0.26, 0.05
+"""Faster than the first [rad/s] somebody goes along an arc. He leans into it, so that his foot sends him so long [s] farther round it: there the ring lies, and stays ahead of
+who turns by more than the third [rad] as he waits for his footfall."""
 PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
 SWINGS = 3.0
@@ -35,12 +38,14 @@ BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
 CLIMBS = 1.5
 """Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
+SLOPED = 2.0
+"""On the move, by so much for each metre a metre that ground rises there [m]: uphill a foot sends nobody as far, nor as near, as on level ground."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
 LOWER = 0.05
 """Floor that is lower by more than this [m] may be reached from farther off."""
-SLACK = 0.5, 0.3
-"""Who can't reach the ring lands at most so far from it [m], from a stand and on the move."""
+SLACK, ROUND = (0.5, 0.3), 0.5
+"""Who can't reach the ring lands at most so far from it [m], from a stand and on the move; and along an arc, of which one foot sends him farther round than the other."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
 """A jump straight up: its airtime after a tap [s], what each second of holding adds [s/s], at most [s]."""
 SINKS = 0.35
@@ -58,13 +63,6 @@ LOOKED = 0.2
 RESTS, FALLING = 0.35, 0.1
 """A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
 
-def _ring(velocity: Sequence[float]) -> tuple[float, float]:
-    """Where x, z [m] the ring lies from somebody who goes with a velocity (2,) [m/s] along x and z."""
-    speed = max(float(np.hypot(*velocity)), 1e-9)
-    far = (AHEAD[0] + AHEAD[1] * speed) / speed
-    return far * float(velocity[0]), far * float(velocity[1])
-
-
 Reaches = Callable[[float], float]
 """About how far a standing body leaps [m], so far aside [rad] of the way it faces."""
 
@@ -72,6 +70,23 @@ Reaches = Callable[[float], float]
 def anywhere(aside: float) -> float:
     """What nobody knows of is no limit."""
     return math.inf
+
+
+def _pace(state: CharacterState) -> float:
+    """How fast somebody goes [m/s]."""
+    return float(np.hypot(state.velocity[0], state.velocity[2]))
+
+
+def course_of(state: CharacterState) -> float:
+    """Which way [rad] a leap goes of somebody on the move: the way he goes, and farther round an arc."""
+    x, z = in_world(state.ground, state.velocity)
+    return math.atan2(x, z) + BENDS * float(state.velocity[1])
+
+
+def _ring(state: CharacterState) -> tuple[float, float]:
+    """Where x, z [m] the ring lies from somebody on the move."""
+    far, course = AHEAD[0] + AHEAD[1] * _pace(state), course_of(state)
+    return far * math.sin(course), far * math.cos(course)
 
 
 @dataclass(frozen=True)
@@ -82,6 +97,7 @@ class Aim:
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
+    course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -94,6 +110,7 @@ class Aim:
     spent: bool = False
     rests: bool = False
     tilt: float = 0.0
+    course: float = 0.0
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf) -> Aim:
@@ -109,19 +126,19 @@ class Aim:
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt, course=course_of(state))
             sets = state.refused == SETS_FEET
             if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
-                offset = _ring(in_world(state.ground, state.velocity))
-                return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]))
+                offset = _ring(state)
+                return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
             pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
-            return Aim() if given_up else replace(self, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else self.place, rests=rests, tilt=tilt)
-        velocity = in_world(state.ground, state.velocity)
-        speed = float(np.hypot(*velocity))
-        moving, heading, place = speed > MOVING, None, None
+            if given_up:
+                return Aim()
+            return replace(self._gone_round(state), waiting=self.waiting - pace * dt, offset=offset, rests=rests, tilt=tilt, **({"place": (x, z)} if stays else {}))
+        moving, heading, place = _pace(state) > MOVING, None, None
         if moving:
-            offset = _ring(velocity)
+            offset = _ring(state)
         else:
             pushed = in_view(wish.move, camera_yaw)
             x, z = (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
@@ -129,7 +146,16 @@ class Aim:
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state))
+
+    def _gone_round(self, state: CharacterState) -> Aim:
+        """The same of one who goes along an arc as he waits, and has turned: his ring stays ahead of him, as far away as it is."""
+        course = course_of(state)
+        if not self.moving or self.place is None or abs(math.remainder(course - self.course, math.tau)) < BENT or _pace(state) < MOVING:
+            return self
+        here = float(state.ground[0]), float(state.ground[1])
+        far = math.dist(here, self.place)
+        return replace(self, place=(here[0] + far * math.sin(course), here[1] + far * math.cos(course)), course=course)
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
@@ -186,8 +212,11 @@ class Aim:
             return Leap(None, min(airtime, longest), heading=self.heading)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
-        heading = self._ahead if self._askew(state) else self.heading
-        return Leap(np.array([x, floor_at(x, z, around, floor + UP), z]), slack=SLACK[self.moving], heading=heading, stays=self.moving and self.rests)
+        place = np.array([x, floor_at(x, z, around, floor + UP), z])
+        steep = SLOPED * float(np.hypot(*slope_at(x, z, around, place[1] + LOWER))) if self.moving and len(around) else 0.0
+        if self.moving and abs(float(state.velocity[1])) > ARC:  # he turns there as he flies, and goes on round it
+            return Leap(place, slack=ROUND + steep, heading=self.course, stays=self.rests)
+        return Leap(place, slack=SLACK[self.moving] + steep, heading=self._ahead if self._askew(state) else self.heading, stays=self.moving and self.rests)
 
     def readied(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
                 reaches: Reaches = anywhere) -> Leap | None:

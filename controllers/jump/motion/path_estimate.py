@@ -211,7 +211,8 @@ def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarr
     aside, _, ahead = velocity @ yaw(start.lands)
     if start.single is None or ahead < STRIDES[start.stays] * np.sqrt(size) or abs(aside) > ASTRAY * ahead:
         return None
-    return 1 - start.single if -(velocity + gravity * flight)[1] < FALLS * np.sqrt(size) else None
+    falls = start.lands_on @ velocity[[0, 2]] - (velocity + gravity * flight)[1]  # nearer to ground that may fall away, too
+    return 1 - start.single if falls < FALLS * np.sqrt(size) else None
 
 
 def _folded(keys: np.ndarray, lands: int | None) -> np.ndarray:
