@@ -19,12 +19,14 @@ from .turning_back import pivots
 LEAST_STRETCH, MOST_STRETCH = 0.7, 1.3
 """A gait is slowed down and sped up to these shares of the speeds that were recorded, half of it by its cadence and
 half by its strides, so that walks and runs meet between them."""
-PUSHES = (1.0, 0.7)
+PUSHES = (1.0, 0.64)
 """The share of their push that legs have on average, since they bear more and less, walking and running."""
 LEFT_OVER = 0.4
 """Who pushes round a curve has so much of his push left to speed up or slow down, or more: legs push all together as hard as they can."""
 GRAVITY, SPARE = 9.81, 0.15
 """Legs push as hard as they bear, and by so much of a body's weight harder, since soles have some friction to spare."""
+BRAKES = 0.25
+"""Who slows down does so by so much less of how hard [m/s²] a gait's own steps brake him at the moment."""
 QUICKENS = 0.06
 """Who stops comes to step as fast as he can with this half-life [s]."""
 ON_SPOT = 0.5
@@ -62,7 +64,10 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     push = 1.0
     if not m.settled:  # and not at all while no foot stands
         stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
-        push = min(max(_load(m, table, dt) + SPARE, 0.0), 1.0) if stands else 0.0
+        bears, brakes = _load(m, table, dt)
+        push = min(max(bears + SPARE, 0.0), 1.0) if stands else 0.0
+        if push > 0.0 and m.family == RUN and p[0] < m.command[0]:
+            push = max(push - BRAKES * brakes / most, 0.0)
     plan_stop(m, settings, table, stance)
     m.quick += ((quickness(settings) if m.stop > 0.0 else 1.0) - m.quick) * (1.0 - 2.0 ** (-dt / QUICKENS))
     if m.waits:
@@ -114,11 +119,11 @@ def _take_up(command, rate, asked, settings, turning, push, mean, left, steep, d
 
 @kernel
 def _load(m, table, dt):
-    """What legs bear halfway through a step, in body weights: from how the blend's hips rise and fall."""
+    """What legs bear halfway through a step, in body weights, and how hard they brake along the way [m/s²]: from how the blend's hips go."""
     pace = cadence_kernel(m)
     angle = 2.0 * math.pi * (m.phase + 0.5 * dt * pace)
     c1, s1 = math.cos(angle), math.sin(angle)
-    total = 0.0
+    total, ahead = 0.0, 0.0
     for p in range(table.shape[0]):
         w = m.weights[p]
         if w <= 0.0:
@@ -127,8 +132,10 @@ def _load(m, table, dt):
         for k in range(1, table.shape[1] - 1, 2):
             order = 0.5 * (k + 1)
             total -= w * order * order * (c * table[p, k, HIPS_AT + 1] + s * table[p, k + 1, HIPS_AT + 1])
+            ahead -= w * order * order * (c * table[p, k, HIPS_AT + 2] + s * table[p, k + 1, HIPS_AT + 2])
             c, s = c * c1 - s * s1, s * c1 + c * s1
-    return 1.0 + total * (2.0 * math.pi * pace) ** 2 / GRAVITY
+    squared = (2.0 * math.pi * pace) ** 2
+    return 1.0 + total * squared / GRAVITY, -ahead * squared
 
 
 @kernel
