@@ -77,7 +77,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     """
     ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
     on_floor(m, now)
-    m.most = m.stairs = m.high[0] = m.high[1] = 0.0
+    m.most = m.stairs = m.brink = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
     if tops.shape[0] > 0:
         follow_ground(m, body, legs.height, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
