@@ -58,8 +58,8 @@ def slowed(speed, far, dt):
 
 @kernel
 def edge_ahead(m, tops, floor):
-    """How far ahead of somebody's middle the ground ends [m] where he goes who has let go; 0 where that is farther than he looks, and for others. Who is about to leap is
-    left to his leap."""
+    """How far ahead of somebody's middle the ground ends [m] where he goes who has let go; 0 where that is farther than he looks, and for others, and less than 0 in the
+    first step: whose wish is gone for a step alone goes on. Who is about to leap is left to his leap."""
     speed = math.hypot(m.velocity[0], m.velocity[2])
     if m.settled or m.alert or speed < LEAST or math.hypot(m.wished[0], m.wished[1]) > LEAST:
         return 0.0
@@ -82,6 +82,6 @@ def edge_ahead(m, tops, floor):
                     far = middle
                 else:
                     near = middle
-            return max(near, 1e-3)
+            return math.copysign(max(near, 1e-3), 1.0 if m.brink != 0.0 else -1.0)
         before = ground[0]
     return 0.0

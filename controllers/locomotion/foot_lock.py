@@ -77,12 +77,13 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     """
     ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
     on_floor(m, now)
-    m.most = m.stairs = m.brink = m.high[0] = m.high[1] = 0.0
+    m.most = m.stairs = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
     if tops.shape[0] > 0:
         follow_ground(m, body, legs.height, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
     else:
         leave_level(m)
+        m.brink = 0.0
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     m.runner += ((as_runner(m) if m.stairs > 0.0 else 0.0) - m.runner) * (1.0 - 2.0 ** (-dt / RUNNER_HALFLIFE))
     for k in range(4):
