@@ -20,7 +20,7 @@ from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, astride, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
+from .starting import FEET, Jumping, astride, cramped, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
 LEVELS = 0.05
 """Who may land beside a place lands as high or low as it lies, to so much [m]."""
@@ -254,7 +254,7 @@ class Jump(Reach, Controller):
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
         if isinstance(memory, Jumping):
             return on_ground(turning(rebounding(start, memory.plan, memory.time) if memory.rebounds else start, leap), state, around), float(level(state.floor))
-        return astride(self.physique, on_ground(turning(start, leap), state, around), state)
+        return astride(self.physique, on_ground(cramped(turning(start, leap), leap, np.asarray(state.ground, float), around), state, around), state)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""

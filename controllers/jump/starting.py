@@ -11,7 +11,7 @@ import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, contact_points, forward_kinematics, wrap, yaw
 from ..contract import CharacterState, Leap, level
-from ..navigation import floor_at, slope_at
+from ..navigation import floor_at, room, slope_at
 from .body import FLAT, Physique, Start, raised, soles, vectors
 from .motion import PLANT, Plan
 from .reach import Onward
@@ -38,6 +38,8 @@ KNEES, APART = 0.31, 0.06
 the body faces, are too near [m], at standard height."""
 TURNED = np.radians(40.0)
 """A foot that is turned farther from there [rad] is not crouched over."""
+BEYOND = 0.2, 0.4, 0.6, 0.8, 1.0
+"""Who runs on from where he lands needs floor and room so far beyond [m]."""
 STANDS = 0.01
 """Who is slower than this [m/s, rad/s], and stands on both feet, has set them."""
 UNEVEN = 0.02
@@ -131,6 +133,21 @@ def turning(start: Start, leap: Leap | None) -> Start:
         return start
     turn = math.remainder(leap.heading - start.heading, math.tau)
     return replace(start, turn=turn + math.tau if turn < -math.pi + HALF_TURN else turn)
+
+
+def cramped(start: Start, leap: Leap | None, ground: np.ndarray, around: Sequence[Any]) -> Start:
+    """The same start of one who has no room to run on beyond where he lands: before a wall, or an edge that he wants to stay on. ground: where x, z [m] he is."""
+    place = None if leap is None else leap.place
+    if leap is None or start.single is None or not len(around) or np.shape(place) != (3,) or not np.isfinite(place).all():
+        return start
+    there, high = np.asarray(place, float)[[0, 2]], float(np.asarray(place, float)[1])
+    ahead = (there - ground[:2]) / max(float(np.hypot(*(there - ground[:2]))), 1e-9)
+    for far in BEYOND:
+        x, z = there + far * ahead
+        if room(np.array([x, z]), high, around) > 0.0:
+            continue
+        return replace(start, cramped=leap.stays or floor_at(x, z, around, high + UP) >= high - UP)
+    return start
 
 
 def on_ground(start: Start, state: CharacterState, around: Sequence[Any]) -> Start:

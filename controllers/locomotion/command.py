@@ -8,9 +8,10 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
+from .before_edges import before_edge, runs_off
 from .control_space import SCALE
 from .kernel import HIPS_AT, clamp_kernel, inner_kernel
-from .last_stride import come_over, plan_stop, quickness, time_to_stop
+from .last_stride import CHOSE, NOWHERE, come_over, plan_stop, quickness, time_to_stop
 from .memory import RUN, WALK
 from .minimum_jerk import smooth
 from .root_motion import advance, briskness, cadence_kernel
@@ -43,11 +44,13 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     no faster than legs can push, and as hard only as they bear, so that feet need not slip; before stairs no faster than feet find them. lean: the share of its
     strength with which a body pushes. stance: where heels and balls are at rest (4, 2) [m]."""
     m.wished[0], m.wished[1] = wish[2], wish[0]
-    speed = math.hypot(wish[0], wish[2])
+    edge = m.brink > 0.0 and (m.halts == NOWHERE or m.halts == CHOSE)  # who comes to rest at a place was told where
+    off = edge and runs_off(m)
+    ahead, left = (m.command[0], m.command[2]) if off else (wish[0], wish[2])
+    speed = math.hypot(ahead, left)
     share = m.most / speed if 0.0 < m.most < speed else 1.0
-    m.wanted = RUN if share * wish[0] > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
-    for i in range(3):
-        p[i] = (wish[i] if i == 1 else share * wish[i]) / SCALE[i]
+    m.wanted = RUN if share * ahead > (settings.run_above if m.wanted == WALK else settings.walk_below) else WALK
+    p[0], p[1], p[2] = share * ahead / SCALE[0], wish[1] / SCALE[1], share * left / SCALE[2]
     faster = pivots(m) if m.wanted == WALK else 1.0
     p[1] /= faster
     _within(run if m.wanted == RUN else walk, p, inner, m.wanted)
@@ -73,7 +76,10 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     if m.waits:
         come_over(m, stance, most, dt)
         push = 0.0
+    was = math.hypot(m.command[0], m.command[2])
     _take_up(m.command, m.rate, p, settings, lean, lean * push, PUSHES[m.family], time_to_stop(m, settings, table), m.steep, dt)
+    if edge and not off:
+        before_edge(m, was, dt)
 
 
 @kernel

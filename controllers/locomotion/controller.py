@@ -157,7 +157,7 @@ class Locomotion(Controller):
         parts = max(1, ceil(dt / FINEST - 1e-6))  # what is left of a frame may be as short as rounding
         for _ in range(parts):
             floor, before = here.copy(), memory["ground"][:, :2].copy()
-            held_up(memory, wish, floor, walls)
+            held_up(memory, wish, floor, walls, dt / parts)
             step_kernel(memory, wish, dt / parts, self.settings, *self.tables, ground, here, root, local)
             led_out(memory, before, floor, walls, root)
         root[:, 1] += floor

@@ -83,6 +83,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         follow_ground(m, body, legs.height, ahead, (now - before) / dt, tops, floor, SWING[m.family], dt)
     else:
         leave_level(m)
+        m.brink = 0.0
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     m.runner += ((as_runner(m) if m.stairs > 0.0 else 0.0) - m.runner) * (1.0 - 2.0 ** (-dt / RUNNER_HALFLIFE))
     for k in range(4):

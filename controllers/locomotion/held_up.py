@@ -17,6 +17,8 @@ from .memory import put
 
 LAG, BRAKE = 0.1, 6.0
 """Nobody goes faster towards a wall than he could stop who begins to so much later [s], braking so hard [m/s²], half as hard again as legs push."""
+SUDDEN = 12.0
+"""Who comes there too fast for that, as out of a leap, loses no more [m/s²] than that at once, or as much as just stops him, evenly, before it."""
 BACK = 0.3
 """Who is too near to a wall as he walks is led away from it no faster than this [m/s]."""
 GIVES = 0.01
@@ -31,12 +33,12 @@ ARMS, HANDS = 0.6, 0.5
 """Who stands has no room for his arms where something is so near to his middle [m] that is higher over the floor than the second [m]."""
 
 
-def held_up(memory: np.ndarray, wish: np.ndarray, floors: np.ndarray, walls: np.ndarray) -> None:
+def held_up(memory: np.ndarray, wish: np.ndarray, floors: np.ndarray, walls: np.ndarray, dt: float) -> None:
     """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap only towards those that nobody leaps onto.
     Take away the wishes (N, 3) that lead nowhere. Note whose feet, and of those who stand whose arms, have no room. floors: (N,) [m]."""
     memory["cramped"] = 0
     if len(walls):
-        hold_kernel(memory, wish, floors, walls)
+        hold_kernel(memory, wish, floors, walls, dt)
 
 
 def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: np.ndarray, root: np.ndarray) -> None:
@@ -52,7 +54,7 @@ def led_out(memory: np.ndarray, before: np.ndarray, floors: np.ndarray, walls: n
 
 
 @kernel
-def hold_kernel(memory, wish, floors, walls):
+def hold_kernel(memory, wish, floors, walls, dt):
     """Slow down the commands of characters (N,) towards walls (K, 9), but for who stands, and let rest whom walls let get on no more."""
     velocity, rate, out = np.empty(2), np.empty(2), np.empty(3)
     for n in range(memory.shape[0]):
@@ -71,6 +73,7 @@ def hold_kernel(memory, wish, floors, walls):
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
         rate[0], rate[1] = velocity[0], velocity[1]
         if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], velocity, NEAR, LAG, BRAKE, BACK, LEAPT if m.alert else STEP):
+            _evenly(rate, velocity, dt)
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
             # nor does what is under way go on towards it
             x, z = velocity[0] - rate[0], velocity[1] - rate[1]
@@ -80,6 +83,20 @@ def hold_kernel(memory, wish, floors, walls):
             into = min(rate[0] * x + rate[1] * z, 0.0)
             m.rate[0] -= into * (s * x + c * z)
             m.rate[2] -= into * (c * x - s * z)
+
+
+@kernel
+def _evenly(before, velocity, dt):
+    """Bring a velocity (2,), in place, no farther from what it was before (2,) [m/s] within dt than evenly braking to where it is to end takes, or as SUDDEN as that is."""
+    x, z = velocity[0] - before[0], velocity[1] - before[1]
+    less = math.hypot(x, z)
+    if less <= SUDDEN * dt:
+        return
+    into = -(before[0] * x + before[1] * z) / less
+    left = max(into - less, 0.0) / BRAKE + LAG
+    room = 0.5 * BRAKE * (left * left - LAG * LAG)  # which lets him go so fast
+    share = min(max(SUDDEN, 0.5 * into * into / max(room, 1e-6)) * dt / less, 1.0)
+    velocity[0], velocity[1] = before[0] + share * x, before[1] + share * z
 
 
 @kernel

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
+from .before_edges import KEEPS
 from .cycles import EVENTS
 from .foot_points import shown_kernel
 from .kernel import HIPS_AT
@@ -117,8 +118,8 @@ def _choose_place(m, speed, settings, table, stance):
     elif m.stop <= ON_ITS_WAY and settings.footing:
         farthest = max(_to_foot(m, speed, stance) + LONGER, 0.5 * speed * speed / most)
         steep = min(max(speed * time / farthest - 1.0, steep), STEEPEST)
-    m.halts = CHOSE
-    _place(m, settings, speed * time / (steep + 1.0), time)
+    m.halts, far = CHOSE, speed * time / (steep + 1.0)
+    _place(m, settings, min(far, max(m.brink - KEEPS, 0.05)) if m.brink > 0.0 else far, time)
 
 
 @kernel

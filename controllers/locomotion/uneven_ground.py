@@ -13,6 +13,7 @@ import numpy as np
 from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation.passing import STEP
+from .before_edges import edge_ahead
 from .foot_points import shown_kernel
 from .memory import WALK
 from .minimum_jerk import smooth
@@ -126,7 +127,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         m.level = before + 0.5 * (rate + m.level_rate) * dt
     for k in range(4):  # what is shown stays where it is
         m.raised[k] -= m.level - before
-    m.stairs = on_stairs(m, tops, floor)
+    m.stairs, m.brink = on_stairs(m, tops, floor), edge_ahead(m, tops, floor)
     m.most = 0.0 if m.alert and m.stairs == 0.0 else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto, but runs on no treads that feet can't find
 
 

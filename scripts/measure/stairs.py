@@ -1,6 +1,6 @@
 """Measure walks up and down stairs of all kinds, by bodies of all sizes, as fast as they are asked to; and runs over single kerbs.
 
-    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs] [--knees] [--paces]
+    python scripts/measure/stairs.py [--only HEIGHT ...] [--kerbs] [--knees] [--paces] [--keys]
 
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
@@ -11,6 +11,7 @@ Kerbs: up one of 6–16 cm after five metres, on for 0.5–6 m, down again, stra
 the fastest before.
 Knees: up at 0.5 m/s, facing each way; how much a knee's velocity changes at most from one frame to the next, and how many frames it changes by more than 3 m/s.
 Paces: how fast who asks for a walk and who asks for a run gets up and down.
+Keys: how fast somebody whom keys tell to run gets up flights of 17 × 29 cm to a landing as high as their last tread, and how slow he gets on the way.
 """
 
 from __future__ import annotations
@@ -26,6 +27,11 @@ import numpy as np
 from gambol.controllers.body import contact_points, end_positions, forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import DEFAULT_LIBRARY, Locomotion
+from gambol.controllers.person import person
+from gambol.game.input import Wish
+from gambol.game.scene import Box
+from gambol.game.session import Timeline, begin
+from gambol.game.world import Character, World
 
 FPS = 60
 FACING = {"ahead": (0.0, 0.5, 0.0), "backward": (np.pi, -0.5, 0.0), "to the left": (-0.5 * np.pi, 0.0, 0.5), "to the right": (0.5 * np.pi, 0.0, -0.5)}
@@ -41,6 +47,8 @@ KERBS, PACES, WIDTHS, ASKEW = (0.06, 0.10, 0.14, 0.16), (2.0, 2.5, 3.0, 3.5), (6
 """How high kerbs are, how fast they are run over [m/s], how far it is to their other edge [m], and how far askew some run [degrees]."""
 BEFORE, AT_SPEED = 5.0, 1.5
 """So far away a kerb is as they set off, and so near to it they are under way [m]."""
+FLIGHTS, RISE, TREAD = (6, 10, 14), 0.17, 0.29
+"""So many treads, so high and long [m], are run up by keys."""
 DEEP, OVER, NOTHING = 0.01, 0.04, 0.33
 SLOWEST = 0.16
 """Who gets ahead slower than this on the way [m/s] does not arrive."""
@@ -190,6 +198,21 @@ def paces(locomotion, heights) -> None:
                 print(f"  {height:g} m tall, {100 * rise:.0f} × {100 * tread:.0f} cm, asked {speed:g} m/s  up {up:4.2f}, down {down:4.2f} m/s", flush=True)
 
 
+def keys() -> None:
+    """Print how fast flights are run up by keys."""
+    who = person()
+    for count in FLIGHTS:
+        steps = tuple(Box((0.0, 0.5 * RISE * (k + 1), 2.0 + TREAD * (k + 0.5)), (2.4, RISE * (k + 1), TREAD)) for k in range(count))
+        landing = Box((0.0, 0.5 * RISE * count, 2.0 + TREAD * count + 1.5), (2.4, RISE * count, 3.0))
+        line, speeds = Timeline(begin(World((Character("A", who, who.start((0.0, -1.0, 0.0))),), (*steps, landing)), 1)), []
+        for _ in range(20 * FPS):
+            line.advance((Wish(move=(0.0, 1.0), run=1.0).rounded(),))
+            state = line.now.after.characters[0].state
+            if 2.0 < state.ground[1] < 2.0 + (count - 1) * TREAD:
+                speeds.append(float(state.velocity[0]))
+        print(f"  {count} treads by keys  up {np.mean(speeds):4.2f} m/s, at least {min(speeds):4.2f}", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--library", default=DEFAULT_LIBRARY)
@@ -197,7 +220,11 @@ def main() -> None:
     parser.add_argument("--kerbs", action="store_true", help="only runs over kerbs")
     parser.add_argument("--knees", action="store_true", help="only knees of who climbs ahead, backward and aside")
     parser.add_argument("--paces", action="store_true", help="only how fast stairs are walked and run")
+    parser.add_argument("--keys", action="store_true", help="only how fast keys run up flights")
     arguments = parser.parse_args()
+    if arguments.keys:
+        keys()
+        return
     if arguments.paces:
         paces(Locomotion.load(arguments.library), arguments.only or (1.2, STANDARD))
         return

@@ -65,6 +65,20 @@ def test_stairs_are_walked_up():
     assert stopped(standing(2.4), walk, stairs[3:]) is not walk
 
 
+def test_a_landing_as_high_as_the_last_tread_is_no_wall():
+    """It took away the speed of who ran up to it, from three metres off."""
+    stairs = tuple(Box((0.0, 0.085 * (k + 1), 1.0 + 0.29 * (k + 0.5)), (2.4, 0.17 * (k + 1), 0.29)) for k in range(14))
+    landing = Box((0.0, 1.19, 1.0 + 0.29 * 14 + 1.5), (2.4, 2.38, 3.0))
+    run = Intent(np.array([3.0, 0.0, 0.0]))
+    assert stopped(standing(0.0), run, (*stairs, landing)) is run
+    assert stopped(standing(4.0), run, (landing,)) is not run
+
+
+def test_a_roof_that_ends_with_a_wall_hides_it_from_nobody():
+    roof = Box((0.0, 2.35, 1.0), (3.0, 0.1, 3.0))
+    assert stopped(standing(1.0), Intent(np.array([3.0, 0.0, 0.0])), (Box((0.0, 1.2, 2.0), (3.0, 2.4, 1.0)), roof)).velocity[0] < 1.0
+
+
 def test_who_leaps_is_left_alone():
     leap = Intent(np.array([1.4, 0.0, 0.0]), leap=Leap(np.array([0.0, 0.8, 2.0])))
     assert stopped(standing(1.4), leap, (WALL,)) is leap

@@ -1,12 +1,16 @@
 """A runner's leap lands on the other foot and runs on from there, whenever it is asked for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gambol.controllers.body import contact_points, forward_kinematics, log, sole_corners
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jumping
+from gambol.controllers.jump.starting import cramped, start_of
 from gambol.game.input.run_up import AHEAD
+from gambol.game.scene import Box
 
 FPS = 60
 PACE = 3.0
@@ -208,3 +212,15 @@ def test_hands_and_the_leg_that_swings_on_come_down_as_softly_as_recorded(person
     """Hands were pulled by up to 230 m/s² and the knee by 450 rad/s², as fast as the other leg gave: recorded ones by 56 to 100 and 113 to 227."""
     hands, knee = np.transpose([leapt(person, pace, late)[3] for late in (0, 9, 19, 28)])
     assert hands.max() < 100.0 and knee.max() < 285.0
+
+
+@pytest.mark.parametrize("stays, beyond, both", [(False, "a wall", True), (False, "an edge", False), (True, "an edge", True), (True, "floor", False)])
+def test_who_has_no_room_to_run_on_lands_on_both_feet(person, runner, stays, beyond, both):
+    """Before a wall, or an edge that he wants to stay on, who is no faster than legs can stop so; with room he lands on one foot and runs on."""
+    start = replace(start_of(person.parts["jump"].physique, runner), single=0)
+    place = np.array([runner.ground[0], 0.0, runner.ground[1] + 2.0])
+    x, z = place[[0, 2]]
+    around = {"a wall": (Box((x, 1.2, z + 1.0), (4.0, 2.4, 1.0)),), "floor": (Box((x + 9.0, 0.5, z), (1.0, 1.0, 1.0)),),
+              "an edge": (Box((x, 0.5, z - 4.5), (4.0, 1.0, 10.0)),)}[beyond]
+    place[1] = beyond == "an edge"  # on a platform a metre high
+    assert cramped(start, Leap(place, stays=stays), np.asarray(runner.ground, float), around).cramped == both

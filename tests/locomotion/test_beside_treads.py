@@ -15,6 +15,8 @@ COUNT, FPS, CHANGES = 160, 60, 24
 """So many people; steps a second; a wish holds for so many steps."""
 DEEP = 0.02
 """What is deeper than this [m] counts."""
+FALLS = 0.3
+"""Whose middle is over what lies so much lower [m] than he stands walks on in the air here, and would fall."""
 
 
 def box(x, z, wide, high, deep):
@@ -26,18 +28,21 @@ THINGS = {"stairs": tuple(box(0.0, 0.29 * k, 2.0, 0.17 * (k + 1), 0.29) for k in
 
 @pytest.fixture(scope="module")
 def deepest(locomotion):
-    """For each of THINGS how deep (T, N) [m] anything is in it of those who were not put into it."""
+    """For each of THINGS how deep (T, N) [m] anything is in it of those who were not put into it, until they step off its side."""
     physique, found = Physique(), {}
     for name, things in THINGS.items():
         rng = np.random.default_rng(0)
         ground = np.stack([rng.uniform(-1.0, 1.0, COUNT), rng.uniform(-0.8, 1.4, COUNT), rng.uniform(-np.pi, np.pi, COUNT)], -1)
         state, depths = locomotion.start(ground, np.array([floor_at(x, z, things, 9.0) for x, z, _ in ground])), []
+        fallen = np.zeros(COUNT, bool)
         for k in range(10 * CHANGES):
             if k % CHANGES == 0:
                 wish = np.stack([rng.uniform(0.2, 0.8, COUNT), rng.uniform(-2.5, 2.5, COUNT), rng.choice([0.0, 0.0, 0.3, -0.3], COUNT)], -1) * rng.choice([1.0, 1.0, 1.0, 0.0], (COUNT, 1))
             state, pose = locomotion.step(state, Intent(wish, around=things), 1 / FPS)
             places, thick = flesh(physique, *forward_kinematics(locomotion.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
-            depths.append((thick - np.min([gap(places.reshape(-1, 3), thing).reshape(places.shape[:2]) for thing in things], 0)).max(1))
+            fallen |= [floor_at(x, z, things, 9.0) < floor - FALLS for (x, z, _), floor in zip(state.ground, state.floor)]
+            deep = (thick - np.min([gap(places.reshape(-1, 3), thing).reshape(places.shape[:2]) for thing in things], 0)).max(1)
+            depths.append(np.where(fallen, 0.0, deep))
         depths = np.array(depths)
         found[name] = depths[:, depths[0] < 0.5 * DEEP]
     return found

@@ -40,8 +40,8 @@ SPINS = 6.0, 8.0
 HIGHER = 0.14, 0.9
 """Who waits in the crouch flies longer by the first [s] to what is as far as the second [m], on Earth, at standard height: the less he must fall
 ahead, the sooner he is off."""
-STRIDES, FALLS, ASTRAY = (0.5, 1.8), 3.7, 0.45
-"""Who pushes off one foot lands on the other, to walk or run on, if he comes down faster ahead than the first, or the second if he wants to stay there, and falls slower than
+STRIDES, FALLS, ASTRAY = (0.5, 1.8, 2.3), 3.7, 0.45
+"""Who pushes off one foot lands on the other, to walk or run on, if he comes down faster ahead than the first, or the second if he wants to stay there, or the third if he has no room to run on, and falls slower than
 that [m/s], from 0.7 m: a leg then bears 4.8 times the weight. But not if he goes aside by more than that share of it: no gait does, as fast."""
 FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])
 """By so much more than recorded hip and knee of a free leg are bent [rad] as the other lands, and in the rows before."""
@@ -209,7 +209,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
     """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
     aside, _, ahead = velocity @ yaw(start.lands)
-    if start.single is None or ahead < STRIDES[start.stays] * np.sqrt(size) or abs(aside) > ASTRAY * ahead:
+    if start.single is None or ahead < STRIDES[2 if start.cramped else int(start.stays)] * np.sqrt(size) or abs(aside) > ASTRAY * ahead:
         return None
     falls = start.lands_on @ velocity[[0, 2]] - (velocity + gravity * flight)[1]  # nearer to ground that may fall away, too
     return 1 - start.single if falls < FALLS * np.sqrt(size) else None

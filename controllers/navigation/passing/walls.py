@@ -24,6 +24,8 @@ ASKEW = 0.09
 """… and so much less near who goes askew to one, one leg on its side: his feet pass each other there [m]."""
 EDGE = 0.04
 """Right before something is so far from it [m]."""
+SAME = 0.01
+"""What lies right before something and is higher by no more than this [m] is as high: a landing goes on from the last tread."""
 CRACK = 0.1
 """Ramps that make up hills leave cracks of this width between them at most [m]: they are the floor before each other across one."""
 PASSES = 3
@@ -76,13 +78,13 @@ def wall_kernel(walls, k, x, z, floor, bound, out, least=STEP):
     for part in range(2 if rises else 1):
         px, pz = x - (far - EDGE - part * CRACK) * out[0], z - (far - EDGE - part * CRACK) * out[1]
         for i in range(walls.shape[0]):
-            if walls[i, 5] > 0.0:
+            if walls[i, 5] > 0.0 or walls[i, 8] == 0.0 and walls[i, 6] >= floor + HEAD:
                 continue
             c, s = math.cos(walls[i, 4]), math.sin(walls[i, 4])
             dx, dz = px - walls[i, 0], pz - walls[i, 1]
             along = s * dx + c * dz
             top = walls[i, 7] + walls[i, 8] * along
-            if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= (high + EDGE if rises or walls[i, 8] != 0.0 else high - EDGE):
+            if abs(c * dx - s * dz) <= walls[i, 2] and abs(along) <= walls[i, 3] and before < top <= high + (EDGE if rises or walls[i, 8] != 0.0 else SAME):
                 before = top
     return far if high > before + STEP else math.inf
 
