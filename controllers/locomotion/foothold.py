@@ -41,7 +41,7 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt
     for foot in range(2):
         swing = SWING[m.family]
         left = (swing + 0.5 * foot - m.phase) % 1.0
-        coming = left < 0.5 * (1.0 + swing)
+        coming = left < 0.5 * (1.0 + swing) or m.torn[foot] == 1  # one that is torn off early in its stance comes down with the next strike
         ahead.shares[foot] = 0.0
         ahead.until[foot] = time_ahead(m, table, left) if coming else 0.0
         lifts = coming and max(m.grip[2 * foot], m.grip[2 * foot + 1]) < 1.0
