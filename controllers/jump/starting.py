@@ -145,6 +145,7 @@ def cramped(start: Start, leap: Leap | None, ground: np.ndarray, around: Sequenc
     for far in BEYOND:
         x, z = there + far * ahead
         if room(np.array([x, z]), high, around) > 0.0:
+            high = floor_at(x, z, around, high + UP)  # as slopes and treads go on
             continue
         return replace(start, cramped=leap.stays or floor_at(x, z, around, high + UP) >= high - UP)
     return start

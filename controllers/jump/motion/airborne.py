@@ -97,7 +97,7 @@ class Airborne:
             centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[way.land], self.sunk[0]]).T], 1)
             angles = self.carriage(self.down + until)
             self.swung = passing(physique, landing, way.lands, times, way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH], centres, angles,
-                                 self._upright(angles[:, 0], np.inf))
+                                 self._upright(angles[:, 0], np.inf), start.lands_on)
 
     def _landing_times(self, stand: float) -> np.ndarray:
         """When [s] after touch-down the rows of the prior are due: until the lowest point evenly, then as the body comes up to how

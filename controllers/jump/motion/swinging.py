@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...body import sole_corners
-from ..body import FLEX, Physique, carriage, hermite, monotone, place_kernel, turns
+from ..body import FLEX, Physique, carriage, hermite, monotone, place_kernel, raised, rise, turns
 from ..prior import BETWEEN, EACH
 from .ground_kernels import FREE, ground_kernel
 
@@ -22,19 +22,20 @@ def free_leg(body, lands: int) -> slice:
     return slice(first, first + 4)
 
 
-def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarray, rows: np.ndarray, centres: np.ndarray, angles: np.ndarray, upright: np.ndarray):
+def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarray, rows: np.ndarray, centres: np.ndarray, angles: np.ndarray, upright: np.ndarray,
+            slope: np.ndarray):
     """How the leg swings of who lands on the other, `lands`: as recorded in rows (K - 1, EACH) [rad] at times (K,) [s] after touch-down, its knee bent by as much more
     as keeps its foot off the floor until the lowest point: recorded bodies sink less over it.
 
     landing: (2, 5) the feet on the floor. centres: (BETWEEN + 1, 3) [m] the mass centre until the lowest point, angles (BETWEEN + 1, 11) [rad] and upright
-    (BETWEEN + 1, 3, 3) how the body is carried and its pelvis turned. What is given is a function of times, see `keyed_leg`.
+    (BETWEEN + 1, 3, 3) how the body is carried and its pelvis turned. slope: (2,) [m/m] how the ground rises. What is given is a function of times, see `keyed_leg`.
     """
     body, until = physique.tables, times[:BETWEEN + 1]
     feet = np.ones((len(until), 2, 6))
     feet[..., :5], feet[:, 1 - lands, 5] = landing, FREE
     bent = np.zeros((len(until), 4, 3))
     bent[:, :EACH, 0] = rows[:len(until)]
-    more = lifted(physique, 1 - lands, landing[0, 1] - body.sole, bent, CLEARS * physique.size, angles, np.zeros((len(until), len(physique.skeleton), 3)), upright, centres, feet,
+    more = lifted(physique, 1 - lands, landing[lands], slope, bent, CLEARS * physique.size, angles, np.zeros((len(until), len(physique.skeleton), 3)), upright, centres, feet,
                   centres[0] - [0.0, 0.05, 0.0])
     rows = rows.copy()
     rows[:len(until)] += more
@@ -42,10 +43,10 @@ def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarr
     return keyed_leg(times, rows)
 
 
-def lifted(physique: Physique, free: int, floor: float, bent: np.ndarray, clears: np.ndarray | float, angles: np.ndarray, offsets: np.ndarray,
+def lifted(physique: Physique, free: int, stands: np.ndarray, slope: np.ndarray, bent: np.ndarray, clears: np.ndarray | float, angles: np.ndarray, offsets: np.ndarray,
            turned: np.ndarray, centres: np.ndarray, feet: np.ndarray, root: np.ndarray) -> np.ndarray:
     """By how much more (M, EACH) [rad] a leg `free`, 0 left or 1 right, is to bend whose joints are turned by bent (M, 4, 3) [rad], so that its foot is so
-    high (M,) [m] over a floor [m]: its knee, and what that can't its ankle. The other poses are as in `ground_kernel`."""
+    high (M,) [m] over the ground, see `lowest`: its knee, and what that can't its ankle. The other poses are as in `ground_kernel`."""
     body, count = physique.tables, len(physique.skeleton)
     joints, leg, flex = carriage.joints_of(physique.skeleton), free_leg(body, 1 - free), FLEX * physique.flexibility
     roots, local = np.empty((len(bent), 3)), np.tile(np.eye(3), (len(bent), count, 1, 1))
@@ -55,7 +56,7 @@ def lifted(physique: Physique, free: int, floor: float, bent: np.ndarray, clears
         leg_now[:, :EACH, 0] += more
         local[:, leg] = turns(leg_now)
         ground_kernel(body, flex, angles, joints, offsets, turned, centres, feet, root.copy(), roots, local)
-        missing = np.maximum(clears - (lowest(physique, free, roots, local) - floor), 0.0) / (LIFT * physique.size)
+        missing = np.maximum(clears - lowest(physique, free, roots, local, stands, slope), 0.0) / (LIFT * physique.size)
         if missing.max() < 1e-3:
             break
         wanted += missing
@@ -65,12 +66,14 @@ def lifted(physique: Physique, free: int, floor: float, bent: np.ndarray, clears
     return more
 
 
-def lowest(physique: Physique, side: int, roots: np.ndarray, local: np.ndarray) -> np.ndarray:
-    """How high (M,) [m] the lowest of a foot is, 0 left or 1 right, in poses (M, 3), (M, J, 3, 3)."""
+def lowest(physique: Physique, side: int, roots: np.ndarray, local: np.ndarray, stands: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    """How high (M,) [m] the lowest of a foot is, 0 left or 1 right, in poses (M, 3), (M, J, 3, 3), over ground that rises by slope (2,) [m/m] and on which a foot
+    `stands` (5,)."""
     positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
     for root, pose, places, facing in zip(roots, local, positions, turned):
         place_kernel(physique.tables, root, pose, places, facing)
-    return sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)[:, side, :, 1].min(-1)
+    corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)[:, side]
+    return (corners[..., 1] - rise(corners[..., [0, 2]] - stands[[0, 2]], slope)).min(-1) - (stands[1] - raised(physique.tables, slope))
 
 
 def keyed_leg(times: np.ndarray, rows: np.ndarray):
