@@ -30,7 +30,7 @@ def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarr
     landing: (2, 5) the feet on the floor. centres: (BETWEEN + 1, 3) [m] the mass centre until the lowest point, angles (BETWEEN + 1, 11) [rad] and upright
     (BETWEEN + 1, 3, 3) how the body is carried and its pelvis turned. slope: (2,) [m/m] how the ground rises. What is given is a function of times, see `keyed_leg`.
     """
-    body, until = physique.tables, times[:BETWEEN + 1]
+    until = times[:BETWEEN + 1]
     feet = np.ones((len(until), 2, 6))
     feet[..., :5], feet[:, 1 - lands, 5] = landing, FREE
     bent = np.zeros((len(until), 4, 3))
