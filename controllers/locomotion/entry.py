@@ -22,9 +22,11 @@ from .step import HEAVY, SINKS, sway_kernel
 WALKS_ON = 0.35
 """A body that moves faster than this [m/s] walks on; a slower one stands."""
 FADES = 0.22, 0.16, 0.12, 0.09, 0.07
-"""Half-lives with which the pose that was taken over gives way to the walker's own [s]: the slowest with which the foot that swings comes down."""
+"""Half-lives with which the pose that was taken over gives way to the walker's own [s]: the slowest with which the foot that swings comes down, and its leg does not fold up."""
 DOWN = 0.02
 """A foot has come down if it is no higher than this over where it stands [m]."""
+FOLDED, WAY, HALF = 0.36, 10, 0.5
+"""A leg folds up whose ankle comes nearer to its hip than this, over how long it is, as told of so many moments of so much of a cycle: recorded runners' knees bend to 136°."""
 ABOUT_TO_STEP = 0.95
 """The phase in which both feet stand and the left one is about to leave."""
 AHEAD = 0.01
@@ -124,31 +126,37 @@ def _stride(locomotion: Any, state: CharacterState, velocity: np.ndarray, side: 
 
 def _fade(locomotion: Any, memory: np.ndarray, foot: int) -> float:
     """The half-life [s] with which what was taken over fades, so that foot 0 or 1, in the air, comes down when the gait sets it down: a leg that is on its way
-    elsewhere would else pass that strike, and its stance, in the air."""
+    elsewhere would else pass that strike, and its stance, in the air; and so that no leg, which bent as it landed, is thrown up over its hip."""
     library, phase, weights = locomotion.library, float(memory["phase"]), memory["weights"]
     rows = fourier.evaluate(np.tensordot(weights[:len(library.coefficients)].astype(float), library.coefficients, 1), phase + np.arange(PHASES) / PHASES)
     down = rows[:, LABELS:DURATION].reshape(PHASES, 2, 2)[:, foot].max(-1) > 0.5
-    ahead = int(down.argmax())
-    later = time_kernel(locomotion.tables.series, weights, phase, ahead / PHASES)
-    row = np.empty(COLUMNS, np.float32)
-    series_kernel(locomotion.tables.series, weights, np.float32((phase + ahead / PHASES) % 1.0), row)
+    moments = np.append(HALF * np.arange(1, WAY + 1) / WAY, down.argmax() / PHASES)  # the strike is the last of them
+    later, way = np.empty((len(moments), 1)), np.empty((len(moments), COLUMNS), np.float32)
+    for ahead, time, row in zip(moments, later, way):
+        time[0] = time_kernel(locomotion.tables.series, weights, phase, ahead)
+        series_kernel(locomotion.tables.series, weights, np.float32((phase + ahead) % 1.0), row)
+    slower = np.ones(LABELS_AT)
+    slower[HIPS_AT:] = HEAVY
+    slower[HIPS_AT + 1] = SINKS if memory["blend"][HIPS_AT + 1] > 0.0 else HEAVY
     for half in FADES:
-        left = row.astype(float)
-        slower = np.ones(LABELS_AT)
-        slower[HIPS_AT:] = HEAVY
-        slower[HIPS_AT + 1] = SINKS if memory["blend"][HIPS_AT + 1] > 0.0 else HEAVY
-        left[:LABELS_AT] += settle(memory["blend"][:LABELS_AT], memory["blend_rate"][:LABELS_AT], slower * half, later)[0]
-        if _height(locomotion, left, foot) < DOWN:
+        left = way.astype(float)
+        left[:, :LABELS_AT] += settle(memory["blend"][:LABELS_AT], memory["blend_rate"][:LABELS_AT], slower * half, later)[0]
+        height, folded = _swings(locomotion, left, foot)
+        if height < DOWN and folded > FOLDED:
             break
     return half
 
 
-def _height(locomotion: Any, row: np.ndarray, foot: int) -> float:
-    """How high heel or ball of foot 0 or 1 is over where it stands in a row of a gait, the lower one [m]."""
+def _swings(locomotion: Any, rows: np.ndarray, foot: int) -> tuple[float, float]:
+    """How high heel or ball of foot 0 or 1 is over where it stands in the last row of a gait (N, COLUMNS), the lower one [m]; and how near ankles come to their hips, over how long
+    legs are."""
     library = locomotion.library
-    chart = np.stack([row[axis * LANES:axis * LANES + len(library.reference)] for axis in range(3)], -1)
-    points = contact_points(library.skeleton, *forward_kinematics(library.skeleton, row[HIPS_AT:LABELS_AT], library.reference @ exp(chart)))
-    return float(points[2 * foot:2 * foot + 2, 1].min()) - contact_height(library.skeleton)
+    chart = np.stack([rows[:, axis * LANES:axis * LANES + len(library.reference)] for axis in range(3)], -1)
+    places, turned = forward_kinematics(library.skeleton, rows[:, HIPS_AT:LABELS_AT], library.reference @ exp(chart))
+    hip, knee, ankle = (places[:, [library.skeleton.index(side + part) for side in ("Left", "Right")]] for part in ("UpLeg", "Leg", "Foot"))
+    whole = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
+    points = contact_points(library.skeleton, places[-1], turned[-1])
+    return float(points[2 * foot:2 * foot + 2, 1].min()) - contact_height(library.skeleton), float((np.linalg.norm(ankle - hip, axis=-1) / whole).min())
 
 
 def _about_the_hips(locomotion: Any, pose: Pose, turn: np.ndarray) -> np.ndarray:

@@ -10,6 +10,8 @@ from .kernel import joint_kernel
 
 REACH = 0.999
 """Legs straighten to this share of their length, and those that must give way a little earlier."""
+FOLDED = 0.34
+"""And they fold up no farther than that ankles are so near to hips, over how long legs are: knees bent by 140°, where recorded runners' are by 136."""
 SOFTNESS = 0.0045
 """Legs slow down over about this length before they are straight [m]."""
 
@@ -49,7 +51,7 @@ def carry_kernel(before, after, matrix, out):
 
 @kernel
 def leg_kernel(positions, orientations, hip, target, work):
-    """Bend the leg of joints hip, hip + 1 (knee), hip + 2 (ankle) so that its ankle meets `target`.
+    """Bend the leg of joints hip, hip + 1 (knee), hip + 2 (ankle) so that its ankle meets `target`, or is below it where the leg would fold up.
 
     The knee keeps its hinge; positions and orientations of thigh and shank are rewritten.
     work: (5, 3, 3) scratch.
@@ -60,7 +62,11 @@ def leg_kernel(positions, orientations, hip, target, work):
     pole, before, after, mid, end = work[0, 0], work[0, 1], work[0, 2], work[1, 0], work[1, 1]
     for i in range(3):  # the knee bends forward, which is +Z of the thigh
         pole[i] = orientations[hip, i, 2]
-    two_bone_kernel(a, upper, lower, target, pole, (1.0 - REACH) * (upper + lower), mid, end)
+    aim, least = work[1, 2], FOLDED * (upper + lower)
+    across = (target[0] - a[0]) ** 2 + (target[2] - a[2]) ** 2
+    aim[0], aim[2] = target[0], target[2]
+    aim[1] = min(target[1], a[1] - math.sqrt(max(least * least - across, 0.0))) if across < least * least else target[1]
+    two_bone_kernel(a, upper, lower, aim, pole, (1.0 - REACH) * (upper + lower), mid, end)
     _hinge(pole, a, c, before)
     _hinge(pole, a, end, after)
     _turn_bone(orientations[hip], a, b, before, a, mid, after, work)
