@@ -137,10 +137,12 @@ def turning(start: Start, leap: Leap | None) -> Start:
 
 def cramped(start: Start, leap: Leap | None, ground: np.ndarray, around: Sequence[Any]) -> Start:
     """The same start of one who has no room to run on beyond where he lands: before a wall, or an edge that he wants to stay on. ground: where x, z [m] he is."""
-    place = None if leap is None else leap.place
-    if leap is None or start.single is None or not len(around) or np.shape(place) != (3,) or not np.isfinite(place).all():
+    if leap is None or leap.place is None or start.single is None or not len(around):
         return start
-    there, high = np.asarray(place, float)[[0, 2]], float(np.asarray(place, float)[1])
+    place = np.asarray(leap.place, float)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        return start
+    there, high = place[[0, 2]], float(place[1])
     ahead = (there - ground[:2]) / max(float(np.hypot(*(there - ground[:2]))), 1e-9)
     for far in BEYOND:
         x, z = there + far * ahead
