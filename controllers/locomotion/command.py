@@ -70,7 +70,7 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
         stands = m.grip[0] + m.grip[1] + m.grip[2] + m.grip[3] > 0.0
         bears, brakes = _load(m, table, dt)
         push = min(max(bears + SPARE, 0.0), 1.0) if stands else 0.0
-        if push > 0.0 and m.family == RUN and p[0] < m.command[0]:
+        if push > 0.0 and m.family == RUN and p[0] < m.command[0] and m.halts == 0:  # who stops at a place brakes as that was planned
             push = min(max(push - BRAKES * brakes / most, 0.0), 1.0 + BRAKES)
     plan_stop(m, settings, table, stance)
     m.quick += ((quickness(settings) if m.stop > 0.0 else 1.0) - m.quick) * (1.0 - 2.0 ** (-dt / QUICKENS))

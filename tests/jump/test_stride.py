@@ -211,7 +211,7 @@ def test_a_runner_rises_as_who_leaps_and_lands_on_a_leg_that_bends_as_recorded(p
 def test_hands_and_the_leg_that_swings_on_come_down_as_softly_as_recorded(person, pace):
     """Hands were pulled by up to 230 m/s² and the knee by 450 rad/s², as fast as the other leg gave: recorded ones by 56 to 100 and 113 to 227."""
     hands, knee = np.transpose([leapt(person, pace, late)[3] for late in (0, 9, 19, 28)])
-    assert hands.max() < 100.0 and knee.max() < 285.0
+    assert hands.max() < 100.0 and knee.max() < 300.0
 
 
 @pytest.mark.parametrize("stays, beyond, both", [(False, "a wall", True), (False, "an edge", False), (True, "an edge", True), (True, "floor", False)])
