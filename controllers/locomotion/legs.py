@@ -65,7 +65,7 @@ def leg_kernel(positions, orientations, hip, target, work):
     aim, least = work[1, 2], FOLDED * (upper + lower)
     across = (target[0] - a[0]) ** 2 + (target[2] - a[2]) ** 2
     aim[0], aim[2] = target[0], target[2]
-    aim[1] = min(target[1], a[1] - math.sqrt(max(least * least - across, 0.0))) if across < least * least else target[1]
+    aim[1] = min(target[1], a[1] - math.sqrt(least * least - across)) if across < least * least else target[1]
     two_bone_kernel(a, upper, lower, aim, pole, (1.0 - REACH) * (upper + lower), mid, end)
     _hinge(pole, a, c, before)
     _hinge(pole, a, end, after)

@@ -135,7 +135,8 @@ class Aim:
             pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
             if given_up:
                 return Aim()
-            return replace(self._gone_round(state), waiting=self.waiting - pace * dt, offset=offset, rests=rests, tilt=tilt, **({"place": (x, z)} if stays else {}))
+            gone = self._gone_round(state)
+            return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt)
         moving, heading, place = _pace(state) > MOVING, None, None
         if moving:
             offset = _ring(state)
