@@ -63,7 +63,7 @@ SHIFTED = 0.6
 """On the spot the body goes back to where it stood until so long after its first foot left, in phase."""
 MOMENT = 0.004
 """How fast a turn begins is told over this long in phase."""
-AROUND = (0.05, 0.06)
+AROUND = (0.05, 0.12)
 """Splines are told evenly in phase, but phase runs five times as fast from the first toe-off on: from so long before it until so long after it
 shoulders turn on by the smoothest way in time that there is."""
 PIECES = 8
@@ -219,13 +219,20 @@ def way_kernel(m, turns, since):
     before, after = -AROUND[0], AROUND[1]
     if not before < since < after:
         return turn_kernel(m, turns, WAY_AT + 1, since)
-    slow, quick = turn_time(m, turns, 0.5 * before), turn_time(m, turns, 0.5 * after)  # [s] a phase
-    whole = after * quick - before * slow
-    t = (since * (slow if since < 0.0 else quick) - before * slow) / whole
+    begins, ends = _time_since(m, turns, before), _time_since(m, turns, after)
+    whole = ends - begins
+    t = (_time_since(m, turns, since) - begins) / whole
     a, b = turn_kernel(m, turns, WAY_AT + 1, before), turn_kernel(m, turns, WAY_AT + 1, after)
-    u = (a - turn_kernel(m, turns, WAY_AT + 1, before - MOMENT)) * whole / (MOMENT * slow)
-    v = (turn_kernel(m, turns, WAY_AT + 1, after + MOMENT) - b) * whole / (MOMENT * quick)
+    u = (a - turn_kernel(m, turns, WAY_AT + 1, before - MOMENT)) * whole / (MOMENT * turn_time(m, turns, before))
+    v = (turn_kernel(m, turns, WAY_AT + 1, after + MOMENT) - b) * whole / (MOMENT * turn_time(m, turns, after))
     return a + t * (u + t * (3.0 * (b - a) - 2.0 * u - v + t * (2.0 * (a - b) + u + v)))
+
+
+@kernel
+def _time_since(m, turns, since):
+    """How long after its first toe-off a turn is there in phase [s], by the rule of Simpson; negative before it."""
+    near = turn_time(m, turns, -1e-6 if since < 0.0 else 0.0)
+    return since * (near + 4.0 * turn_time(m, turns, 0.5 * since) + turn_time(m, turns, since)) / 6.0
 
 
 @kernel

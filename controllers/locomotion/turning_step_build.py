@@ -88,7 +88,7 @@ def samples(track: Track, library: Library, kind: int) -> list[Sample]:
         for k in range(len(frames) - 3):
             first = int(phases[k] % 1.0 > 0.25)
             a, b = frames[k], frames[k + 3]
-            if phases[k] % 0.5 > 0.01 or a < SHIFTS[kind] * RATE or not both[a - int(STILL[kind] * RATE):a].all():
+            if phases[k] % 0.5 > 0.01 or a < SHIFTS[kind] * RATE or not both[max(a - int(STILL[kind] * RATE), 0):a].all():
                 continue
             if kind == SPOT and not both[b:b + int(STILL[kind] * RATE)].all():
                 continue

@@ -5,7 +5,10 @@ import pytest
 
 from gambol.controllers.body import contact_points, feet_apart, forward_kinematics
 from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion import turning_step_build
+from gambol.controllers.locomotion.cycles import track
 from gambol.controllers.navigation import steer
+from playing import play
 
 FPS = 60
 
@@ -43,6 +46,25 @@ def test_who_goes_another_way_turns_there_in_two_steps(locomotion):
     assert all(strikes(states[:facing[n]])[:, n].sum() <= 2 for n in range(len(degrees)))
     assert (off(states, degrees)[-1] < 0.05).all()
     assert np.allclose([np.hypot(*state.velocity[:, [0, 2]].T) for state in states[-6:]], 1.3, atol=0.05)
+
+
+def test_the_foot_that_stands_is_where_a_turns_own_poses_have_it(locomotion):
+    """Recorded people pivot about a foot that stays: a turn whose poses slide on it pulls that leg straight, and its knee whips as it leaves."""
+    degrees = np.array([60.0, 90, 120, 150, 178, -60, -90, -120, -150, -178])
+    states = turned(locomotion, degrees, 1.3, 0.9)
+    memory = np.array([state.memory for state in states])
+    pivots = (memory["turn"] != 0.0) & (memory["turned"] > 0.0) & (memory["turned"] < 0.4)
+    assert pivots.any(0).all()
+    offset = np.linalg.norm(memory["offset"][..., :2], axis=-1)
+    stays = np.where(degrees > 0.0, offset[..., 1], offset[..., 0])
+    assert np.where(pivots, stays, 0.0).max() < 0.09  # [m]; 0.24 with a turn learnt of somebody who was walking already
+
+
+def test_who_walks_as_a_recording_begins_made_no_turn_from_rest(locomotion):
+    motion = play(locomotion, np.tile(np.array([0.7, 0.5, 0.0]), (6 * FPS, 1, 1)))
+    for begins in range(2 * FPS, 3 * FPS + 12, 6):  # at any phase of his walk
+        walk = track(motion.clip(0, locomotion.skeleton, "ours", begins))
+        assert not turning_step_build.samples(walk, locomotion.library, turning_step_build.WALKS)
 
 
 @pytest.mark.parametrize("degrees, soon, beyond", [(90.0, 0.95, 0.6), (-120.0, 1.12, 0.63), (150.0, 1.35, 0.56)])
