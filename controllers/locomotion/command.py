@@ -35,6 +35,9 @@ ON_SPOT = 0.5
 """Who is asked to turn and to go slower than this [m/s] …"""
 BRAKED, RUNS = 1.3, 2.3
 """… begins to turn between these speeds [m/s]."""
+STAGE = 0.7
+"""A blend's weights follow those of its command in two stages, each with this share of their half-life: smoothly, or a hand that is held elsewhere in the primitives of the
+new way is thrown as a stick is."""
 PIECES = 2
 """The way ahead is followed in so many steps before and after the moment whose command the blend will have come to."""
 
@@ -146,15 +149,24 @@ def _load(m, table, dt):
 
 
 @kernel
+def stages(settings, dt):
+    """What is left after dt of weights that follow others in a stage, and the share that the followed ones have then after two."""
+    x = dt * math.log(2.0) / (STAGE * settings.weight_halflife)
+    keep = math.exp(-x)
+    return keep, 1.0 - keep * (1.0 + x)
+
+
+@kernel
 def look_ahead(m, settings, table, later, ground, command):
     """Where the ground frame (3,) will be in `later` seconds, and the command (3,) that the blend's weights will have come to by then,
     if the same is asked for all the while."""
     rate, now = np.empty(3), np.empty(3)
     for i in range(3):
         ground[i], now[i], rate[i] = m.ground[i], m.command[i], m.rate[i]
-    # the moment whose command a low-pass that starts now has come to, if commands change evenly
-    lag = settings.weight_halflife / math.log(2.0)
-    moment = later / (1.0 - math.exp(-later / lag)) - lag
+    # the moment whose command weights that follow from now on have come to, if commands change evenly
+    lag = STAGE * settings.weight_halflife / math.log(2.0)
+    keep, spent = stages(settings, later)
+    moment = (later - 2.0 * lag + keep * (2.0 * lag + later)) / spent if spent > 1e-4 else later / 3.0
     left = time_to_stop(m, settings, table)
     for k in range(2 * PIECES):
         dt = (moment if k < PIECES else later - moment) / PIECES

@@ -101,7 +101,7 @@ class Locomotion(Controller):
         ground = grounded(ground)
         memory = np.zeros(ground.shape[:-1], self._dtype)
         memory["ground"] = ground
-        memory["weights"][..., self.library.rest] = 1.0
+        memory["weights"][..., self.library.rest] = memory["led"][..., self.library.rest] = 1.0
         memory["settled"] = 1
         memory["phase"] = 0.25
         memory["row"][..., DURATION_AT] = memory["stretch"] = memory["pace"] = memory["quick"] = 1.0

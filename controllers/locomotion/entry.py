@@ -179,6 +179,7 @@ def _set_off(locomotion: Any, memory: np.ndarray, velocity: np.ndarray, phase: f
     stretch = float(np.clip(velocity[0] / query[0], LEAST_STRETCH, MOST_STRETCH)) if query[0] > WALKS_ON else 1.0
     memory["weights"] = 0.0
     memory["weights"][members] = weights
+    memory["led"] = memory["weights"]
     memory["family"] = RUN if running else WALK
     memory["command"] = memory["velocity"] = query * [stretch, 1.0, 1.0]
     memory["settled"], memory["phase"] = 0, phase

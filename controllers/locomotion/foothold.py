@@ -11,7 +11,7 @@ import math
 
 from ..body import spring_kernel
 from ..compiled import kernel
-from .command import look_ahead, reached
+from .command import look_ahead, reached, stages
 from .control_space import SCALE
 from .foot_lines import away_kernel, need_of_room, own_side, with_toe
 from .foot_points import foot_points
@@ -77,11 +77,11 @@ def _foresee(m, foot, later, settings, space, table, body, legs, ahead):
     command[0] = reached(space, command[0] / SCALE[0], m.family) * SCALE[0]
     command[1] /= pivots(m)
     simplex = locate(m, space, command, settings, ahead.barycentric, target, moved)
-    stays = 2.0 ** (-later / settings.weight_halflife)
+    keep, spent = stages(settings, later)
     for i in range(m.weights.shape[0]):
-        ahead.weights[i] = stays * m.weights[i]
+        ahead.weights[i] = keep * m.weights[i] + (1.0 - keep - spent) * m.led[i]
     for i in range(4):
-        ahead.weights[space.vertices[simplex, i]] += (1.0 - stays) * ahead.barycentric[i]
+        ahead.weights[space.vertices[simplex, i]] += spent * ahead.barycentric[i]
     series_kernel(table, ahead.weights, (SWING[m.family] + 0.5 * foot) % 1.0, ahead.row)
     _come_down(m, foot, later, body, legs, ahead)
 

@@ -130,7 +130,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("command", "f4", 3), ("rate", "f4", 3), ("asked", "f4", 3),  # the shaped wish, its rate, and what it goes to
         ("family", "i4"), ("wanted", "i4"),  # WALK or RUN: what is, and what the wish asks for
         ("simplex", "i4", 2), ("stretch", "f4"),  # last simplex in each one's space; the command over what its gaits reach
-        ("weights", "f4", -(-primitives // 128) * 128), ("phase", "f4"),
+        ("weights", "f4", -(-primitives // 128) * 128), ("led", "f4", -(-primitives // 128) * 128), ("phase", "f4"),  # the blend's, and those that they follow
         ("settled", "i4"),  # at rest, both feet in place
         ("drift", "f4", 2),  # lateral, forward: what standing feet say beyond the nominal velocity
         ("points", "f4", (4, 3)),  # the blend's contact points in the ground frame

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
-from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command
+from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command, stages
 from .control_space import SCALE
 from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
@@ -114,26 +114,30 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     """Choose the family, locate the command in its space, low-pass the weights."""
     since = _change(m, table, changes, settings.agility, dt) if m.wanted != m.family and not m.settled else -1.0
     switch = since >= 0.0
-    keep = 2.0 ** (-dt / settings.weight_halflife)
+    keep, spent = stages(settings, dt)
     space = walk if m.family == WALK else run
     for i in range(3):
-        c[i] = 0.0 if m.waits or m.turn != 0.0 and m.spot else m.command[i]
-    c[0] = reached(space, c[0] / SCALE[0], m.family) * SCALE[0]
-    stretch = min(max(m.command[0] / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
+        c[i] = 0.0 if m.waits or m.turn != 0.0 and m.spot else 0.5 * (m.velocity[i] + m.command[i])  # in the middle of the step
+    ahead = c[0]
+    c[0] = reached(space, ahead / SCALE[0], m.family) * SCALE[0]
+    stretch = min(max(ahead / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
     m.stretch += (stretch - m.stretch) * (1.0 - 2.0 ** (-dt / STRETCH_HALFLIFE))
     c[1] /= pivots(m)
     simplex = locate(m, space, c, settings, b, p, q)
     vertices = space.vertices[simplex]
     m.simplex[m.family] = simplex
     if switch:
-        keep = 0.0
+        keep, spent = 0.0, 1.0
     total = 0.0
     for i in range(m.weights.shape[0]):  # what fades is dropped, but not what grows from nothing
-        m.weights[i] *= keep
-        if m.weights[i] < ACTIVE and not _one_of(i, vertices):
-            m.weights[i] = 0.0
+        m.weights[i], m.led[i] = keep * m.weights[i] + (1.0 - keep - spent) * m.led[i], keep * m.led[i]
+        if m.led[i] < ACTIVE and not _one_of(i, vertices):
+            m.led[i] = 0.0
+            if m.weights[i] < ACTIVE:
+                m.weights[i] = 0.0
     for i in range(4):
-        m.weights[vertices[i]] += (1.0 - keep) * b[i]
+        m.led[vertices[i]] += (1.0 - keep) * b[i]
+        m.weights[vertices[i]] += spent * b[i]
     for i in range(m.weights.shape[0]):
         total += m.weights[i]
     for i in range(m.weights.shape[0]):
