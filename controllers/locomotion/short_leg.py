@@ -66,9 +66,7 @@ def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work
             orientations[a, i, k] = turned[i, k]
             ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
     distance = distance_kernel(positions[hip], ankle)
-    down = ankle[1] - positions[hip, 1]
-    lowered = math.sqrt(max(distance * distance + (2.0 * down + m.pelvis) * m.pelvis, 0.0))
-    if swing_progress(m, foot) > LATE and lowered > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes, and the pelvis lowered: let go before it tears
+    if swing_progress(m, foot) > LATE and distance > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes, and the pelvis lowered: let go before it tears
         m.torn[foot] = 1
     if distance > length:
         share = (length + firm * (distance - length)) / distance
