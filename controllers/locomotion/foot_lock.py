@@ -23,7 +23,7 @@ from .kernel import LABELS_AT
 from .last_stride import BESIDE
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .root_motion import as_runner, sooner
-from .short_leg import give_way
+from .short_leg import STRAINED, give_way
 from .memory import WALK
 from .swing import SWING, swing_kernel, swing_progress
 from ..navigation.passing import STEP
@@ -56,8 +56,6 @@ PELVIS_DROP = 0.05
 """The most that short legs may lower the pelvis [m]."""
 DOWN, BENDS = 0.12, 0.012
 """Whoever stands on a slope stands lower, by the first at most [m], for both heels to be down: on legs that are the second shorter than straight."""
-STRAINED = (0.35, 0.8)
-"""A ball lets go, the more the farther its heel had to rise [rad] between these."""
 LEAVES, LENT = -1.0, 0.3
 """A ball whose label falls faster than this [1/s], its heel free by more than the second, does not hold on again: its leg would be stretched, and whip."""
 ANCHOR_HALFLIFE = 0.03

@@ -19,6 +19,7 @@ from .foretold_way import foretell_way
 from .kernel import HIPS_AT, LANES, pose_kernel, series_kernel
 from .last_stride import bring_together, step_first
 from .root_motion import locate, time_ahead
+from .short_leg import STRAINED
 from .turning_back import pivots
 from .turning_step import END as TURNED, turn_ahead, turned_row
 from .swing import SWING, other_line
@@ -41,7 +42,8 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt
     for foot in range(2):
         swing = SWING[m.family]
         left = (swing + 0.5 * foot - m.phase) % 1.0
-        coming = left < 0.5 * (1.0 + swing) or m.torn[foot] == 1  # one that is torn off early in its stance comes down with the next strike
+        # one that is torn off, or let go as its leg is strained, early in its stance comes down with the next strike
+        coming = left < 0.5 * (1.0 + swing) or m.torn[foot] == 1 or m.rise[foot] > STRAINED[0]
         ahead.shares[foot] = 0.0
         ahead.until[foot] = time_ahead(m, table, left) if coming else 0.0
         lifts = coming and max(m.grip[2 * foot], m.grip[2 * foot + 1]) < 1.0

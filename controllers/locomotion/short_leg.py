@@ -29,6 +29,8 @@ BENT = 0.006
 """… and so much shorter than straight a leg is then [m], since a knee that leaves from straight must whip."""
 EARLIER = 0.15
 """A foot that swings farther than the blend's does straightens its leg over this share of that, so that its knee brakes before it locks."""
+STRAINED = (0.35, 0.8)
+"""A ball lets go, the more the farther its heel had to rise [rad] between these."""
 TORN, LATE = 0.02, 1.7
 """A foot lets go that its leg is this much too short for [m], once it stood for long enough for its body to have come down
 to it: this many times as long as a swing after it left."""

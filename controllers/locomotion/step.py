@@ -117,7 +117,7 @@ def _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c):
     keep, spent = stages(settings, dt)
     space = walk if m.family == WALK else run
     for i in range(3):
-        c[i] = 0.0 if m.waits or m.turn != 0.0 and m.spot else 0.5 * (m.velocity[i] + m.command[i])  # in the middle of the step
+        c[i] = 0.0 if m.waits or m.turn != 0.0 and m.spot else m.command[i]
     ahead = c[0]
     c[0] = reached(space, ahead / SCALE[0], m.family) * SCALE[0]
     stretch = min(max(ahead / c[0], LEAST_STRETCH), MOST_STRETCH) if c[0] > 0.0 else 1.0
