@@ -74,8 +74,8 @@ def test_a_start_broken_off_fades(locomotion):
 
 
 def recorded(locomotion, wish):
-    """A start of Gambol's own as if it had been recorded."""
-    motion = set_off(locomotion.tuned(Settings(idle=0.0, gaze=0.0, breath=0.0)), wish, 3.5, 1.0)
+    """A start of Gambol's own as if it had been recorded, of somebody who is in no hurry."""
+    motion = set_off(locomotion.tuned(Settings(agility=0.9, idle=0.0, gaze=0.0, breath=0.0)), wish, 3.5, 1.0)
     return track(motion.clip(0, locomotion.skeleton, "ours"))
 
 
