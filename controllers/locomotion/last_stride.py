@@ -84,8 +84,8 @@ def plan_stop(m, settings, table, stance):
     if m.waits:
         return
     if m.stop <= 0.0:
-        if m.halts == CHOSE:  # he has stopped there, and steps once more
-            m.halts = NOWHERE
+        if m.halts == CHOSE:  # he has stopped, and steps once more: where he is
+            m.halt[0], m.halt[1] = m.ground[0], m.ground[1]
         if m.family != WALK or speed < LEAST and m.halts < STOPS:
             return
         far = to_halt(m) if m.halts >= STOPS else 0.0
