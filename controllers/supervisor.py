@@ -164,7 +164,7 @@ class Supervisor(Controller):
             raise ValueError(f"the controller {duty.active!r} gave a pose that is not finite")
         arms = None  # who else acts begins with them as they are
         if duty.active == self.first and (len(intent.around) or duty.arms is not None):
-            pose, arms = drawn_on(self.skeleton, pose, after.ground, intent.around, duty.arms, dt)
+            pose, arms = drawn_on(self.skeleton, pose, after.ground, intent.around, duty.arms, float(np.hypot(after.velocity[0], after.velocity[2])), dt)
         duty = but(duty, memory=after.memory, strike=kept, arms=arms)
         return but(after, pose=pose, memory=duty, previous=before, elapsed=dt, going=way), pose
 

@@ -39,8 +39,8 @@ SPARES = 0.97
 """Straight up a body is asked for this share of how high its muscles would take it at most."""
 SHIFTS = 8.0
 """Rate [1/s] with which the ground frame comes under the centre of mass, from where it was."""
-DRAWN = 0.58
-"""Who falls draws his arms in beside what he falls past, in so long [s]."""
+DRAWN = 0.58, 0.15
+"""Who falls draws his arms in beside what he falls past, in the first time [s]; who has landed before something, in the second."""
 ABOUT, SHARES = (0.43, 2.9, 0.75), (0.95, 0.05, 0.15)
 """How far bodies leap from a stand, over their size, by how high they rise over it; and what share of that behind, more ahead and less aside: within 0.2 m of
 what is found for bodies of 0.7 to 2.1 m, weak and strong."""
@@ -270,7 +270,7 @@ class Jump(Reach, Controller):
             state = self._followed(state, intent)
         if isinstance(state.memory, Crouching):
             after = crouched(self, state, intent.leap or intent.aim, dt, intent.around)
-            pose = self._drawn_in(after.pose, after.ground, intent.around, after.memory.time)
+            pose = self._drawn_in(after.pose, after.ground, intent.around, after.memory.time / DRAWN[0])
             return replace(after, pose=pose), pose
         jumping: Jumping = state.memory
         made, time = jumping.plan, min(jumping.time + dt, jumping.plan.duration)
@@ -292,16 +292,16 @@ class Jump(Reach, Controller):
                         memory=replace(jumping, time=time, stood=np.array([*ground, floor])), floor=floor)
         if made.take_off < time < made.touch_down and intent.around and jumping.hits < MOST_HITS:
             after = self._hit(after, intent.around, dt)
-        if jumping.fault:  # a leap's sweep saw to its arms
-            pose = self._drawn_in(pose, under, intent.around, time)
+        if jumping.fault or landed:  # a leap's sweep saw to its arms, but who has landed goes on to what he would stop before
+            pose = self._drawn_in(pose, under, intent.around, time / DRAWN[0] if jumping.fault else (time - made.touch_down) / DRAWN[1])
             after = replace(after, pose=pose)
         return after, pose
 
-    def _drawn_in(self, pose: Pose, ground: np.ndarray, around: Sequence[Any], time: float) -> Pose:
-        """A pose with its arms drawn in beside what stands about, the more the longer it has been so [s], up to DRAWN."""
+    def _drawn_in(self, pose: Pose, ground: np.ndarray, around: Sequence[Any], share: float) -> Pose:
+        """A pose with its arms drawn in beside what stands about, wholly from a share of 1 on."""
         if not around:
             return pose
-        near, share = drawn_in(self.skeleton, pose, ground, around), min(time / DRAWN, 1.0)
+        near, share = drawn_in(self.skeleton, pose, ground, around), min(share, 1.0)
         root, local = np.empty(3), np.empty_like(pose.rotations)
         between_kernel(pose.root, near.root, pose.rotations, near.rotations, share**2 * (3.0 - 2.0 * share), root, local)
         return Pose(root, local)

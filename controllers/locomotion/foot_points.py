@@ -53,3 +53,12 @@ def shown_kernel(m, k, out):
         x, z = m.points[k, 0] - ball[0], m.points[k, 2] - ball[2]
         out[0] += c * x + s * z
         out[1] += c * z - s * x
+
+
+@kernel
+def ball_kernel(m, foot, out):
+    """Where a foot's ball is shown: x, z in the world, into `out` (2,)."""
+    shown_kernel(m, 2 * foot + 1, out)
+    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
+    x, z = out[0], out[1]
+    out[0], out[1] = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z

@@ -84,6 +84,8 @@ def plan_stop(m, settings, table, stance):
     if m.waits:
         return
     if m.stop <= 0.0:
+        if m.halts == CHOSE:  # he has stopped, and steps once more: where he is
+            m.halt[0], m.halt[1] = m.ground[0], m.ground[1]
         if m.family != WALK or speed < LEAST and m.halts < STOPS:
             return
         far = to_halt(m) if m.halts >= STOPS else 0.0
@@ -227,7 +229,7 @@ def bring_together(m, foot, stance):
     """Lead the foot that comes down last to where it belongs beside the other, into m.land; and that one before, where there is a place
     to stop at, to where it belongs there."""
     other, ball, point = 3 - 2 * foot, 2 * foot + 1, np.empty(2)
-    if m.stop <= 0.0:
+    if m.stop <= 0.0 and not m.waits:
         return
     if m.stop <= STRIKE and foot == _last(m):
         shown_kernel(m, other, point)

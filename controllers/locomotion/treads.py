@@ -13,6 +13,7 @@ import numpy as np
 from ..compiled import kernel
 from ..navigation.passing import STEP
 from .beside_walls import out_of_walls
+from .foot_points import ball_kernel
 from .memory import RUN, WALK
 from .root_motion import as_runner, cadence_kernel
 from .tops import SAME, ground_kernel
@@ -114,7 +115,8 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         along_x, along_z = along_x / speed, along_z / speed
     else:
         along_x, along_z = s, c
-    other, here, line, aside = m.base[1 - foot], np.empty(3), np.empty((3, 2)), np.empty(2)
+    other, here, line, aside, place = m.base[1 - foot], np.empty(3), np.empty((3, 2)), np.empty(2), np.empty(2)
+    ball_kernel(m, 1 - foot, place)
     for i in range(3):
         back = (FOOT, 0.0, -TOE)[i]
         line[i, 0], line[i, 1] = x - back * s, z - back * c
@@ -126,17 +128,28 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         far = abs(shift) + abs(beside)
         if far >= least:
             break
-        stands = under_kernel(m, tops, floor, x + shift * along_x + beside * along_z, z + shift * along_z - beside * along_x, c, s, here)
+        there_x, there_z = x + shift * along_x + beside * along_z, z + shift * along_z - beside * along_x
+        stands = under_kernel(m, tops, floor, there_x, there_z, c, s, here)
         worse = WORTH[stands] + (DEAR * max(abs(here[0] - other) - EASY, 0.0) if here[1] == 0.0 and here[2] == 0.0 else 0.0)
-        if stands > NONE and abs(here[0] - other) <= STEP and far + worse < least:
+        if stands > NONE and far + worse < least and abs(steps_kernel(m, foot, here, there_x - place[0], there_z - place[1])) <= STEP:
             best, left, least, most = shift, beside, far + worse, stands
             out[0], out[1], out[2] = here[0], here[1], here[2]
     m.land[foot, 0], m.land[foot, 1] = aside[0] + best * along_x + left * along_z, aside[1] + best * along_z - left * along_x
     if most == NONE:
         under_kernel(m, tops, floor, x, z, c, s, out)
-        if out[0] < other - STEP and speed > SLOW:  # over an edge: as the other one, until it is over it, too
+        if speed > SLOW and steps_kernel(m, foot, out, x - place[0], z - place[1]) < -STEP:  # over an edge: as the other one, until it is over it, too
             out[0], out[1], out[2] = other, 0.0, 0.0
     return most, best, left, speed
+
+
+@kernel
+def steps_kernel(m, foot, ground, x, z):
+    """How much higher a ground (3,) is than the other foot's [m] that is x, z nearer, but for what a slope on which either lies leads up or down: runners' strides on one are more than a step."""
+    high = ground[0] - m.base[1 - foot]
+    here, there = high - ground[1] * x - ground[2] * z, high - m.tilt[1 - foot, 0] * x - m.tilt[1 - foot, 1] * z
+    if abs(here) < abs(high):
+        high = here
+    return there if abs(there) < abs(high) else high
 
 
 @kernel

@@ -14,13 +14,13 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation.passing import STEP
 from .before_edges import edge_ahead
-from .foot_points import shown_kernel
+from .foot_points import ball_kernel, shown_kernel
 from .memory import WALK
 from .minimum_jerk import smooth
 from .root_motion import sooner
 from .swing import SAMPLES, line_ahead, swept_line
 from .tops import SAME, ground_kernel
-from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, under_kernel
+from .treads import FOOT, TOE, TURNS, come_down, most_speed, on_stairs, steps_kernel, under_kernel
 
 ASTRAY = 0.06
 """A foot that came down farther than this from where it was to stands on what lies there [m]."""
@@ -38,6 +38,8 @@ TILT_HALFLIFE = 0.05
 GRAVITY = 9.81
 LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
+STROLLS, RUNS = 1.4, 2.2
+"""A walker's level rises and sinks with a slope by itself, too, the more the faster he is between these [m/s]: a run that is let go of becomes a walk as fast."""
 LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
 RISER = 0.06
@@ -72,11 +74,11 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         m.climb[foot] = m.climb[foot] if progress < 1.0 and not firm else 0.0
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
-                _ball(m, foot, place)
+                ball_kernel(m, foot, place)
                 c, s, x, z = math.cos(m.ground[2]), math.sin(m.ground[2]), place[0], place[1]
                 if m.aimed[foot] == 0 or math.hypot(x - aim[0], z - aim[1]) > ASTRAY:
                     under_kernel(m, tops, floor, x, z, c, s, under)
-                    if under[0] < m.base[1 - foot] - STEP and _upheld(m, tops, floor, 1 - foot, place):
+                    if under[0] < m.base[1 - foot] - STEP and _upheld(m, tops, floor, 1 - foot, place) and steps_kernel(m, foot, under, x - place[0], z - place[1]) < -STEP:
                         under[0], under[1], under[2] = m.base[1 - foot], 0.0, 0.0
                 else:
                     under[0] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
@@ -98,7 +100,10 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         come_down(m, tops, floor, foot, progress, under)
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
-        rising = min(_along(m, foot, place), under[0]) if under[0] > m.left[foot] else path
+        along = _along(m, foot, place)
+        rising = min(along, under[0])
+        if under[0] <= m.left[foot]:  # down a slope, which it left: along it
+            rising = path = min(path, max(along, under[0]))
         over = _between(m, body, height, ahead, goes, tops, floor, foot, max(under[0], m.left[foot]), line)
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
@@ -133,12 +138,13 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
 
 @kernel
 def _climbs(m):
-    """How fast a runner's level rises with a slope [m/s], which would else follow his feet too late for legs to have room."""
-    if m.family == WALK:
+    """How fast the level of who runs, or still walks as fast, rises with a slope [m/s], which would else follow his feet too late for legs to have room."""
+    share = smooth((math.hypot(m.velocity[0], m.velocity[2]) - STROLLS) / (RUNS - STROLLS)) if m.family == WALK else 1.0
+    if share <= 0.0:
         return 0.0
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     x, z = c * m.velocity[2] + s * m.velocity[0], c * m.velocity[0] - s * m.velocity[2]
-    return 0.5 * ((m.tilt[0, 0] + m.tilt[1, 0]) * x + (m.tilt[0, 1] + m.tilt[1, 1]) * z)
+    return 0.5 * share * ((m.tilt[0, 0] + m.tilt[1, 0]) * x + (m.tilt[0, 1] + m.tilt[1, 1]) * z)
 
 
 @kernel
@@ -184,7 +190,7 @@ def _between(m, body, height, ahead, goes, tops, floor, foot, highest, line):
 def _upheld(m, tops, floor, foot, place):
     """Whether a foot has the ground under it that it stands on: who set one foot over an edge has the other one still there."""
     ground = np.empty(3)
-    _ball(m, foot, place)
+    ball_kernel(m, foot, place)
     ground_kernel(tops, place[0], place[1], floor, m.level, ground)
     return ground[0] > m.base[foot] - STEP
 
@@ -192,7 +198,7 @@ def _upheld(m, tops, floor, foot, place):
 @kernel
 def _left_at(m, foot, place):
     """Note the ground that a foot is on, and where its ball is, as what it will have left."""
-    _ball(m, foot, place)
+    ball_kernel(m, foot, place)
     m.left[foot], m.left_at[foot, 0], m.left_at[foot, 1] = m.base[foot], place[0], place[1]
 
 
@@ -208,22 +214,13 @@ def leave_level(m):
 @kernel
 def _along(m, foot, place):
     """How high the ground that a foot has left lies under it now, if it goes on as it rose there."""
-    _ball(m, foot, place)
+    ball_kernel(m, foot, place)
     return m.left[foot] + m.tilt[foot, 0] * (place[0] - m.left_at[foot, 0]) + m.tilt[foot, 1] * (place[1] - m.left_at[foot, 1])
 
 
 @kernel
-def _ball(m, foot, place):
-    """Where a foot's ball is shown: x, z in the world, into `place` (2,)."""
-    shown_kernel(m, 2 * foot + 1, place)
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x, z = place[0], place[1]
-    place[0], place[1] = m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z
-
-
-@kernel
 def _beneath(m, tops, floor, foot, highest, place):
-    """How high the ground lies that a swinging foot is over, from its heel to its toes' end and a little on: none above `highest`."""
+    """How high the ground lies that a swinging foot is over, from its heel to its toes' end and a little on, as what its ball is to be over: a sole lies as its foot is tilted. None above `highest`."""
     ground, high = np.empty(3), -1e9
     shown_kernel(m, 2 * foot, place)
     heel_x, heel_z = place[0], place[1]
@@ -233,7 +230,8 @@ def _beneath(m, tops, floor, foot, highest, place):
         along = (0.0, 1.0, 1.0 + TOE / FOOT, 1.0 + (TOE + REACHES) / FOOT)[k]
         x, z = heel_x + along * (place[0] - heel_x), heel_z + along * (place[1] - heel_z)
         if ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground) and ground[0] < highest:
-            high = max(high, ground[0])
+            x, z = x - place[0], z - place[1]
+            high = max(high, ground[0] - m.tilt[foot, 0] * (c * x + s * z) - m.tilt[foot, 1] * (c * z - s * x))
     return high
 
 

@@ -36,8 +36,8 @@ FAR = 0.75
 LOW = 0.15
 """Arms that clear the top or underside of something by so much [m] are not drawn in at all."""
 
-FAST, HALFLIFE = 4.0, 0.08
-"""Arms that would have to come in or go out faster than this [rad/s] do so with this half-life [s]."""
+FAST, NEARER, HALFLIFE = 4.0, 3.0, 0.08
+"""Arms that would have to go out faster than the first [rad/s], or come in by so much more for each m/s that the body goes [rad/m], as of who comes to a wall at a run, do so with this half-life [s]."""
 GONE = 1e-4
 """Less than this is nothing [rad]."""
 
@@ -55,9 +55,9 @@ class Arms:
 FREE = Arms(*np.zeros((3, 2, 3)))
 
 
-def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any], arms: Arms | None, dt: float) -> tuple[Pose, Arms | None]:
+def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any], arms: Arms | None, speed: float, dt: float) -> tuple[Pose, Arms | None]:
     """The pose as of `drawn_in`, without a jump where things came, went or moved in the step of dt seconds that led to it. arms: what this gave a step before; None of who was
-    free."""
+    free. speed: of the body [m/s]."""
     near = drawn_in(skeleton, pose, ground, around)
     if arms is None and near is pose:
         return pose, None
@@ -65,7 +65,8 @@ def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequenc
     own = np.asarray(pose.rotations, float)[upper]
     wanted = log(near.rotations[upper] @ np.swapaxes(own, -1, -2)) if near is not pose else FREE.wanted
     change = wanted - arms.wanted
-    sudden = np.linalg.norm(change, axis=-1, keepdims=True) > FAST * dt
+    inwards = np.linalg.norm(wanted, axis=-1, keepdims=True) > np.linalg.norm(arms.wanted, axis=-1, keepdims=True)
+    sudden = np.linalg.norm(change, axis=-1, keepdims=True) > (FAST + NEARER * speed * inwards) * dt
     left, rate = settle(arms.left - sudden * change, arms.rate, HALFLIFE, dt)
     if np.abs(left).max() < GONE:
         return near, None if near is pose else Arms(wanted, FREE.left, FREE.rate)
