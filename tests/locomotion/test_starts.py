@@ -74,12 +74,13 @@ def test_a_start_broken_off_fades(locomotion):
 
 
 def recorded(locomotion, wish):
-    """A start of Gambol's own as if it had been recorded, of somebody who is in no hurry."""
-    motion = set_off(locomotion.tuned(Settings(agility=0.9, idle=0.0, gaze=0.0, breath=0.0)), wish, 3.5, 1.0)
+    """A start of Gambol's own as if it had been recorded."""
+    motion = set_off(locomotion.tuned(Settings(idle=0.0, gaze=0.0, breath=0.0)), wish, 3.5, 1.0)
     return track(motion.clip(0, locomotion.skeleton, "ours"))
 
 
-def test_what_walks_by_the_blend_has_nothing_beyond_it(locomotion):
+def test_what_walks_by_the_blend_has_nothing_beyond_it(locomotion, monkeypatch):
+    monkeypatch.setattr(first_stride_build, "STEPS", 0.28)  # his first foot is away for 0.29 s, recorded ones for longer
     library = replace(locomotion.library, start=None)
     space = locomotion.walk
     own, = first_stride_build.samples(recorded(Locomotion(library), (0.9, 0, 0)), library, space)
