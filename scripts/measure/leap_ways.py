@@ -38,7 +38,7 @@ RATES, ARCS = (30, -30, 45, -45, 60, -60), (1.3, 2.2, 3.0)
 """How fast a stick turns [°/s], and how fast somebody goes then [m/s]."""
 ASKEW, PACES = (45, -45, 90, -90, 135, -135, 180), (1.3, 3.0)
 """Ways to go with the heading held [° to the left], and how fast hands ask for it [m/s]."""
-SLOW = 0.4, 0.65, 0.8
+SLOW = 0.4, 0.5, 0.65, 0.8, 0.9
 """Slow walks straight ahead [m/s]."""
 SLOPES, UPON = (10, 15), {"up": 0.0, "down": 180.0, "across": 90.0}
 """How steep ramps are [°], and which way they are gone, from uphill [°]."""
