@@ -29,8 +29,8 @@ FEET = "left", "right", "both"
 HIGH, SINKS = 0.012, 0.2
 """But not while it is higher over the floor than the first [m] and comes down faster than the second [m/s], at standard height: nobody pushes off a foot that is still in
 the air, whatever its contacts say."""
-SLOWEST = 0.25
-"""Who is slower than this [m/s] leaps on the spot."""
+SLOWLY = 0.25, 1.1
+"""Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as walkers and runners do."""
 CLEAR = 0.025
 """A foot that has just left the floor, and is no higher than this over it [m], at standard height, would come into it as its body goes down."""
 UP = 0.06
@@ -128,7 +128,7 @@ def start_of(physique: Physique, state: CharacterState, crouched: bool = False) 
 
 def along_of(state: CharacterState, leap: Leap | None) -> bool:
     """Whether a leap is one of somebody who goes slowly, aside or backward, on his way."""
-    return leap is not None and leap.along and SLOWEST < float(np.hypot(state.velocity[0], state.velocity[2])) < RUNNING
+    return leap is not None and leap.along and SLOWLY[0] < float(np.hypot(state.velocity[0], state.velocity[2])) < SLOWLY[1]
 
 
 def off_one(physique: Physique, start: Start, leap: Leap | None, state: CharacterState, gravity: float) -> Start:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import RUNNING, SETS_FEET
+from gambol.controllers.jump import SETS_FEET, SLOWLY
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top
@@ -56,7 +56,7 @@ PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 TURNS = 0.3
 """That passes at this pace while a standing body still turns to the ring, sets its feet, or finds out how to leap: half a turn takes 2.2 s."""
-SLOWLY = 0.6
+LONGER = 0.6
 """And at this while somebody who goes slowly, aside or backward comes to a foot that carries him on: not every one does, and his steps take half a second."""
 ASKEW = 0.35
 """A standing body that faces the ring to within this [rad] jumps as it stands; else it turns in the air."""
@@ -137,7 +137,7 @@ class Aim:
                 offset = _ring(state)
                 return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
-            pace = 0.0 if aloft else SLOWLY if self._goes(state) else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
+            pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
             if given_up:
                 return Aim()
             gone = self._gone_round(state)
@@ -165,7 +165,7 @@ class Aim:
 
     def _goes(self, state: CharacterState) -> bool:
         """Whether somebody goes on by a small leap, slowly, aside or backward."""
-        return self.moving and self.even and _pace(state) < RUNNING
+        return self.moving and self.even and _pace(state) < SLOWLY[1]
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
