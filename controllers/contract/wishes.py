@@ -51,6 +51,8 @@ class Leap:
     heading: [rad] to land in, turning there the shorter way round and looking where one goes; None to face on as one does.
     on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or to walk or run on.
     stays: whether who walks lands on both feet, to come to rest; else he walks on, on one. A runner runs on.
+    along: whether who walks, however slowly, and aside or backward, too, leaps the way he goes, about as far as that carries him, off one foot onto the other, and
+    goes on; there is no place then. Who stands leaps straight up.
     how: along which arc it was found that it can be made, see `Controller.found`, which is tried first; None where that was not.
     """
 
@@ -61,6 +63,7 @@ class Leap:
     on: Literal["left", "right", "both"] | None = None
     how: Any = None
     stays: bool = False
+    along: bool = False
 
     def __post_init__(self):
         if self.place is not None:
@@ -70,10 +73,12 @@ class Leap:
                 _number(f"a leap's {name}", getattr(self, name))
         if not 0.0 <= self.slack < math.inf:
             raise ValueError(f"a leap's slack must be 0 m or more, got {self.slack!r}")
+        if self.along and self.place is not None:
+            raise ValueError(f"a leap along the way that one goes has no place, got {self.place!r}")
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
-        return (other is not None and (self.airtime, self.slack, self.heading, self.on, self.stays) == (other.airtime, other.slack, other.heading, other.on, other.stays)
+        return (other is not None and (self.airtime, self.slack, self.heading, self.on, self.stays, self.along) == (other.airtime, other.slack, other.heading, other.on, other.stays, other.along)
                 and (self.place is None) == (other.place is None) and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
 
 

@@ -12,15 +12,15 @@ import numpy as np
 
 from ..body import Pose, Skeleton
 from ..contract import CharacterState, Controller, Intent, Leap, Status, given, known, level, seconds
-from ..navigation import floor_at
+from ..navigation import STEP, floor_at
 from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Plan, between_kernel, fall, over_nothing, steps_over, struck
+from .motion import Carried, Plan, between_kernel, carried, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, astride, cramped, landed, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
+from .starting import FEET, Jumping, along_of, astride, cramped, goes, landed, off_one, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
 LEVELS = 0.05
 """Who may land beside a place lands as high or low as it lies, to so much [m]."""
@@ -88,7 +88,7 @@ class Jump(Reach, Controller):
             return HOLDS
         if intent.leap is None:
             return READY if intent.aim is not None and self._stands(state) and not self._sets_feet(state) else 0.0
-        return READY if ready(self.physique, state, intent.around) and self._on_its_floor(state, intent.around) else 0.0
+        return READY if self._ready(state, intent.leap, intent.around) and self._on_its_floor(state, intent.around) else 0.0
 
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,
@@ -100,7 +100,7 @@ class Jump(Reach, Controller):
         began = self._began(state, intent)
         if began is not None:
             return began
-        if self._sets_feet(state):
+        if self._sets_feet(state) and not along_of(state, intent.leap):
             raise Refused(SETS_FEET, onward=Onward(None))
         return replace(state, memory=Jumping.begun(self.sought(state, intent, onward), state, intent.leap))
 
@@ -198,7 +198,7 @@ class Jump(Reach, Controller):
             start, place, floor, _ = self._meant(state, intent.leap, intent.around)
         except Refused as reason:
             return str(reason)
-        return self.attempt(start, place, floor, intent.leap.airtime, intent.around, ask=ask)[1] or SETS_FEET * self._sets_feet(state)
+        return self.attempt(start, place, floor, intent.leap.airtime, intent.around, ask=ask)[1] or SETS_FEET * (self._sets_feet(state) and not along_of(state, intent.leap))
 
     def _meant(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> tuple[Start, np.ndarray, float, np.ndarray]:
         """From where a leap goes off, to which place (3,), off which floor [m], and where (3,) it stands. Refused where nobody can leap so from anywhere."""
@@ -208,7 +208,22 @@ class Jump(Reach, Controller):
             raise Refused(f"a leap lands on 'left', 'right' or 'both' to hop on, or None to stand, got {leap.on!r}")
         start, floor = self.placed(state, leap, around)
         here = self.middle(start, floor)
-        return start, meant(here if leap.place is None else leap.place, leap.airtime), floor, here
+        place = here if leap.place is None else leap.place
+        if leap.along:
+            place = self._carried(state, start, floor).place if start.along else self.easy(start, floor)[0]
+            place[1] = floor_at(place[0], place[2], around, floor + STEP)
+        return start, meant(place, leap.airtime), floor, here
+
+    def _carried(self, state: CharacterState, start: Start, floor: float) -> Carried:
+        """How somebody leaves the foot that stands who goes slowly, aside or backward."""
+        return carried(self.physique, start, goes(state), floor, -float(self.gravity[1]))
+
+    def _ready(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> bool:
+        """Whether a leap can start at this moment."""
+        if not along_of(state, leap):
+            return ready(self.physique, state, around)
+        start, floor = self.placed(state, leap, around)
+        return start.along and self._carried(state, start, floor).keeps
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that can be made from a state, with how; None where it can't."""
@@ -254,7 +269,8 @@ class Jump(Reach, Controller):
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
         if isinstance(memory, Jumping):
             return on_ground(turning(rebounding(start, memory.plan, memory.time) if memory.rebounds else start, leap), state, around), float(level(state.floor))
-        return astride(self.physique, on_ground(cramped(turning(start, leap), leap, np.asarray(state.ground, float), around), state, around), state)
+        start = turning(off_one(self.physique, start, leap, state, -float(self.gravity[1])), leap)
+        return astride(self.physique, on_ground(cramped(start, leap, np.asarray(state.ground, float), around), state, around), state)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:
         """One step of dt seconds along the planned jump. ValueError unless 0 < dt ≤ 0.1, and for who was set elsewhere since the last one."""

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..body import Pose, Skeleton, centre_of_mass, contact_points, forward_kinematics, wrap, yaw
 from ..contract import CharacterState, Leap, level
-from ..navigation import floor_at, room, slope_at
+from ..navigation import floor_at, in_world, room, slope_at
 from .body import FLAT, Physique, Start, raised, soles, vectors
-from .motion import PLANT, Plan
+from .motion import PLANT, Plan, carried
 from .reach import Onward
 
 RUNNING = 0.95
@@ -29,6 +29,10 @@ FEET = "left", "right", "both"
 HIGH, SINKS = 0.012, 0.2
 """But not while it is higher over the floor than the first [m] and comes down faster than the second [m/s], at standard height: nobody pushes off a foot that is still in
 the air, whatever its contacts say."""
+SLOWLY = 0.25, 1.1
+"""Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as walkers and runners do."""
+CLEAR = 0.025
+"""A foot that has just left the floor, and is no higher than this over it [m], at standard height, would come into it as its body goes down."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 NEAR = 1e-6
@@ -120,6 +124,29 @@ def start_of(physique: Physique, state: CharacterState, crouched: bool = False) 
         feet_rates[rolls, 1], feet_rates[rolls, 4] = np.minimum(moved[rolls, 1], 0.0) / state.elapsed, np.maximum(moved[rolls, 4], 0.0) / state.elapsed
         rates = vectors(pose.rotations @ np.swapaxes(np.asarray(state.previous.rotations, float), -1, -2)) / state.elapsed
     return Start(pose.root, pose.rotations, rates, centre, velocity, feet, float(state.ground[2]), feet_rates, _single(state), crouched)
+
+
+def along_of(state: CharacterState, leap: Leap | None) -> bool:
+    """Whether a leap is one of somebody who goes slowly, aside or backward, on his way."""
+    return leap is not None and leap.along and SLOWLY[0] < float(np.hypot(state.velocity[0], state.velocity[2])) < SLOWLY[1]
+
+
+def off_one(physique: Physique, start: Start, leap: Leap | None, state: CharacterState, gravity: float) -> Start:
+    """The same start of somebody who leaps so, off the foot that keeps his speed best of those that stand flat; as it is where none does. gravity: [m/s²] downward."""
+    if not along_of(state, leap):
+        return start
+    contacts = np.asarray(state.contacts).reshape(2, 2)
+    clear = contacts.any(1) | (start.feet[:, 1] > float(state.floor) + physique.tables.sole + CLEAR * physique.size)
+    flat = np.flatnonzero(contacts.all(1) & clear[::-1])
+    ways = [replace(start, single=int(side), along=True) for side in flat]
+    found = [carried(physique, way, goes(state), float(state.floor), gravity) for way in ways]
+    return min(zip(ways, found), key=lambda one: (not one[1].keeps, one[1].strays))[0] if ways else start
+
+
+def goes(state: CharacterState) -> np.ndarray:
+    """How fast (3,) [m/s] somebody goes in the world."""
+    x, z = in_world(state.ground, state.velocity)
+    return np.array([x, 0.0, z])
 
 
 def turning(start: Start, leap: Leap | None) -> Start:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import FRESH, RUNNING, Jump, Physique
+from gambol.controllers.jump import FRESH, RUNNING, Jump, Physique, goes
 from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
 from gambol.controllers.jump.reach import Touch
@@ -30,6 +30,8 @@ SINKS = 0.7
 ALIKE, TURNED = 0.03, 0.1
 """A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places, if it is to land turned by less than the second [rad]."""
 
+CARRIED = 0.75
+"""The ring of who goes slowly lies where he is in so long [s]."""
 BESIDE = 1.2
 """What is farther from a runner's arc [m] is nothing that he would touch."""
 HITS = "would hit"
@@ -177,9 +179,12 @@ def _swept(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[P
 
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
     """A jump as it would be made from a state, among solid props."""
-    start, floor = jump.placed(state, leap, solid)
+    start, floor = jump.placed(state, None if leap.along else leap, solid)
     start = _pushing(jump, start)
     stand = jump.middle(start, floor)
+    if leap.along:  # he waits for the foot that carries him there
+        place = stand + CARRIED * goes(state)
+        return Preview(stand, place, *flight(jump.path(start, place, floor)), "", heading=leap.heading)
     place = stand if leap.place is None else np.asarray(leap.place, float)
     way, why = jump.survey(start, place, floor, leap.airtime, solid)
     return Preview(stand, place, *flight(way), why, heading=leap.heading, slack=leap.slack)

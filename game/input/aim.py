@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import SETS_FEET
+from gambol.controllers.jump import SETS_FEET, SLOWLY
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top
@@ -25,6 +25,8 @@ from .wish import Wish, in_view
 
 MOVING = 0.9
 """Faster than this [m/s] the jump goes on the way one goes."""
+GOES = 0.35
+"""And faster than this [m/s], aside and backward, too, of who is held to go by a stick, and has even floor before him: a small leap, off one foot onto the other."""
 ARC, BENDS, BENT = 0.1, 0.26, 0.05
 """Faster than the first [rad/s] somebody goes along an arc. He leans into it, so that his foot sends him so long [s] farther round it: there the ring lies, and stays ahead of
 who turns by more than the third [rad] as he waits for his footfall."""
@@ -54,6 +56,8 @@ PATIENCE = 0.9
 """So long a jump that was asked waits for the feet to be ready [s]; standing it is refused at once."""
 TURNS = 0.3
 """That passes at this pace while a standing body still turns to the ring, sets its feet, or finds out how to leap: half a turn takes 2.2 s."""
+LONGER = 0.6
+"""And at this while somebody who goes slowly, aside or backward comes to a foot that carries him on: not every one does, and his steps take half a second."""
 ASKEW = 0.35
 """A standing body that faces the ring to within this [rad] jumps as it stands; else it turns in the air."""
 TURNS_ROUND = 0.2
@@ -97,7 +101,7 @@ class Aim:
     aiming: whether it is. waiting: [s] for which a jump that was asked is still wanted. moving: it goes ahead. place: x, z
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
-    course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc.
+    course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -111,12 +115,13 @@ class Aim:
     rests: bool = False
     tilt: float = 0.0
     course: float = 0.0
+    even: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
-             farthest: float = math.inf) -> Aim:
+             farthest: float = math.inf, even: bool = False) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
         the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first.
-        farthest: how far from a standing body the ring may be [m]."""
+        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         x, z = self._there(state)
@@ -126,18 +131,18 @@ class Aim:
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt, course=course_of(state))
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even)
             sets = state.refused == SETS_FEET
             if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
                 offset = _ring(state)
                 return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
-            pace = 0.0 if aloft else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
+            pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
             if given_up:
                 return Aim()
             gone = self._gone_round(state)
-            return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt)
-        moving, heading, place = _pace(state) > MOVING, None, None
+            return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt, even=even)
+        moving, heading, place = _pace(state) > (GOES if even and tilt >= RESTS else MOVING), None, None
         if moving:
             offset = _ring(state)
         else:
@@ -147,7 +152,7 @@ class Aim:
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state))
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state), even=even)
 
     def _gone_round(self, state: CharacterState) -> Aim:
         """The same of one who goes along an arc as he waits, and has turned: his ring stays ahead of him, as far away as it is."""
@@ -157,6 +162,10 @@ class Aim:
         here = float(state.ground[0]), float(state.ground[1])
         far = math.dist(here, self.place)
         return replace(self, place=(here[0] + far * math.sin(course), here[1] + far * math.cos(course)), course=course)
+
+    def _goes(self, state: CharacterState) -> bool:
+        """Whether somebody goes on by a small leap, slowly, aside or backward."""
+        return self.moving and self.even and _pace(state) < SLOWLY[1]
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
@@ -211,6 +220,8 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
+        if self._goes(state):
+            return Leap(None, stays=self.rests, along=True)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gambol.controllers.contract import CharacterState
-from gambol.controllers.navigation import STEP, floor_at, gap, room
+from gambol.controllers.navigation import STEP, floor_at, gap, in_world, room
 
 TOUCHES = 0.19
 """Nearer to its middle nothing solid may come to a body that has not leapt yet [m]: walls hold up at 0.18 who treads on before them."""
@@ -33,6 +33,8 @@ CLEARS = (STEP, 0.35), (0.28, 0.52)
 """Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees would come against it."""
 BACK = 0.25
 """He makes room for that who has so much of it behind him [m]."""
+EVEN, LEVEL = (0.25, 0.5, 0.75, 1.0, 1.25), 0.05
+"""Who goes slowly leaps on over floor that is no higher or lower than the second [m] so far before him [m]."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
 
@@ -135,3 +137,14 @@ def touches(place: np.ndarray, floor: float, around: Sequence[Any], near: float 
     """Whether something solid is as near to a body at a place (2,)."""
     body = np.array([[place[0], floor + height, place[1]] for height in BODY])
     return any(gap(body, thing).min() < near for thing in around)
+
+
+def even_ahead(state: CharacterState, around: Sequence[Any]) -> bool:
+    """Whether the floor is even, and free, as far before somebody who goes as a small leap leads him."""
+    way, floor = np.array(in_world(state.ground, state.velocity)), float(state.floor)
+    pace = max(float(np.hypot(*way)), 1e-9)
+    for far in EVEN if len(around) else ():
+        place = np.asarray(state.ground, float)[:2] + far * way / pace
+        if abs(floor_at(place[0], place[1], around, floor + UP) - floor) > LEVEL or room(place, floor, around) <= 0.0:
+            return False
+    return True

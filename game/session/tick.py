@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import BRAKES, FARTHEST, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, headlong, landing, last_chance, leaps, leaving, push, ring, rises
+from ..input import BRAKES, FARTHEST, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, even_ahead, headlong, landing, last_chance, leaps, leaving, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -76,7 +76,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         held = replace(wish, strafe=wish.strafe or player.pilot.locked)
         back = _back(player, character, stands, moment.after.props)
         farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
-        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest) if jump is not None else player.aim
+        even = (held.jump or player.aim.wants) and even_ahead(stands, moment.after.props)
+        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)

@@ -1,11 +1,12 @@
 """Measure what hands get that tap a leap while somebody goes otherwise than straight ahead on level ground.
 
-    python scripts/measure/leap_ways.py [--phases 6] [--only curves,ways,ramps] [--speeds 2.2,3]
+    python scripts/measure/leap_ways.py [--phases 6] [--only curves,ways,ramps,chains] [--speeds 2.2,3]
 
 By the keys and sticks of a session, as one plays: somebody runs or walks along an arc, aside, askew or backward with his heading held, slowly, or up,
 down and across ramps. At many moments of a stride the button is pressed for a moment and let go, the stick held on. Told is how many leaps are
 refused, and why; how long it takes from letting go to the air; how far he leaps over how fast he came, as a time; how far askew of the way that he
-went; on how many feet he lands; and how much of his speed he keeps. All but when a leap leaves and lands is told from the poses that are played.
+went; on how many feet he lands; and how much of his speed he keeps; how hard hands and hips are pulled meanwhile, and knees bent, how far soles slide that stand, and how near
+his legs come to each other. All but when a leap leaves and lands is told from the poses that are played. Or the button is pressed again and again.
 """
 
 from __future__ import annotations
@@ -20,6 +21,10 @@ from typing import Any, NamedTuple
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
 
+from _limbs import legs_apart
+
+from gambol.controllers.body import contact_points, forward_kinematics
+from gambol.controllers.contract import CharacterState
 from gambol.controllers.jump import Jumping
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.person import person
@@ -38,8 +43,10 @@ RATES, ARCS = (30, -30, 45, -45, 60, -60), (1.3, 2.2, 3.0)
 """How fast a stick turns [°/s], and how fast somebody goes then [m/s]."""
 ASKEW, PACES = (45, -45, 90, -90, 135, -135, 180), (1.3, 3.0)
 """Ways to go with the heading held [° to the left], and how fast hands ask for it [m/s]."""
-SLOW = 0.4, 0.65, 0.8
+SLOW = 0.4, 0.5, 0.65, 0.8, 0.9
 """Slow walks straight ahead [m/s]."""
+AGAIN = (0.6, 0.9, 1.3), (1.3, 0.7), 9.0
+"""Who leaps again and again has the button pressed each so many seconds, walks so fast [m/s], and is looked at until then [s]."""
 SLOPES, UPON = (10, 15), {"up": 0.0, "down": 180.0, "across": 90.0}
 """How steep ramps are [°], and which way they are gone, from uphill [°]."""
 
@@ -62,7 +69,8 @@ class Way(NamedTuple):
 class Leapt:
     """What became of a leap that was asked. why: what kept him, "" if he leapt. delay: from letting go to the air [s]. far: how far he leaps over his speed
     before [s]. askew: how far aside of his way [°]. single: whether he lands on one foot. kept: the least of his speed from before he lands until 0.6 s later,
-    over that before."""
+    over that before. whole: his speed from the take-off's beginning until then, over that before. hands, hips [m/s²], knees [°/s²]: how hard they are pulled at most; slides,
+    apart: how far a sole slides that stands, and how near the axes of his legs come [m]."""
 
     why: str
     delay: float = 0.0
@@ -70,6 +78,12 @@ class Leapt:
     askew: float = 0.0
     single: bool = False
     kept: float = 0.0
+    whole: float = 0.0
+    hands: float = 0.0
+    hips: float = 0.0
+    knees: float = 0.0
+    slides: float = 0.0
+    apart: float = 0.0
 
 
 def ways() -> Iterator[Way]:
@@ -125,14 +139,39 @@ def leaping(moment: SessionState) -> Jumping | None:
     return memory if isinstance(memory, Jumping) else None
 
 
+def pulled(values: np.ndarray) -> np.ndarray:
+    """The accelerations (N - 4, ...) of values (N, ...) of steps, over two of them."""
+    return (values[4:] - 2.0 * values[2:-2] + values[:-4]) * (RATE / 2) ** 2
+
+
+def moved(states: list[CharacterState], skeleton: Any) -> tuple[float, float, float, float, float]:
+    """How hard hands, hips [m/s²] and knees [°/s²] are pulled at most in some states, how far a sole slides that stands, and how near legs come to each other [m]."""
+    roots, local = np.array([np.asarray(one.pose.root, float) for one in states]), np.array([np.asarray(one.pose.rotations, float) for one in states])
+    joints, turned = forward_kinematics(skeleton, roots, local)
+    hands = [np.linalg.norm(pulled(joints[:, skeleton.index(side + "Hand")]), axis=-1).max() for side in ("Left", "Right")]
+    knees = []
+    for side in "Left", "Right":
+        hip, knee, ankle = (joints[:, skeleton.index(side + part)] for part in ("UpLeg", "Leg", "Foot"))
+        thigh, shank = hip - knee, ankle - knee
+        knees.append(np.abs(pulled(np.degrees(np.arccos((thigh * shank).sum(-1) / np.linalg.norm(thigh, axis=-1) / np.linalg.norm(shank, axis=-1))))).max())
+    stands = np.array([one.contacts for one in states])
+    steps = np.linalg.norm(np.diff(contact_points(skeleton, joints, turned)[..., [0, 2]], axis=0), axis=-1) * (stands[1:] & stands[:-1])
+    far, slides = np.zeros(steps.shape[1]), 0.0
+    for step, on in zip(steps, stands[1:]):
+        far = (far + step) * on
+        slides = max(slides, float(far.max()))
+    return float(max(hands)), float(np.linalg.norm(pulled(roots), axis=-1).max()), float(max(knees)), slides, float(legs_apart(skeleton, roots, local).min())
+
+
 def tapped(way: Way, moment: SessionState, seconds: float, seen: Callable[[SessionState], None] = lambda moment: None) -> Leapt:
     """What becomes of a leap that is tapped so long [s] after the beginning. seen: is shown every moment."""
-    gone, told, begun, step = [hips(moment)], "", None, 0
+    gone, told, begun, step, states = [hips(moment)], "", None, 0, [moment.after.characters[0].state]
     while begun is None and step < (PRESSED + WAITS) * RATE:
         before = moment
         moment = advance(moment, wished(way, moment, seconds + step / RATE, step < PRESSED * RATE))
         seen(moment)
         gone.append(hips(moment))
+        states.append(moment.after.characters[0].state)
         told = "; ".join(refused(before, moment)) or told
         step += 1
         memory = leaping(moment)
@@ -148,6 +187,7 @@ def tapped(way: Way, moment: SessionState, seconds: float, seen: Callable[[Sessi
         moment = advance(moment, wished(way, moment, seconds + step / RATE, False))
         seen(moment)
         gone.append(hips(moment))
+        states.append(moment.after.characters[0].state)
         step += 1
     place = np.array(gone)
     pace = np.linalg.norm(place[OVER:] - place[:-OVER], axis=1) * RATE / OVER  # until then
@@ -156,7 +196,8 @@ def tapped(way: Way, moment: SessionState, seconds: float, seen: Callable[[Sessi
     flown = (made.path.land - made.path.leave)[[0, 2]]
     askew = np.degrees(np.arccos(np.clip(came @ flown / max(np.linalg.norm(came) * np.linalg.norm(flown), 1e-9), -1.0, 1.0)))
     return Leapt("", at / RATE + made.take_off - PRESSED, float(np.linalg.norm(flown)) / speed, float(askew), made.path.lands is not None,
-                 float(pace[down - OVER:down + 36 - OVER].min()) / speed)
+                 float(pace[down - OVER:down + 36 - OVER].min()) / speed, float(np.linalg.norm(place[down + 36] - place[at - 1])) * RATE / (down + 37 - at) / speed,
+                 *moved(states[max(at - OVER, 0):down + 36], moment.after.characters[0].controller.skeleton))
 
 
 def begun(someone: Any, way: Way) -> SessionState:
@@ -170,16 +211,34 @@ def told(name: str, some: list[Leapt]) -> str:
     made, reasons = [one for one in some if not one.why], Counter(" ".join(one.why.split()[:9]) for one in some if one.why)
     line = f"  {name}: {len(some)}, {len(some) - len(made)}"
     if made:
-        delay, far, askew, single, kept = np.array([[one.delay, one.far, one.askew, one.single, one.kept] for one in made], float).T
+        delay, far, askew, single, kept, whole, hands, rises, knees, slides, apart = np.array([[float(part) for part in list(vars(one).values())[1:]] for one in made]).T
         line += (f"; {np.median(delay):.2f}, {delay.max():.2f}; {np.median(far):.2f}; {np.median(askew):.0f}, {askew.max():.0f}; {single.sum():.0f}; "
-                 f"{100.0 * np.median(kept):.0f}, {100.0 * kept.min():.0f}")
+                 f"{100.0 * np.median(kept):.0f}, {100.0 * kept.min():.0f}; {100.0 * np.median(whole):.0f}, {100.0 * whole.min():.0f}; {np.median(hands):.0f}, {hands.max():.0f}; "
+                 f"{np.median(rises):.0f}; {np.median(knees):.0f}, {knees.max():.0f}; {100.0 * slides.max():.1f}; {100.0 * apart.min():.0f}")
     return line + "".join(f"\n      {count} × {why}" for why, count in reasons.most_common())
+
+
+def chained(someone: Any, speed: float, every: float) -> str:
+    """What becomes of who walks so fast [m/s] and has the button pressed each so many seconds: a line about it."""
+    way, made, place, told = Way("chains", "", speed), [], [], 0
+    moment = begun(someone, way)
+    for step in range(round(AGAIN[2] * RATE)):
+        seconds = step / RATE - LED
+        before, moment = moment, advance(moment, wished(way, moment, step / RATE, seconds > 0.0 and seconds % every < PRESSED))
+        told += len(refused(before, moment))
+        memory = leaping(moment)
+        if memory is not None and not (made and made[-1] is memory.plan):
+            made.append(memory.plan)
+        place.append(hips(moment))
+    gone = float(np.linalg.norm(place[-1] - place[round(LED * RATE)])) / (AGAIN[2] - LED)
+    flown = [float(np.linalg.norm((one.path.land - one.path.leave)[[0, 2]])) for one in made]
+    return f"  {speed:g} m/s, each {every:g} s: {len(made)} leaps, {told} refused; {gone:.2f} m/s in the mean; flies {np.median(flown):.2f}, {min(flown):.2f} m"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--phases", type=int, default=6)
-    parser.add_argument("--only", default="curves,ways,ramps")
+    parser.add_argument("--only", default="curves,ways,ramps,chains")
     parser.add_argument("--speeds", default="")
     given = parser.parse_args()
     if given.phases < 1:
@@ -187,7 +246,8 @@ def main() -> None:
     someone = person(Locomotion.load(settings=Settings(idle=0.0)))
     speeds = [float(speed) for speed in given.speeds.split(",") if speed]
     print("Of how many, refused; to the air s, median, longest; flies for so long as he would have gone s, median; askew of his way °, median, most; "
-          "lands on one foot; speed kept %, median, least")
+          "lands on one foot; speed kept at the least %, median, least; in the mean %, median, least; hands m/s², median, most; hips m/s²; knees °/s², median, most; "
+          "soles slide cm; legs apart cm")
     found: dict[str, dict[str, list[Leapt]]] = {}
     for way in ways():
         if way.group not in given.only.split(",") or speeds and way.speed not in speeds:
@@ -200,6 +260,11 @@ def main() -> None:
                 made.append(tapped(way, moment, step / RATE))
             moment = advance(moment, wished(way, moment, step / RATE, False))
         found.setdefault(way.group, {}).setdefault(way.name, []).extend(made)
+    if "chains" in given.only.split(","):
+        print("chains: leaps, refused; how fast hips go in the mean; how far a leap flies, median, least")
+        for speed in AGAIN[1]:
+            for every in AGAIN[0]:
+                print(chained(someone, speed, every), flush=True)
     for group, lines in found.items():
         print(group)
         for name, some in lines.items():

@@ -52,7 +52,7 @@ class Start:
     faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
     and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
     pitched against that ground. lands_on: (2,) how it rises where it lands. levels: (2,) how high each foot stands over the lower one's floor [m], as astride an edge.
-    stays: who walks wants to come to rest where he lands. cramped: beyond that is no room to run on.
+    stays: who walks wants to come to rest where he lands. cramped: beyond that is no room to run on. along: he goes slowly, aside or backward, and goes on so.
     """
 
     root: np.ndarray
@@ -77,6 +77,7 @@ class Start:
     levels: np.ndarray = field(default_factory=lambda: LEVEL)
     stays: bool = False
     cramped: bool = False
+    along: bool = False
 
     def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
         """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""

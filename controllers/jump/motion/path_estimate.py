@@ -15,6 +15,7 @@ from ..body import (FLAT, TOUCH_REACH, TRAIL, BodyTables, Physique, Start, apex_
                     take_off_velocity, TURNED)
 from ..prior import BETWEEN, EACH, LEGS, Prior
 from .hopping import hopping
+from .going_slowly import FLIES, beside, calm
 from .take_off import Running, Standing
 from .thrust import Push, push
 
@@ -138,6 +139,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     flat = (goal - middle) * FLAT
     far = float(np.linalg.norm(flat))
     towards = flat / far if far > 1e-6 else np.zeros(3)
+    lays = towards if not start.along else beside(start, towards)
     facing = yaw(start.heading)[:, 2]
     ahead, pace = float(flat @ facing), float(start.velocity @ facing)
     balls = feet[:, :3].mean(0)
@@ -159,17 +161,17 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     for _ in range(ROUNDS):
         leave, trail, soft = guess[:3], guess[3], guess[4]
         tilted = TILTED if start.runs else float(np.interp(fall, HARD, (1.0, TILTED)))
-        height = max(min(heights.touch(trail * along, trail * across) - tilted * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
-        land = goal * FLAT - trail * towards + [0.0, goal[1] + height, 0.0]
+        height = max(min(heights.touch(trail * along, trail * (float(abs(lays @ yaw(start.lands)[:, 0])) if start.along else across)) - tilted * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
+        land = goal * FLAT - trail * lays + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
-            ((RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
+            ((FLIES if start.along else RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         fall = g * flight - float(velocity[1])
         features = [prior.features(speed, ahead, pace, size, start.runs)
                     for speed in (float(velocity[1]), fall)]
         swings = prior.swings(flight * np.sqrt(g / 9.81), pace, size, start.runs)
-        angles = [_low(prior.row(number * BETWEEN, some, runner, swings), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
+        angles = [_low(calm(prior.row(number * BETWEEN, some, runner, swings), start), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
         if not start.runs:
             # who waits needs no more than the muscles do, and pushes from as deep as it is
@@ -191,7 +193,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         guess = guess + relaxed * lacks
     low, leave, passing, wind_up, dip, strong, pressed = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
-    keys = _tuck(_low(prior.keys(features[0], features[1], runner, swings), low_arms), flight, tucked)
+    keys = _tuck(_low(calm(prior.keys(features[0], features[1], runner, swings), start), low_arms), flight, tucked)
     if start.onto is None and not start.springs:
         lands = _stride(start, velocity, flight, gravity, size)
         keys = _folded(keys, lands)
@@ -209,6 +211,8 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
     """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
     aside, _, ahead = velocity @ yaw(start.lands)
+    if start.along and not start.stays and start.single is not None:
+        return 1 - start.single
     if start.single is None or ahead < STRIDES[2 if start.cramped else int(start.stays)] * np.sqrt(size) or abs(aside) > ASTRAY * ahead:
         return None
     falls = start.lands_on @ velocity[[0, 2]] - (velocity + gravity * flight)[1]  # nearer to ground that may fall away, too

@@ -19,6 +19,7 @@ from ...body import yaw
 from ..body import FLAT, TAKE_OFF_REACH, BodyTables, Measures, Physique, Start, over, stretched, uphill
 from ..muscles import crouch_depth, strength
 from .footing import heels_up
+from .going_slowly import PUSHES
 from .pendulum import waiting_kernel
 from .thrust import MOMENTS, moments, risen, upward
 
@@ -208,6 +209,8 @@ class Running:
         # the force's mean lean brings the velocity about
         lean = float((velocity - passing) @ along) / max(float(velocity[1]) - float(start.velocity[1]) + g * 0.2, 1.0)
         lead = min(2.0 * lean * self.heights.stand - behind, most)
+        if start.along:
+            lead = behind + PUSHES * math.sqrt(9.81 * self.physique.size / g) * speed
 
         def above(yielding: float, contact: float) -> float:
             """How much too high [m] the body leaves if the foot gives so long [s]."""

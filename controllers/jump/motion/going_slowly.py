@@ -1,0 +1,101 @@
+"""How somebody moves who goes slowly, aside or backward, and leaps on, off the foot that stands, on the way that he goes, about as far as his speed carries him.
+
+What is recorded are leaps of who runs ahead. A foot presses from within its sole. Told is how fast a body leaves that it pushes off so that he keeps his speed as well as it
+can, as an inverted pendulum under the force of a push: a moment at which that is far from how he goes is none to leap off.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ...body import HALF_SOLE, yaw
+from ..body import FLAT, Physique, Start, carriage
+from ..prior import EACH, LEGS
+
+PUSHES, FLIES = 0.25, 0.34
+"""So long [s] his foot gives and pushes, and so long he flies, on Earth, at standard height: a low skip."""
+WITHIN = 0.6, 0.11, 0.05
+"""The force comes from within so much of the sole's half width, from no farther behind the ball than the second, since heels rise, and from no nearer to the tip than the
+third [m], at standard height."""
+LEAVES, STRAYS, WALKS = (0.85, 1.25, 1.75), 0.45, (0.38, 1.05)
+"""He leaves no slower on his way than the first times as he goes, no faster than the second, or the third where that is slower than a walk, nor faster aside of it than so
+much; and no slower than one who walks, as fast as whom he may be [m/s], at standard height."""
+CROSSES = 0.05
+"""Who comes farther than this [m] past the foot that pushes, to its outer side, would bring the other leg past it, at standard height."""
+TRAILS = 0.16
+"""How far ahead of him [m] his foot comes down for each m/s."""
+HANGS = np.concatenate([carriage.STAND, np.tile([-0.1, 0.3, 0.0], 2)])
+CALM, AHEAD = np.concatenate([[0.6] * 3, [0.4] * (LEGS - 3), np.tile([0.15, 0.35, 0.6], 2)]), np.concatenate([np.zeros(LEGS), np.tile([0.45, 0.35, 0.4], 2)])
+"""He carries trunk, arms and legs by the first of these shares as far from how they hang [rad] as runners, and by so much more of it as he goes ahead."""
+ASIDE = 1.75
+"""His foot comes down so many times as far ahead of him aside as it would ahead."""
+BENDS = np.array([-0.45, 0.9, 0.0])
+"""By so much [rad] he bends hip and knee of his free leg on its way, if it is straight: else its foot would come into the floor."""
+GIVES = 0.75
+"""He gives to his landing by this share of the usual."""
+
+
+class Carried(NamedTuple):
+    """How somebody leaves the foot that stands: velocity (3,) [m/s], where his other foot comes down (3,) [m], how far that velocity is from how he goes, as a share, and whether he
+    can go on so."""
+
+    velocity: np.ndarray
+    place: np.ndarray
+    strays: float
+    keeps: bool
+
+
+def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float) -> Carried:
+    """How somebody leaves the foot that stands who goes so fast (3,) [m/s], off a floor [m], under gravity [m/s²] downward."""
+    assert start.single is not None
+    body, size = physique.tables, physique.size
+    scale = math.sqrt(size * 9.81 / gravity)
+    pushes, flies = PUSHES * scale, FLIES * scale
+    foot, facing = start.planted(floor, body)[start.single], yaw(start.heading)
+    ball, turned = foot[:3] * FLAT, yaw(foot[3])
+    rate = math.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / max(float(start.centre[1]) - floor, 0.3 * size))
+    cosh, sinh = math.cosh(rate * pushes), math.sinh(rate * pushes)
+    here, speed = start.centre * FLAT, start.velocity * FLAT
+    pressed = turned.T @ (here + (speed * cosh - goes) / (rate * sinh) - ball)
+    wide = WITHIN[0] * HALF_SOLE * size
+    pressed = ball + turned @ [min(max(pressed[0], -wide), wide), 0.0, min(max(pressed[2], -WITHIN[1] * size), body.tip[2] - WITHIN[2] * size)]
+    velocity = (here - pressed) * rate * sinh + speed * cosh
+    leave = pressed + (here - pressed) * cosh + speed * sinh / rate
+    pace = max(float(np.linalg.norm(goes)), 1e-9)
+    slow, fast = (math.sqrt(size) * speed for speed in WALKS)
+    along = goes / pace
+    ahead = float(velocity @ along) / pace
+    aside = float(np.linalg.norm(velocity - (velocity @ along) * along)) / pace
+    past = float((leave - ball) @ facing[:, 0]) * (1 - 2 * start.single)
+    lands = TRAILS * beside(start, velocity)
+    place = leave + velocity * flies + lands + [0.0, floor, 0.0]
+    keeps = max(LEAVES[0], slow / pace) <= ahead <= max(LEAVES[1], min(LEAVES[2], fast / pace)) and aside <= STRAYS and past <= CROSSES * size
+    return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
+
+
+def calm(keys: np.ndarray, start: Start) -> np.ndarray:
+    """The same keys (..., COLUMNS) of the carriage, or nearer to how a body hangs of who goes slowly, aside or backward."""
+    if not start.along:
+        return keys
+    ahead = float(start.velocity @ yaw(start.heading)[:, 2]) / max(float(np.linalg.norm(start.velocity * FLAT)), 1e-9)
+    return HANGS + (CALM + max(ahead, 0.0) * AHEAD) * (keys - HANGS)
+
+
+def beside(start: Start, towards: np.ndarray) -> np.ndarray:
+    """How far (3,) ahead of him his foot comes down who goes towards (3,) somewhere off the other: not past his middle."""
+    assert start.single is not None  # who goes so pushes off one foot
+    left = yaw(start.lands)[:, 0]
+    across = float(towards @ left)
+    return towards + (-across if across * (2 * start.single - 1) < 0.0 else (ASIDE - 1.0) * across) * left
+
+
+def straight_through(rows: np.ndarray, start: np.ndarray, due: np.ndarray) -> np.ndarray:
+    """How his free leg bends (K, 4, 3) [rad] at times due (K,) [s] from how it is, start (4, 3), to the last of rows (K, 4, 3): runners swing it through from behind, his
+    may be anywhere, and goes straight there."""
+    share = (due / due[-1])[:, None, None]
+    rows = start + share**2 * (3.0 - 2.0 * share) * (rows[-1] - start)
+    rows[:, :EACH, 0] += 4.0 * share[..., 0] * (1.0 - share[..., 0]) * max(1.0 - float(start[1, 0]) / BENDS[1], 0.0) * BENDS
+    return rows

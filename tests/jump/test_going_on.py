@@ -1,0 +1,76 @@
+"""Who goes slowly, aside, askew or backward leaps on the way that he goes, off one foot onto the other, and keeps his speed."""
+
+import numpy as np
+import pytest
+
+from gambol.controllers.body import forward_kinematics, sole_corners
+from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.jump import Jumping, goes
+
+FPS, ALONG = 60, Leap(None, along=True)
+WAYS = {"left": (0.0, 0.6), "right": (0.0, -0.6), "backward": (-0.8, 0.0), "ahead and left": (0.55, 0.55), "backward and right": (-0.4, -0.4), "slowly ahead": (0.65, 0.0)}
+
+
+@pytest.fixture(scope="module", params=WAYS)
+def leapt(request, person):
+    """The states from where a leap was asked on, when it begins, and its plan."""
+    ahead, left = WAYS[request.param]
+    wish, state, begun = np.array([ahead, 0.0, left]), person.start(), None
+    for _ in range(150):
+        state, _ = person.step(state, Intent(wish), 1 / FPS)
+    states = [state]
+    while begun is None or len(states) < begun[0] + 90:
+        state, _ = person.step(state, Intent(wish, ALONG if begun is None else None), 1 / FPS)
+        states.append(state)
+        memory = state.memory.memory
+        if begun is None and isinstance(memory, Jumping):
+            begun = len(states) - 2, memory.plan
+        assert begun or len(states) < 1.2 * FPS, state.refused
+    return states, *begun
+
+
+def times(begun, made):
+    """The steps at which he leaves the floor and comes down."""
+    return begun + int(made.take_off * FPS), begun + int(np.ceil(made.touch_down * FPS))
+
+
+def test_he_leaps_off_one_foot_onto_the_other_the_way_that_he_goes(leapt):
+    states, begun, made = leapt
+    way, flown = goes(states[begun]), made.path.velocity * [1.0, 0.0, 1.0]
+    assert made.path.lands is not None and made.path.single and not states[-1].refused
+    assert way @ flown > 0.85 * np.linalg.norm(way) * np.linalg.norm(flown)
+    assert made.path.course.outside < 0.02 and made.path.course.lean < 1.0, "from within the sole, without slipping"
+
+
+def test_he_keeps_his_speed_and_goes_on(leapt):
+    states, begun, made = leapt
+    (_, down), hips = times(begun, made), np.array([s.pose.root for s in states])[:, [0, 2]]
+    before = np.linalg.norm(goes(states[begun]))
+    gone = np.linalg.norm(hips[down + 36] - hips[begun]) * FPS / (down + 36 - begun)
+    assert gone > 0.75 * before
+    assert not states[begun + int(made.through * FPS) + 3].active == "jump", "no stop after it"
+    assert np.linalg.norm(goes(states[-1])) > 0.85 * before
+
+
+def test_feet_stand_still_and_clear_the_floor_and_each_other(leapt, person):
+    states, begun, made = leapt
+    off, down = times(begun, made)
+    shown = states[begun:down + 40]
+    joints, turned = forward_kinematics(person.skeleton, np.array([s.pose.root for s in shown], float), np.array([s.pose.rotations for s in shown], float))
+    assert sole_corners(person.skeleton, joints, turned)[..., 1].min() > -0.03
+    for part in "Leg", "Foot":
+        one, other = (joints[:, person.skeleton.index(side + part)] for side in ("Left", "Right"))
+        assert np.linalg.norm(one - other, axis=-1).min() > 0.1
+    pushes = np.array([s.contacts for s in shown]).reshape(len(shown), 2, 2)[1:off - begun, :, 1]
+    balls = joints[1:off - begun, [person.skeleton.index(side + "Toe") for side in ("Left", "Right")]]
+    for side in range(2):
+        stood = balls[pushes[:, side], side]
+        assert not len(stood) or np.ptp(stood, axis=0)[[0, 2]].max() < 0.02
+
+
+def test_a_leap_along_the_way_has_no_place_and_who_stands_leaps_up(person):
+    with pytest.raises(ValueError, match="no place"):
+        Leap(np.zeros(3), along=True)
+    state, _ = person.step(person.start(), Intent(leap=ALONG), 1 / FPS)
+    made = state.memory.memory.plan
+    assert np.linalg.norm((made.path.land - made.path.leave)[[0, 2]]) < 0.1
