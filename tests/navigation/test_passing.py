@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from gambol.controllers.body import end_positions, forward_kinematics
+from gambol.controllers.body import Pose, end_positions, exp, forward_kinematics
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import gap
-from gambol.controllers.navigation.passing import drawn_in
+from gambol.controllers.navigation.passing import drawn_in, drawn_on
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box, Pillar
 from gambol.game.world import stopped
@@ -142,3 +142,21 @@ def test_arms_stay_calm_before_a_wall(locomotion):
         lifted.append(np.ptp(places[..., 1], axis=0).max())
         assert np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).max() * 3600.0 < 60.0
     assert 0.005 < lifted[0] < 0.5 * lifted[1]
+
+
+def test_arms_come_in_as_fast_as_a_runner_comes_to_a_wall(locomotion):
+    """Who landed right before a wall at a run had his fingers up to 14 cm in it: arms came in as slowly as beside what has just come about."""
+    wall, start = Box((0.0, 1.0, 0.75), (4.0, 2.0, 0.3)), locomotion.start().pose
+    skeleton, rotations = locomotion.skeleton, start.rotations.copy()
+    for side in ("Left", "Right"):
+        rotations[skeleton.index(side + "Arm")] = exp(np.array([-0.7, 0.0, 0.0])) @ rotations[skeleton.index(side + "Arm")]
+    deep = {}
+    for speed in (0.0, 3.0):
+        arms, found = None, []
+        for far in np.arange(0.0, 0.4, 0.05):
+            ahead = Pose(start.root + np.array([0.0, 0.0, far], np.float32), rotations)
+            shown, arms = drawn_on(skeleton, ahead, np.array([0.0, far, 0.0]), [wall], arms, speed, 1 / 60)
+            tips = end_positions(skeleton, *forward_kinematics(skeleton, shown.root, shown.rotations))
+            found.append(max(tips[skeleton.end_index[side + "Hand"], 2] - 0.6 for side in ("Left", "Right")))
+        deep[speed] = max(found)
+    assert deep[3.0] < 0.0 < deep[0.0]

@@ -36,8 +36,8 @@ FAR = 0.75
 LOW = 0.15
 """Arms that clear the top or underside of something by so much [m] are not drawn in at all."""
 
-FAST, NEARER, HALFLIFE = 4.0, 3.0, 0.08
-"""Arms that would have to go out faster than the first [rad/s], or come in by so much more for each m/s that the body goes [rad/m], as of who comes to a wall at a run, do so with this half-life [s]."""
+FAST, NEARER, RUNS, HALFLIFE = 4.0, 6.0, 1.5, 0.08
+"""Arms that would have to go out faster than the first [rad/s], or come in by so much more for each m/s that the body is faster than the third, as of who comes to a wall at a run, do so with this half-life [s]."""
 GONE = 1e-4
 """Less than this is nothing [rad]."""
 
@@ -66,7 +66,7 @@ def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequenc
     wanted = log(near.rotations[upper] @ np.swapaxes(own, -1, -2)) if near is not pose else FREE.wanted
     change = wanted - arms.wanted
     inwards = np.linalg.norm(wanted, axis=-1, keepdims=True) > np.linalg.norm(arms.wanted, axis=-1, keepdims=True)
-    sudden = np.linalg.norm(change, axis=-1, keepdims=True) > (FAST + NEARER * speed * inwards) * dt
+    sudden = np.linalg.norm(change, axis=-1, keepdims=True) > (FAST + NEARER * max(speed - RUNS, 0.0) * inwards) * dt
     left, rate = settle(arms.left - sudden * change, arms.rate, HALFLIFE, dt)
     if np.abs(left).max() < GONE:
         return near, None if near is pose else Arms(wanted, FREE.left, FREE.rate)
