@@ -26,7 +26,7 @@ class Steady:
 class NoStarts:
     """Where to begin from points: nowhere, as nobody here has to."""
 
-    def find(self, points, velocities=None):
+    def find(self, points, velocities=None, turns=None):
         raise AssertionError("the body stands where its points are")
 
 

@@ -67,7 +67,7 @@ def test_who_taps_a_leap_as_he_goes_along_an_arc_leaps_on_one_foot_and_goes_on(s
 
     base, step = opening(person()), 0
     for phase in range(5):
-        while step < 180 + 9 * phase:
+        while step < 180 + 8 * phase:
             base, step = advance(base, (wished(base, step * DT, False),)), step + 1
         moment, leapt = base, None
         for n in range(90):
