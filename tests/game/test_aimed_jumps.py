@@ -134,7 +134,7 @@ def test_a_runner_sees_how_he_would_lie_in_what_his_leap_would_touch(somebody):
     """A beam across the way, and none."""
     run, seen = Wish(move=(0.0, 1.0), run=1.0), {}
     for high in (1.3, 4.0):
-        things = (Box((0.0, high + 0.2, 6.6), (4.0, 0.4, 0.2)),)
+        things = (Box((0.0, high + 0.2, 5.4), (4.0, 0.4, 0.2)),)
         timeline, touched, last = Timeline(begin(World((Character("A", somebody, somebody.start()),), things), 1)), [], None
         for k in range(150):
             state = timeline.now.after.characters[0].state
