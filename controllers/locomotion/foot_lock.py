@@ -52,8 +52,8 @@ LIFT_HALFLIFE = 0.02
 """How fast a swinging foot is lifted over the floor it must clear [s]."""
 PELVIS_HALFLIFE = 0.08
 """The pelvis follows what the legs need with this half-life [s]."""
-PELVIS_DROP = 0.05
-"""The most that short legs may lower the pelvis [m]."""
+PELVIS_DROP = 0.05, 0.03
+"""The most that short legs may lower the pelvis [m], on level ground and, beside half of what feet are apart in height, elsewhere."""
 DOWN, BENDS = 0.12, 0.012
 """Whoever stands on a slope stands lower, by the first at most [m], for both heels to be down: on legs that are the second shorter than straight."""
 LEAVES, LENT = -1.0, 0.3
@@ -95,21 +95,22 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
             swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = m.lower = 0.0
-    lowered = m.pelvis
+    even = m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0
+    lowered = m.pelvis if even else 0.0  # on stairs, whose feet reach far down, heels rise first
     for foot in range(2):
         for j in range(legs.hip[foot], legs.hip[foot] + 3):
             positions[j, 1] -= lowered
-    stands = tops.shape[0] > 0 and (m.settled or m.waits) and not (m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0)
+    stands = tops.shape[0] > 0 and (m.settled or m.waits) and not even
     for foot in range(2):
         hip = legs.hip[foot]
         _turn_foot(m, body, foot, hip + 2, legs.height, lift[foot], orientations, ankle[foot], dt, work)
         reach = (REACH - 0.001) * leg_length(body, hip)
         if stands:
             m.lower = max(m.lower, min(lowered + _lacks(positions[hip], ankle[foot], reach - BENDS) + m.middle - m.level, DOWN))
-        lacks = _lacks(positions[hip], ankle[foot], reach) if m.grip[2 * foot] > 0.5 and ankle[foot, 2] > positions[hip, 2] else -1.0
-        give_way(m, body, foot, hip, reach, positions, orientations, ankle[foot], dt, work)
+        lacks = _lacks(positions[hip], ankle[foot], reach) if even and m.grip[2 * foot] > 0.5 and ankle[foot, 2] > positions[hip, 2] else -1.0
+        give_way(m, body, foot, hip, reach, m.pelvis - lowered, positions, orientations, ankle[foot], dt, work)
         need = max(need, lowered + max(lacks, _lacks(positions[hip], ankle[foot], reach)))
-    most = PELVIS_DROP + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
+    most = PELVIS_DROP[0] if even else PELVIS_DROP[1] + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
     need = min(need, most)
     drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
     m.pelvis = min(max(drop, 0.0), most)

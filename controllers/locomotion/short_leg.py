@@ -37,9 +37,9 @@ to it: this many times as long as a swing after it left."""
 
 
 @kernel
-def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work):
+def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, dt, work):
     """A leg too short lifts its heel about the ball, as far as the foot stands on it or has just left it; what then is
-    missing still, a foot that does not stand comes nearer."""
+    missing still, a foot that does not stand comes nearer. sinks: by how much the pelvis is lower than in positions [m]."""
     a, grip = hip + 2, m.grip[2 * foot + 1]
     ball, axis, turned = work[0, 0], work[0, 1], work[1]
     for i in range(3):
@@ -68,7 +68,9 @@ def give_way(m, body, foot, hip, reach, positions, orientations, ankle, dt, work
             orientations[a, i, k] = turned[i, k]
             ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
     distance = distance_kernel(positions[hip], ankle)
-    if swing_progress(m, foot) > LATE and distance > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes, and the pelvis lowered: let go before it tears
+    down = ankle[1] - positions[hip, 1]
+    lowered = math.sqrt(max(distance * distance + (2.0 * down + sinks) * sinks, 0.0))
+    if swing_progress(m, foot) > LATE and lowered > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes, and the pelvis lowered: let go before it tears
         m.torn[foot] = 1
     if distance > length:
         share = (length + firm * (distance - length)) / distance
