@@ -33,6 +33,8 @@ SLOWLY = 0.25, 1.1
 """Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as walkers and runners do."""
 CLEAR = 0.025
 """A foot that has just left the floor, and is no higher than this over it [m], at standard height, would come into it as its body goes down."""
+BACK = 0.5
+"""Who goes back by more than this share of his speed goes backward."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 NEAR = 1e-6
@@ -136,7 +138,9 @@ def off_one(physique: Physique, start: Start, leap: Leap | None, state: Characte
     if not along_of(state, leap):
         return start
     contacts = np.asarray(state.contacts).reshape(2, 2)
-    clear = contacts.any(1) | (start.feet[:, 1] > float(state.floor) + physique.tables.sole + CLEAR * physique.size)
+    back = float(goes(state) @ yaw(start.heading)[:, 2]) < -BACK * float(np.linalg.norm(goes(state)))
+    high = start.feet[:, 1] > float(state.floor) + physique.tables.sole + CLEAR * physique.size
+    clear = high & ~contacts.any(1) if back else high | contacts.any(1)  # ahead of who goes back it stands on its heel, and would be drawn through the floor
     flat = np.flatnonzero(contacts.all(1) & clear[::-1])
     ways = [replace(start, single=int(side), along=True) for side in flat]
     found = [carried(physique, way, goes(state), float(state.floor), gravity) for way in ways]

@@ -91,7 +91,7 @@ def test_who_walks_on_is_on_his_way_and_his_ground_frame_goes_on_with_him(walks,
                     assert v_f > 0.3
                     assert np.hypot(*(now.ground[:2] - before.ground[:2] - DT * np.array([s * v_f + c * v_l, c * v_f - s * v_l]))) < 0.06
                     break
-    assert on > 12
+    assert on > 10
 
 
 def test_the_ground_frame_of_who_has_stumbled_or_got_up_is_where_it_is_of_who_stands(walks):
