@@ -33,7 +33,7 @@ SLOWLY = 0.25, 1.1
 """Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as walkers and runners do."""
 CLEAR = 0.025
 """A foot that has just left the floor, and is no higher than this over it [m], at standard height, would come into it as its body goes down."""
-BACK = 0.5
+BACK = 0.8
 """Who goes back by more than this share of his speed goes backward."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
