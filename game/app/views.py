@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
 
@@ -76,12 +77,12 @@ def _held(moment: SessionState) -> list[int]:
     return [number for number, one in enumerate(moment.after.characters) if one.follows is not None] if holds else []
 
 
-def frames(log: Log, fps: int, start: float, end: float) -> int:
+def frames(log: Log, fps: Fraction, start: float, end: float) -> int:
     """How many frames a part of a log has, from `start` to `end` [s]."""
-    return max(int((min(end, log.duration) - start) * fps + 1e-6), 1)
+    return max(int((min(end, log.duration) - start) * float(fps) + 1e-6), 1)
 
 
-def filmed(log: Log, controller: Any, fps: int, start: float, end: float, overlays: Overlays,
+def filmed(log: Log, controller: Any, fps: Fraction, start: float, end: float, overlays: Overlays,
            stray: Callable[[], None] = lambda: None) -> Iterator[tuple[Scene, ...]]:
     """Every frame of a part of a log, as the players saw it; stray: called once if it goes another way.
 
@@ -90,12 +91,12 @@ def filmed(log: Log, controller: Any, fps: int, start: float, end: float, overla
     moments, told, aimed = replay(log, controller), False, ()
     moment, first = next(moments), round(start * RATE)
     for frame in range(frames(log, fps, start, end)):
-        # in whole numbers, so that no frame rate drifts
+        # in fractions, so that no frame rate drifts
         ticks, rest = divmod(frame * RATE, fps)
         while moment.number < min(first + ticks + 1, len(log.ticks)):
             moment = next(moments)
             if not told and strayed(log, moment):
                 stray()
                 told = True
-        alpha, aimed = rest / fps, previews(moment, aimed)
+        alpha, aimed = float(rest / fps), previews(moment, aimed)
         yield scenes(moment, moment.fraction(alpha), [player.view(alpha) for player in moment.players], overlays, aimed=aimed)

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_type_hints
 
@@ -237,6 +238,16 @@ def pixels_of(text: str) -> tuple[int, int]:
     if not (re.fullmatch("[0-9]{2,4}", width) and re.fullmatch("[0-9]{2,4}", height) and 16 <= int(width) <= 8192 and 16 <= int(height) <= 8192):
         raise Mistake(f"--size {text!r}: needs width x height in pixels, from 16 to 8192, such as 1280x720")
     return int(width), int(height)
+
+
+def rate_of(text: str | None) -> Fraction | None:
+    """Frames a second. Mistake for anything else."""
+    from ..files import frame_rate
+
+    try:
+        return None if text is None else frame_rate(text)
+    except ValueError as fault:
+        raise Mistake(f"--fps: {fault}") from None
 
 
 def overlays_of(text: str) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -10,19 +11,19 @@ from typing import Annotated
 import typer
 
 from .base import (Library, Mistake, Preset, Quality, Wearing, app, known, learn, overlays_of, person_of, pixels_of, plainly,
-                   progress_bar, replayed, say, say_doubts, say_refused)
+                   progress_bar, rate_of, replayed, say, say_doubts, say_refused)
 from .motion import write_motion
 
 
 @app.command()
 @plainly
 def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenario (see `gambol scenarios`) or a .toml file.")] = None, *,
-           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4 film, a folder for PNG frames, or a .bvh file of the motion.")],
+           out: Annotated[str, typer.Option("-o", "--out", help="A .mp4, .webm or .gif film, a folder for PNG frames, or a .bvh file of the motion.")],
            replay: Annotated[Path | None, typer.Option(help="Film this input log instead of a scenario, from where its player saw it; rings and ways that he saw come with --overlay jump,path.")] = None,
            start: Annotated[float | None, typer.Option("--from", min=0.0, help="Where in the log to begin, in seconds.")] = None,
            end: Annotated[float | None, typer.Option("--to", min=0.0, help="Where in the log to end, in seconds.")] = None,
            size: Annotated[str | None, typer.Option(help="Width x height in pixels; the scenario's by default, 1920x1080 of a log.")] = None,
-           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
+           fps: Annotated[str | None, typer.Option(help="Frames a second, 29.97, too; the scenario's by default, 60 of a log, 25 of a GIF.")] = None,
            preset: Annotated[Preset | None, typer.Option(help="Picture quality; full by default.")] = None,
            overlay: Annotated[str | None, typer.Option(help="What to draw, with commas: mesh, skeleton, contacts, trail, path, jump, balance, forces, points, errors, cameras.")] = None,
            library: Library = None, character: Wearing = None,
@@ -32,11 +33,16 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
         raise Mistake("render needs either a scenario or --replay LOG")
     if background and hasattr(os, "nice"):
         os.nice(15)
+    rate = rate_of(fps)
+    if rate is None and out.lower().endswith(".gif"):
+        from ..output import GIF_RATE
+
+        rate = Fraction(GIF_RATE)
     if replay is not None:
         if out.lower().endswith(".bvh"):
-            raise Mistake(f"{out}: a log is filmed; name a .mp4 file or a folder for PNG frames")
+            raise Mistake(f"{out}: a log is filmed; name a .mp4, .webm or .gif file, or a folder for PNG frames")
         known(replay)
-        _film_log(replay, start, end, out, pixels_of(size or "1920x1080"), fps or 60, preset, overlay,
+        _film_log(replay, start, end, out, pixels_of(size or "1920x1080"), rate or Fraction(60), preset, overlay,
                   person_of(library, character), background)
         return
     for option, given in (("--from", start), ("--to", end)):
@@ -51,7 +57,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
         raise Mistake(f"{scenario}: is an input log; film it by --replay {scenario}")
     film = scenarios.load(scenario)
     say_doubts(scenario, film)
-    film = film if fps is None else film.at_fps(fps)
+    film = film if rate is None else film.at_fps(rate)
     if out.lower().endswith(".bvh"):
         for option, given in (("--size", size), ("--preset", preset), ("--overlay", overlay)):
             if given is not None:
@@ -76,7 +82,7 @@ def render(scenario: Annotated[str | None, typer.Argument(help="A shipped scenar
     say_refused(refused)
 
 
-def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: int,
+def _film_log(file: Path, start: float | None, end: float | None, out: str, size: tuple[int, int], fps: Fraction,
               preset: Preset | None, overlay: str | None, controller, background: bool) -> None:
     from ..app import filmed, frames
     from ..output import recorder
@@ -95,7 +101,7 @@ def _film_log(file: Path, start: float | None, end: float | None, out: str, size
           recorder(out, size, fps), size, fps, preset, background)
 
 
-def _draw(scenes, frames: int, title: str, target, size: tuple[int, int], fps: int, preset: Preset | None,
+def _draw(scenes, frames: int, title: str, target, size: tuple[int, int], fps: Fraction, preset: Preset | None,
           background: bool) -> None:
     """Draw scenes into a film or a folder, by a `gambol.game.output.recorder.Recorder`."""
     from ..hosts import GraphicsError, Offscreen
@@ -114,7 +120,8 @@ def _draw(scenes, frames: int, title: str, target, size: tuple[int, int], fps: i
         if isinstance(error, GraphicsError):
             raise Mistake(str(error)) from None
         raise
-    say(f"{target.path}: {frames} frames, {frames / fps:g} s, {target.picture[0]} × {target.picture[1]}")
+    say(f"{target.path}: {frames} frames, {float(frames / fps):g} s, {target.picture[0]} × {target.picture[1]}"
+        + ("" if target.picture == size else ": films have even sides"))
 
 
 @app.command()

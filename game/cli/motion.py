@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Unit, Up, Wearing, app, known, learn, of_a_motion_file, person_of, plainly, progress_bar, reading_of, replayed, say, say_doubts, say_refused
+from .base import Library, Mistake, Unit, Up, Wearing, app, known, learn, of_a_motion_file, person_of, plainly, progress_bar, rate_of, reading_of, replayed, say, say_doubts, say_refused
 
 
 @app.command()
 @plainly
 def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml file of one, or an input log (.gambol).")],
            out: Annotated[Path, typer.Option("-o", "--out", help="A .glb file (bodies, motion, contacts) or a .bvh file (motion).")],
-           fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default, 60 of a log.")] = None,
+           fps: Annotated[str | None, typer.Option(help="Frames a second, 29.97, too; the scenario's by default, 60 of a log.")] = None,
            onto: Annotated[Path | None, typer.Option(help="Your own rigged human: -o moves on his bones. Of a .glb, .gltf or .vrm a copy with skin and names, of a .bvh or .amc a .bvh.")] = None,
            actor: Annotated[str | None, typer.Option(help="Whose motion goes --onto a file; the first one's by default.")] = None,
            up: Up = None, unit: Unit = None, library: Library = None, character: Wearing = None) -> None:
@@ -22,6 +23,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
     from ..output import checked, sampled, takes
     from ..session import SUFFIX, replay
 
+    rate = rate_of(fps)
     checked(out)
     if actor is not None and onto is None:
         raise Mistake("--actor: says whose motion goes --onto a file; without it everybody's is written")
@@ -34,14 +36,14 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
         say_doubts(what, film)
         if actor is not None and actor not in [one.name for one in film.actors]:
             raise Mistake(f"--actor: nobody in {what} is called {actor!r}; there are {', '.join(one.name for one in film.actors)}")
-        write_motion(film if fps is None else film.at_fps(fps), out, person_of(library, character), rig, actor)
+        write_motion(film if rate is None else film.at_fps(rate), out, person_of(library, character), rig, actor)
         return
     known(Path(what))
     log, controller = replayed(Path(what), person_of(library, character))
     with progress_bar() as bar:
         moments = bar.track(replay(log, controller), len(log.ticks) + 1, description=log.path.name)
-        done = takes(sampled(moments, fps or 60))
-    for path in _written(out, done, fps or 60, rig, actor):
+        done = takes(sampled(moments, rate or 60))
+    for path in _written(out, done, rate or 60, rig, actor):
         say(f"{path}: {len(done[0].poses)} frames, {log.duration:.1f} s")
 
 
@@ -57,10 +59,11 @@ def _rig(onto: Path, out: Path, up: str | None, unit: str | None) -> Any:
     return rig
 
 
-def _written(out: str | Path, done: list, fps: float, rig: Any, actor: str | None) -> list[Path]:
+def _written(out: str | Path, done: list, fps: Fraction | int, rig: Any, actor: str | None) -> list[Path]:
+    from ..files import plain
     from ..output import chosen, write, write_onto
 
-    return write(out, done, fps) if rig is None else [write_onto(out, rig, chosen(done, actor), fps)]
+    return write(out, done, plain(fps)) if rig is None else [write_onto(out, rig, chosen(done, actor), plain(fps))]
 
 
 def write_motion(film: Any, out: str | Path, controller: Any, rig: Any = None, actor: str | None = None) -> None:

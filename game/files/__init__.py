@@ -2,8 +2,9 @@
 
 from . import toml
 from .did_you_mean import did_you_mean, meant
+from .frame_rate import frame_rate, plain
 from .paths import OutputError, exclusive, named, output_file, output_folder, whole
 
 __all__ = [
-    "OutputError", "did_you_mean", "exclusive", "meant", "named", "output_file", "output_folder", "toml", "whole",
+    "OutputError", "did_you_mean", "exclusive", "frame_rate", "meant", "named", "output_file", "output_folder", "plain", "toml", "whole",
 ]

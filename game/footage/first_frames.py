@@ -43,7 +43,7 @@ def first_poses(footage: Footage, surface: Surface, person: int = 0, motion: Pat
                 raise FootageError(f"{motion}: {fault}") from None
         if len(clip) < 2:
             raise FootageError(f"{motion}: holds one frame; a track begins with two")
-        clip = clip.resample(footage.fps).slice(0, 2)
+        clip = clip.resample(float(footage.fps)).slice(0, 2)
         track = fitted(chain, clip.root, clip.rotations)
     else:
         truth = footage.truth()

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 from gambol.controllers.files import contents, printable, reason
 from gambol.controllers.tracking.cameras import CalibrationError, Lens, read_cameras, write_opencv
 
-from ..files import named, output_folder, whole
+from ..files import frame_rate, named, output_folder, whole
 
 ABOUT, CAMERAS, TRUTH = "footage.json", "cameras.toml", "truth.npz"
 KINDS = ("frame", "mask", "depth")
@@ -35,7 +36,7 @@ class Footage:
 
     path: Path
     lenses: tuple[Lens, ...]
-    fps: int
+    fps: Fraction
     frames: int
     people: tuple[str, ...]
     dropped: dict[str, tuple[int, ...]]
@@ -188,13 +189,16 @@ def read_footage(folder: str | Path) -> Footage:
                 isinstance(one, list) and all(type(n) is int and n >= 0 for n in one) for one in value.values()):
             raise FootageError(f"{folder / ABOUT}: {field}: needs lists of frames by camera; film it anew")
         return {name: tuple(one) for name, one in value.items()}
-    for what, most in (("fps", 1000), ("frames", 10**7)):
-        if type(told.get(what)) is not int or not 1 <= told[what] <= most:
-            raise FootageError(f"{folder / ABOUT}: {what}: needs a whole number from 1 to {most}; film it anew")
+    if type(told.get("frames")) is not int or not 1 <= told["frames"] <= 10**7:
+        raise FootageError(f"{folder / ABOUT}: frames: needs a whole number from 1 to {10**7}; film it anew")
+    try:
+        fps = frame_rate(told.get("fps"), 1000)
+    except ValueError as fault:
+        raise FootageError(f"{folder / ABOUT}: fps: {fault}; film it anew") from None
     people = told.get("people")
     if not isinstance(people, list) or not all(isinstance(name, str) for name in people):
         raise FootageError(f"{folder / ABOUT}: people: needs a list of names; film it anew")
-    return Footage(folder, lenses, told["fps"], told["frames"], tuple(people), lists("dropped"), lists("corrupted"))
+    return Footage(folder, lenses, fps, told["frames"], tuple(people), lists("dropped"), lists("corrupted"))
 
 
 def _read(folder: Path) -> dict[str, Any]:

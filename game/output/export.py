@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,7 @@ def _fill(kept: list, count: int, value: Any) -> None:
     kept.extend([value] * (count - len(kept)))
 
 
-def sampled(moments: Iterable[Any], fps: float) -> Iterable[tuple[World, World, float]]:
+def sampled(moments: Iterable[Any], fps: Fraction | int | float) -> Iterable[tuple[World, World, float]]:
     """Frames at `fps` a second of a session's moments (`gambol.game.session.state.SessionState`), which are RATE a second."""
     number = 0
     for tick, moment in enumerate(moments):

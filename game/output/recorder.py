@@ -1,6 +1,6 @@
 """Recording: frames to a film or to pictures, motion to BVH.
 
-A film is written in fragments into `NAME.part.mp4` (`NAME.part-2.mp4` where that is there already), which plays
+A film is written piece by piece into `NAME.part.mp4` (`NAME.part-2.mp4` where that is there already), which plays
 whenever the program is killed, and becomes `NAME.mp4` when it is complete. Pictures appear one by one, each whole.
 """
 
@@ -20,6 +20,7 @@ from scipy.spatial.transform import Rotation
 from gambol.controllers.body import Clip, Pose, Skeleton
 
 from ..files import exclusive, named, output_file, output_folder, whole
+from .coding import CODINGS, Coding, palettes
 
 PICTURE = re.compile(r"frame_\d{5,}\.png")
 
@@ -47,32 +48,38 @@ class Recorder(Protocol):
     def __exit__(self, *error) -> None: ...
 
 
-def recorder(path: str | Path, size: tuple[int, int], fps: int) -> Recorder:
-    """The recorder for a path: a .mp4 file, or a folder of PNG frames where there is no suffix.
+def recorder(path: str | Path, size: tuple[int, int], fps: Fraction | int) -> Recorder:
+    """The recorder for a path: a file with a suffix of `CODINGS`, or a folder of PNG frames where there is no suffix.
 
-    size: width and height in pixels. RecordingError for any other suffix, OutputError where nothing
+    size: width and height in pixels. RecordingError for any other suffix, or a rate that it can't have, OutputError where nothing
     can be written.
     """
     text, path = str(path), Path(path)
-    if path.suffix.lower() == ".mp4":
+    if path.suffix.lower() in CODINGS:
         return Film(path, size, fps)
     if text.endswith(("/", os.sep)) or path.is_dir() or not path.suffix:
         return Pictures(path, size)
-    raise RecordingError(f"{path}: can't record {path.suffix}; name a .mp4 file, a .bvh file or a folder for PNG frames")
+    raise RecordingError(f"{path}: can't record {path.suffix}; name a .mp4, .webm or .gif file, a .bvh file or a folder for PNG frames")
 
 
 class Film:
-    """An H.264 film. size: width, height; odd ones lose their last row or column, picture is what is left. fps: frames a second.
+    """A film, coded after its suffix. size: width, height; where sides must be even, odd ones lose their last row or column, picture is what
+    is left. fps: frames a second.
 
     OutputError where it can't be written: at once if that can be known, else when it happens.
     """
 
-    def __init__(self, path: str | Path, size: tuple[int, int], fps: int):
-        self.path = output_file(path, ".mp4")
+    def __init__(self, path: str | Path, size: tuple[int, int], fps: Fraction | int):
+        suffix = Path(path).suffix.lower()
+        self.coding = CODINGS[suffix]
+        if fps > self.coding.most:
+            raise RecordingError(f"{path}: has {float(fps):g} frames a second, a {suffix} at most {self.coding.most}")
+        self.path = output_file(path, suffix)
         self.part = self.path.with_stem(f"{self.path.stem}.part")
-        self.size, self.fps, self.count = size, fps, 0
-        self.picture = size[0] - size[0] % 2, size[1] - size[1] % 2
+        self.size, self.fps, self.count = size, Fraction(fps), 0
+        self.picture = (size[0] - size[0] % 2, size[1] - size[1] % 2) if self.coding.even else size
         self._container: Any = None
+        self._palettes: Any = None
 
     def __enter__(self) -> Film:
         import av
@@ -80,15 +87,16 @@ class Film:
 
         with named(self.part):
             self.part = exclusive(self.part)
-            self._container = av.open(str(self.part), "w", format="mp4", options={
-                "movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"})
-        self._stream = self._container.add_stream("libx264", rate=Fraction(self.fps))
+            self._container = av.open(str(self.part), "w", format=self.coding.container, options=dict(self.coding.opened))
+        self._stream = self._container.add_stream(self.coding.encoder, rate=self.fps)
         self._stream.width, self._stream.height = self.picture
-        self._stream.pix_fmt = "yuv420p"
-        # short groups of pictures and no long look-ahead: a kill costs about a second, no more
+        self._stream.pix_fmt = self.coding.pixels
+        self._stream.options = dict(self.coding.encoded)
+        self._stream.codec_context.time_base = 1 / self.fps
+        if self.coding.pixels == "pal8":
+            self._palettes = palettes(self.picture, 1 / self.fps)
+            return self
         self._stream.gop_size = max(self.fps // 2, 1)
-        self._stream.options = {"crf": "18", "preset": "veryfast", "rc-lookahead": "10", "bf": "0"}
-        self._stream.codec_context.time_base = Fraction(1, self.fps)
         # say which matrix the colours went through: players guess differently for small films
         self._stream.codec_context.colorspace = Colorspace.ITU709
         self._stream.codec_context.color_range = ColorRange.MPEG
@@ -101,11 +109,15 @@ class Film:
 
         _check(frame, self.size)
         width, height = self.picture
-        pixels = np.ascontiguousarray(frame[:height, :width])
-        picture = av.VideoFrame.from_ndarray(pixels, format="rgba" if frame.shape[2] == 4 else "rgb24")
-        picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709,
-                                   dst_color_range=ColorRange.MPEG)
-        picture.pts, picture.time_base = self.count, Fraction(1, self.fps)
+        pixels = np.ascontiguousarray(frame[:height, :width, : frame.shape[2] if self._palettes is None else 3])
+        picture = av.VideoFrame.from_ndarray(pixels, format="rgba" if pixels.shape[2] == 4 else "rgb24")
+        if self._palettes is None:
+            picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709,
+                                       dst_color_range=ColorRange.MPEG)
+        picture.pts, picture.time_base = self.count, 1 / self.fps
+        if self._palettes is not None:
+            self._palettes.push(picture)
+            picture = self._palettes.pull()
         with named(self.part):
             self._container.mux(self._stream.encode(picture))
         self.count += 1
@@ -116,7 +128,8 @@ class Film:
                 self._close()
             return
         self._close()
-        _completed(self.part, self.path)
+        with named(self.path):
+            _completed(self.part, self.path, self.coding)
 
     def _close(self) -> None:
         with named(self.part):
@@ -169,12 +182,15 @@ def write_motion(clip: Clip, path: str | Path) -> None:
         write_bvh(clip, path)
 
 
-def _completed(part: Path, path: Path) -> None:
-    """Rewrite a fragmented film as an ordinary one with its index in front, without coding it anew."""
+def _completed(part: Path, path: Path, coding: Coding) -> None:
+    """Rewrite a film in pieces as an ordinary one with its index in front, without coding it anew."""
     import av
 
-    with whole(path) as done, av.open(str(part)) as source, av.open(str(done), "w", format="mp4",
-                                                                    options={"movflags": "faststart"}) as target:
+    if coding.container == "gif":  # is complete as it is
+        part.replace(path)
+        return
+    with whole(path) as done, av.open(str(part)) as source, av.open(
+            str(done), "w", format=coding.container, options={"movflags": "faststart"} if coding.container == "mp4" else {}) as target:
         stream = target.add_stream_from_template(source.streams.video[0])
         for packet in source.demux(video=0):
             if packet.dts is not None:

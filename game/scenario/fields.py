@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetPydanticSchema, ValidationInfo
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, GetPydanticSchema, PlainSerializer, ValidationInfo
 from pydantic_core import core_schema
+
+from ..files import frame_rate, plain
 
 NAME = re.compile(r"[\w-]+( [\w-]+)*")
 
@@ -41,6 +44,7 @@ Speed = Annotated[float, _signed(20)]  # m/s
 Pace = Annotated[float, Field(ge=0.1, le=20, allow_inf_nan=False)]  # m/s; slower is no walk
 Turning = Annotated[float, _signed(20)]  # rad/s
 Degrees = Annotated[float, _signed(3600)]
+FrameRate = Annotated[Fraction, BeforeValidator(frame_rate), PlainSerializer(plain)]
 Seconds = Annotated[float, _positive(3600)]
 Moment = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]  # s
 Point = tuple[Metres, Metres]

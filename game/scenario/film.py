@@ -160,7 +160,7 @@ def run(scenario: Scenario, controller: Any) -> Iterator[Frame]:
     """Every frame of a scenario, in order."""
     for number, before, after, alpha in _sampled(acts(scenario, controller), scenario):
         refused = before.refused if number < scenario.frames - 1 else ended(scenario, before)
-        yield Frame(number, number / scenario.fps, before.world, after.world, alpha, refused)
+        yield Frame(number, float(number / scenario.fps), before.world, after.world, alpha, refused)
 
 
 def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
@@ -174,7 +174,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
     lately: deque[World] = deque(maxlen=PLOTTED if any(shot.panels for shot in scenario.shots) else 1)
     for number, (first, old), (second, new), alpha in _sampled(_kept(takes(scenario, controller), lately), scenario):
         before, after = first.world, second.world
-        frame = Frame(number, number / scenario.fps, before, after, alpha, first.refused if number < scenario.frames - 1 else ended(scenario, first))
+        frame = Frame(number, float(number / scenario.fps), before, after, alpha, first.refused if number < scenario.frames - 1 else ended(scenario, first))
         for line in first.refused:
             told.setdefault(line, frame.time)
         why = tuple(part for line, since in told.items() if frame.time < since + REFUSED for part in broken(line))
@@ -202,7 +202,7 @@ def scenes(scenario: Scenario, controller: Any, shown: Overlays | None = None
 
                 filmed = Filmed(scenario.size)
             about = old.crew[0].watched[0]
-            made[0] = replace(made[0], ink=filmed.ink(old.shot.panels, lately, about, lines, 1.0 / scenario.fps))
+            made[0] = replace(made[0], ink=filmed.ink(old.shot.panels, lately, about, lines, float(1 / scenario.fps)))
         if made[0].overlays.cameras:
             made[0] = replace(made[0], ink=with_cameras(made[0].ink, before, scenario.size))
         yield frame, tuple(made)
@@ -238,11 +238,11 @@ def _sampled(ticks: Iterator[T], scenario: Scenario) -> Iterator[tuple[int, T, T
     """Number, the ticks before and after, and the way between them of every frame of a film."""
     before, after, reached = next(ticks), next(ticks), 0
     for number in range(scenario.frames):
-        # in whole numbers, so that no frame rate drifts
+        # in fractions, so that no frame rate drifts
         wanted, rest = divmod(number * RATE, scenario.fps)
         while reached < wanted:
             before, after, reached = after, next(ticks), reached + 1
-        yield number, before, after, rest / scenario.fps
+        yield number, before, after, float(rest / scenario.fps)
 
 
 def _kept(ticks: Iterator[tuple[Act, Take]], worlds: deque[World]) -> Iterator[tuple[Act, Take]]:

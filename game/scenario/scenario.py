@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path as File
 from typing import Annotated, Any, get_args
 
@@ -16,7 +17,7 @@ from ..files import did_you_mean, meant, toml
 from ..scene import Prop
 from ..world import STAGES
 from .actor_table import ActorTable
-from .fields import Gravity, Moment, Seconds, Table, beside_the_file, one_of, short
+from .fields import FrameRate, Gravity, Moment, Seconds, Table, beside_the_file, one_of, short
 from .follows_table import FollowsTable
 from .prop_table import PROPS, PropTable
 from .shot_table import ShotTable, Shown
@@ -39,7 +40,7 @@ class Scenario(Table):
     title: str
     under: str = ""
     duration: Seconds
-    fps: Annotated[int, Field(ge=1, le=240)] = 60
+    fps: FrameRate = Fraction(60)
     size: tuple[Annotated[int, Field(ge=16, le=8192)], Annotated[int, Field(ge=16, le=8192)]] = (1280, 720)
     overlays: Shown = ("mesh",)
     gravity: Gravity = 9.81
@@ -103,9 +104,9 @@ class Scenario(Table):
         """How many frames the film has."""
         return max(round(self.duration * self.fps), 1)
 
-    def at_fps(self, fps: int) -> Scenario:
+    def at_fps(self, fps: Fraction | int) -> Scenario:
         """The same run filmed at another frame rate; the motion stays as it is."""
-        return self.model_copy(update={"fps": fps})
+        return self.model_copy(update={"fps": Fraction(fps)})
 
     def at_size(self, size: tuple[int, int]) -> Scenario:
         """The same run filmed in pictures of `size` pixels."""

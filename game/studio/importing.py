@@ -12,7 +12,7 @@ import numpy as np
 from gambol.controllers.files import reason
 from gambol.controllers.tracking.cameras import Lens
 
-from ..files import whole
+from ..files import frame_rate, plain, whole
 from ..footage import FootageError, begun, complete, file_of, fingerprint
 
 BORDER = 16
@@ -40,11 +40,11 @@ def imported(films: Sequence[Path], lenses: Sequence[Lens], folder: str | Path, 
     films = paired(films, lenses)
     tapes = [_pictures(film, lens) for film, lens in zip(films, lenses)]
     smaller = [lens if width is None else lens.scaled(width) for lens in lenses]
-    fps = round(float(next(tapes[0])))
+    fps = next(tapes[0])
     for tape in tapes[1:]:
         next(tape)
     about: dict[str, Any] = {"film": fingerprint([(str(film), film.stat().st_size) for film in films], [(x.size, x.numbers.tolist()) for x in smaller]),
-                             "title": films[0].stem, "fps": fps, "dropped": {}, "corrupted": {}}
+                             "title": films[0].stem, "fps": plain(fps), "dropped": {}, "corrupted": {}}
     path, count = begun(folder, smaller, about), 0
     for number, row in enumerate(zip_longest(*tapes)):
         if any(one is None for one in row):
@@ -70,7 +70,7 @@ def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
             if not file.streams.video:
                 raise FootageError(f"{film}: holds no pictures: no film, or one that is cut short")
             stream = file.streams.video[0]
-            yield stream.average_rate or 30
+            yield frame_rate(stream.average_rate or 30)
             for frame in file.decode(stream):
                 picture = frame.to_ndarray(format="rgb24")
                 more = np.array(lens.size[::-1]) - picture.shape[:2]

@@ -11,7 +11,7 @@ import numpy as np
 
 from gambol.controllers.tracking.cameras import Lens
 
-from ..files import whole
+from ..files import plain, whole
 from ..footage import FootageError, begun, complete, file_of, fingerprint
 from ..output import takes, write
 from ..scenario import Scenario, run
@@ -39,7 +39,7 @@ class Plan:
         fates = {lens.name: [self.sensor.fate(c, t) for t in range(film.frames)] for c, lens in enumerate(self.lenses)}
         return {"film": fingerprint(film.model_dump_json(), [(x.name, x.size, x.numbers.tolist()) for x in self.lenses],
                                     self.sensor.model_dump_json(), self.preset, self.kind),
-                "title": film.title, "fps": film.fps, "frames": film.frames, "sensor": self.sensor.model_dump(),
+                "title": film.title, "fps": plain(film.fps), "frames": film.frames, "sensor": self.sensor.model_dump(),
                 **{what: {name: [t for t, fate in enumerate(mine) if fate == what] for name, mine in fates.items()}
                    for what in ("dropped", "corrupted")}}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from gambol.controllers.body import human
 from gambol.controllers.tracking.cameras import Lens
 from gambol.controllers.tracking.silhouettes import View, rendered
 
-from ..files import whole
+from ..files import plain, whole
 from ..render import dressed
 from ..scene import Figure, Prop
 from ..meshes import posed_meshes, solid_meshes
@@ -59,12 +60,12 @@ class Truth:
         self.pixels.append(np.stack([s[0] for s in seen]))
         self.boxes.append(np.stack([s[1] for s in seen]))
 
-    def write(self, folder: Path, fps: int) -> None:
+    def write(self, folder: Path, fps: Fraction) -> None:
         """truth.npz, and coco.json of each camera."""
         arrays: dict[str, Any] = {
             "joints": np.stack(self.joints), "orientations": np.stack(self.orientations), "contacts": np.stack(self.contacts),
             "pixels": np.stack(self.pixels), "boxes": np.stack(self.boxes), "names": np.array(human().names), "people": np.array(self.people),
-            "fps": np.array(fps)}
+            "fps": np.array(plain(fps))}
         with whole(folder / "truth.npz") as part:
             with open(part, "wb") as file:
                 np.savez_compressed(file, **arrays)

@@ -102,7 +102,7 @@ class Filmed(Controller):
             aside = aside + [float(ground[0]) - middle[0], float(floor), float(ground[1]) - middle[1]]
         poses = [Pose(pose.root + aside, pose.rotations) for pose in shown]
         state = CharacterState(np.array([middle[0] + aside[0], middle[1] + aside[2], heading]), np.zeros(3), poses[-1], np.zeros(4, bool), None,
-                               float(floor), poses[0] if len(poses) > 1 else None, 1.0 / self.footage.fps if len(poses) > 1 else 0.0)
+                               float(floor), poses[0] if len(poses) > 1 else None, float(1 / self.footage.fps) if len(poses) > 1 else 0.0)
         entered = self._tracking(aside).enter(state, Intent())
         return replace(entered, memory=Filming(0, aside, entered.memory))
 

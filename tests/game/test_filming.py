@@ -79,7 +79,7 @@ def test_another_film_is_not_mixed_in(plan, tmp_path):
         next(shoot(plan, tmp_path / "mine", Glide(), Drawing()))
 
 
-@pytest.mark.parametrize("field, value, told", [("fps", 0, "fps: needs a whole"), ("frames", "x", "frames: needs"), ("people", 3, "people: needs"),
+@pytest.mark.parametrize("field, value, told", [("fps", 0, "fps: needs frames a second"), ("frames", "x", "frames: needs"), ("people", 3, "people: needs"),
                                                 ("dropped", {"x": [1]}, "dropped: needs"), ("version", 9, "no footage of this version")])
 def test_broken_footage_is_told_of_in_a_line(plan, tmp_path, field, value, told):
     list(shoot(plan, tmp_path / "out", Glide(), Drawing()))

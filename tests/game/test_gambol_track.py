@@ -1,6 +1,7 @@
 """Footage tracked: from masks and from painted pictures, from the truth's first poses or a file's, and what is said of broken folders."""
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -120,7 +121,7 @@ def test_what_cannot_be_tracked_is_told_in_a_line(footage, tmp_path):
     one_line(run(footage.path, "-o", out, "--person", "Bob"), "shows no Bob")
     one_line(run(footage.path, "-o", tmp_path / "a.txt"), "a.txt")
     one_line(run(footage.path, "-o", out, "--start", tmp_path / "no.bvh"), "no.bvh")
-    one_line(run(footage.path, "-o", out, "--overlay", tmp_path / "film.gif"), "film.gif")
+    one_line(run(footage.path, "-o", out, "--overlay", tmp_path / "film.avi"), "film.avi")
     broken = copied(footage, tmp_path / "one")
     (broken / "truth.npz").write_bytes(b"PK")
     one_line(run(broken, "-o", out), "truth.npz")
@@ -212,13 +213,13 @@ def mp4(path, pictures, fps=30):
 def test_real_films_become_footage_and_clicks_begin_a_track(footage, tmp_path):
     """The pictures as films, the first frame's joints as clicks: a body is followed whose truth nobody tells."""
     for lens in footage.lenses:
-        mp4(tmp_path / f"{lens.name}.mp4", [footage.picture(lens.name, "frame", number) for number in range(4)])
+        mp4(tmp_path / f"{lens.name}.mp4", [footage.picture(lens.name, "frame", number) for number in range(4)], Fraction(30000, 1001))
     films = [tmp_path / f"cam{k}.mp4" for k in (2, 0, 1)]  # named after their cameras
     done = CliRunner().invoke(cli.app, ["footage", *map(str, films), "--cameras", str(footage.path / "cameras.toml"), "-o", str(tmp_path / "real"),
                                         "--name", "Bob"])
     assert done.exit_code == 0 and "3 cameras, 4 frames of Bob" in done.output, done.output
     real = read_footage(tmp_path / "real")
-    assert real.people == ("Bob",) and real.fps == 30 and real.frames == 4
+    assert real.people == ("Bob",) and real.fps == Fraction(30000, 1001) and real.frames == 4
     away = np.abs(real.picture("cam0", "frame", 2).astype(int) - footage.picture("cam0", "frame", 2))
     assert away.mean() < 6
     pixels, names = footage.truth()["pixels"][0, :, 0], [str(name) for name in footage.truth()["names"]]

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from fractions import Fraction
 from itertools import islice
 
 import av
@@ -130,8 +131,22 @@ def test_the_path_says_what_is_recorded(tmp_path):
     assert isinstance(recorder(tmp_path / "a.mp4", (2, 2), 30), Film)
     assert isinstance(recorder(tmp_path / "frames", (2, 2), 30), Pictures)
     assert isinstance(recorder(f"{tmp_path}/v1.2/", (2, 2), 30), Pictures)
-    with pytest.raises(ValueError, match="can't record .gif"):
-        recorder("a.gif", (2, 2), 30)
+    with pytest.raises(ValueError, match="can't record .avi"):
+        recorder("a.avi", (2, 2), 30)
+    with pytest.raises(ValueError, match="a.gif: has 60 frames a second, a .gif at most 50"):
+        recorder("a.gif", (2, 2), 60)
+
+
+@pytest.mark.parametrize("name, pictures, rate", [("a.mp4", 18, Fraction(24000, 1001)), ("a.webm", 18, Fraction(24000, 1001)), ("a.gif", 12, 25)])
+def test_every_kind_of_film_keeps_its_frames_colours_and_rate(tmp_path, name, pictures, rate):
+    with recorder(tmp_path / name, (64, 48), rate) as film:
+        for i in range(pictures):
+            film.write(picture(i + 3))
+    frames, stream, duration = read(tmp_path / name)
+    assert len(frames) == pictures and stream.average_rate == rate and duration == pytest.approx(pictures / rate, abs=0.05)
+    assert all(np.abs(frame[24, 2].astype(int) - [200, 160, 0]).max() < 24 and np.abs(frame[24, 60].astype(int) - [200, 0, 0]).max() < 24
+               for frame in frames)
+    assert [file.name for file in tmp_path.iterdir()] == [name]
 
 
 def test_frames_that_do_not_fit_are_refused(tmp_path):
