@@ -55,6 +55,9 @@ GLIDES = 0.12
 RUNS, SECOND, RUNS_ON = (1.3, 2.5), (0.42, 0.6), 0.3
 """Who is to be faster than the first of these [m/s], altogether from the second on, takes the second step of a turn, from and until so long after its first toe-off in
 phase, by this share faster."""
+STRETCHES, STRETCHED = (1.25, 1.08), 0.8
+"""Recorded people set off at 1.1 m/s: the second step of a turn comes to go as fast as is asked for, by strides that are at most so many times as long, into
+a walk and into a run, until so long after the first toe-off in phase."""
 SMALLEST = 0.0, 1.3
 """Smaller turns than this [rad] are such ones, whose way is turned less: no smaller ones were recorded."""
 FOLLOWS = 0.04
@@ -126,7 +129,7 @@ def enter_turn(m, turns, turn, since, row):
     m.turns_to = m.towards[0]
     m.turn_ends = m.ground[2] + turn
     m.turn, m.turned, m.first = turn, since, 0 if turn > 0.0 else 1
-    m.turn_gain = 1.0
+    m.turn_gain, m.turn_goes = 1.0, m.towards[1]
     m.turn_haste = 0.0 if m.spot else smooth((m.towards[1] - RUNS[0]) / (RUNS[1] - RUNS[0]))
     m.stray[0] = m.stray[1] = m.glide[0] = m.glide[1] = 0.0
     whole = way_kernel(m, turns, STRIKE if m.spot else END) - way_kernel(m, turns, since)
@@ -260,7 +263,7 @@ def lead_turn(m, turns, agility, dt):
         half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
         step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
     turned = way_kernel(m, turns, m.turned + step) - way_kernel(m, turns, m.turned)
-    pace, fades = agility * _tempo(m, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
+    pace, fades = _pace(m, turns, agility, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
     m.glide[0], m.glide[1] = fades * m.glide[0], fades * m.glide[1]
     c, s = math.cos(m.ground[2] + 0.5 * turned), math.sin(m.ground[2] + 0.5 * turned)
     glides = s * m.glide[0] + c * m.glide[1], 0.0, c * m.glide[0] - s * m.glide[1]
@@ -291,7 +294,7 @@ def turn_ahead(m, turns, agility, later, ground):
     for k in range(PIECES):
         since = m.turned + k * step
         time = step * turn_time(m, turns, since + 0.5 * step) / agility
-        pace = agility * _tempo(m, since + 0.5 * step)
+        pace = _pace(m, turns, agility, since + 0.5 * step)
         omega = (way_kernel(m, turns, since + step) - way_kernel(m, turns, since)) / max(time, 1e-6)
         advance(ground, pace * turn_kernel(m, turns, WAY_AT, since + 0.5 * step), omega, pace * turn_kernel(m, turns, WAY_AT + 2, since + 0.5 * step), time)
         _back(m, ground, since, since + step)
@@ -299,6 +302,18 @@ def turn_ahead(m, turns, agility, later, ground):
     far = (1.0 - 2.0 ** (-whole / GLIDES)) * GLIDES / math.log(2.0)
     ground[0], ground[1] = ground[0] + far * m.glide[0], ground[1] + far * m.glide[1]
     return whole
+
+
+@kernel
+def _pace(m, turns, agility, since):
+    """How many times as fast as recorded a turn's ground frame goes there."""
+    pace = agility * _tempo(m, since)
+    if m.spot or since < SECOND[0]:
+        return pace
+    ends = agility * _tempo(m, END) * math.hypot(turn_kernel(m, turns, WAY_AT, END), turn_kernel(m, turns, WAY_AT + 2, END))
+    longest = STRETCHES[0] + (STRETCHES[1] - STRETCHES[0]) * m.turn_haste
+    stretch = min(max(m.turn_goes / ends, 1.0), longest)
+    return pace * (1.0 + (stretch - 1.0) * smooth((since - SECOND[0]) / (STRETCHED - SECOND[0])))
 
 
 @kernel

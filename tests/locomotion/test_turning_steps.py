@@ -48,6 +48,16 @@ def test_who_goes_another_way_turns_there_in_two_steps(locomotion):
     assert np.allclose([np.hypot(*state.velocity[:, [0, 2]].T) for state in states[-6:]], 1.3, atol=0.05)
 
 
+def test_a_turns_second_step_comes_to_the_speed_that_is_asked_for(locomotion):
+    """Those recorded set off at 1.1 m/s; whoever is to go faster needs no third step for it."""
+    degrees = np.array([70.0, 90, 135, 160, -70, -90, -135, -160])
+    states = turned(locomotion, degrees, 1.3, 1.6)
+    turns = np.array([state.memory["turn"] != 0 for state in states])
+    last = len(turns) - turns[::-1].argmax(0)
+    ends = np.array([np.hypot(*states[t].velocity[n, [0, 2]]) for n, t in enumerate(last)])
+    assert np.allclose(ends, 1.3, atol=0.04)  # [m/s]; 1.1 to 1.2 by strides as recorded
+
+
 def test_the_foot_that_stands_is_where_a_turns_own_poses_have_it(locomotion):
     """Recorded people pivot about a foot that stays: a turn whose poses slide on it pulls that leg straight, and its knee whips as it leaves."""
     degrees = np.array([60.0, 90, 120, 150, 178, -60, -90, -120, -150, -178])
