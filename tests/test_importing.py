@@ -12,7 +12,9 @@ from gambol.controllers.body import Clip, Pose, hull, human
 from gambol.controllers.contract import CharacterState, Controller, Goal, Intent, Leap, Status, Strike
 from gambol.controllers.jump import Physique
 from gambol.controllers.locomotion import Blender, ControlSpace, Locomotion, fourier
-from gambol.controllers.mocap import Rig, calibrate, retarget, write_bvh
+from gambol.controllers.mocap import Rig, calibrate, load, retarget, write_bvh
+from gambol.controllers.navigation import steer, wish
+from gambol.controllers.navigation.planning import plan
 from gambol.controllers.person import person
 from gambol.controllers.reconstruction import parse
 from gambol.controllers.supervisor import Supervisor
@@ -71,6 +73,18 @@ def test_a_step_takes_a_state_and_an_intent(walker):
         for state, intent in ((someone.start(), np.array([1.0, 0.0, 0.0])), (Intent(), someone.start())):
             with pytest.raises(ValueError, match="a step takes a CharacterState, an Intent and seconds"):
                 someone.step(state, intent, DT)
+
+
+@pytest.mark.parametrize("call, says", [
+    (lambda: steer(None, (0.0, 1.0)), "a ground is .* x, z .*got None"), (lambda: steer((0.0, 0.0), (0.0, 1.0)), r"a ground is .*got \(0.0, 0.0\)"),
+    (lambda: steer((0.0, 0.0, 0.0), "fast"), "a velocity is .*got 'fast'"), (lambda: steer((0.0, 0.0, 0.0), 1.0), "a velocity is .*got 1.0"),
+    (lambda: plan(None, (1, 2, 0)), "ground must be finite numbers, got None"), (lambda: plan((0, 0), (1, 2, 0)), r"ground is three numbers.*got \(0, 0\)"),
+    (lambda: plan((0, 0, 0), "there"), "goal must be finite numbers, got there"),
+    *((lambda time=time: wish(plan((0, 0, 0), (1, 2, 0)), time, (0, 0, 0), (0, 0, 0)), "a time into a plan is a number of seconds") for time in (None, np.nan, np.inf)),
+    (lambda: load(None), "a motion file is named by a path, got None")])
+def test_what_is_no_place_time_or_path_is_told_in_a_line(call, says):
+    with pytest.raises(ValueError, match=says):
+        call()
 
 
 def test_places_and_impulses_are_numbers():

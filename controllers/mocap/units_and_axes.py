@@ -60,7 +60,10 @@ def read(path, *, asf=None) -> Clip:
 
     asf: the skeleton of an AMC file, by default the one beside it. MotionFileError for other endings.
     """
-    ending = Path(path).suffix.lower()
+    try:
+        ending = Path(path).suffix.lower()
+    except TypeError:
+        raise MotionFileError(f"a motion file is named by a path, got {path!r}") from None
     if ending == ".bvh":
         return read_bvh(path)
     if ending == ".amc":

@@ -42,8 +42,14 @@ def wish(plan: Plan, time: float, ground: np.ndarray, velocity: np.ndarray, foll
     his controller's `readiness`.
 
     ground: (3,) x, z [m], heading [rad], where the walker is. velocity: (3,) how he moves. Nothing once he has arrived, or where
-    there is no plan.
+    there is no plan. ValueError for a time that is none.
     """
+    try:
+        known = math.isfinite(time)
+    except TypeError:
+        known = False
+    if not known:
+        raise ValueError(f"a time into a plan is a number of seconds, got {time!r}")
     if plan.reason or arrived(plan, time, ground, following):
         return np.zeros(3)
     return plan.wished(time, ground, velocity, following)

@@ -62,9 +62,9 @@ def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steer
 
     With nothing to face, the character turns to where it goes and walks only as far as it
     already looks there: a wish to the side makes an arc, one straight back turns on the spot.
+    ValueError for what has another shape.
     """
-    heading = np.asarray(ground, float)[..., 2]
-    velocity = np.asarray(velocity, float)
+    heading, velocity = _numbers("ground is (..., 3) x, z [m], heading [rad]", ground, 3)[..., 2], _numbers("velocity is (..., 2) along x and z [m/s]", velocity, 2)
     speed = np.hypot(velocity[..., 0], velocity[..., 1])
     towards = np.arctan2(velocity[..., 0], velocity[..., 1])
 
@@ -83,6 +83,17 @@ def steer(ground, velocity, facing=None, turning=0.0, settings: Steering = Steer
         velocity[..., 0] * cosine - velocity[..., 1] * sine), -1)
     ends = np.where(held, np.where(speed < settings.fade, facing, np.nan), np.where(speed > settings.fade, towards, np.nan))
     return Intent(within(np.where(held[..., None], strafe, free), settings.reach), towards=stacked(ends, np.where(held, 0.0, speed)))
+
+
+def _numbers(what: str, value: ArrayLike, count: int) -> np.ndarray:
+    """(..., count) numbers, which may be NaN."""
+    try:
+        numbers = np.asarray(value, float)
+    except (TypeError, ValueError):
+        numbers = np.zeros(0)
+    if numbers.shape[-1:] != (count,):
+        raise ValueError(f"a {what}; got {value!r}")
+    return numbers
 
 
 def within(velocity, reach: Reach) -> np.ndarray:

@@ -64,7 +64,7 @@ def plan(ground: ArrayLike, goal: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.
     leaving: (3,) how he moves on as he is there; by default he stands. aside: the clearances where he faces something and where he has it behind him [m]: with
     these he side-steps through narrow passages. size: by how much larger all is in words, where somebody of another size is planned for in a smaller world. A goal that can't be reached gives a plan with a reason. ValueError for what is no place, velocity, weight or limit.
     """
-    return plans(ground, np.asarray(goal, float)[None], velocity, weights, limits, around, clearance, floor, leaving, aside, size)[0]
+    return plans(ground, _numbers("goal", goal)[None], velocity, weights, limits, around, clearance, floor, leaving, aside, size)[0]
 
 
 def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 0.0), weights: Weights = HUMAN,
@@ -74,9 +74,7 @@ def plans(ground: ArrayLike, goals: ArrayLike, velocity: ArrayLike = (0.0, 0.0, 
     goals = _numbers("goal", goals)
     if goals.ndim != 2 or goals.shape[1] != 3:
         raise ValueError(f"a goal is x, z [m] and heading [rad], got shape {goals.shape[1:]}")
-    grounds = np.array(np.broadcast_to(_numbers("ground", ground), goals.shape))  # kernels are compiled for what may be written to
-    velocities = np.broadcast_to(_numbers("velocity", velocity), goals.shape)
-    onward = np.broadcast_to(_numbers("leaving", leaving), goals.shape)
+    grounds, velocities, onward = (_each(name, value, len(goals)) for name, value in (("ground", ground), ("velocity", velocity), ("leaving", leaving)))
     for what, moving in (("starts", velocities), ("leaves", onward)):
         if np.abs(moving).max(initial=0.0) > FASTEST:
             raise ValueError(f"nobody {what} faster than {FASTEST:g} m/s or rad/s, got {moving}")
@@ -124,10 +122,21 @@ def rehearse() -> None:
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:
-    value = np.asarray(value, float)
-    if not np.isfinite(value).all():
+    try:
+        numbers = np.asarray(value, float)
+    except (TypeError, ValueError):
+        numbers = np.full(1, np.nan)
+    if not np.isfinite(numbers).all():
         raise ValueError(f"{name} must be finite numbers, got {value}")
-    return value
+    return numbers
+
+
+def _each(name: str, value: Any, count: int) -> np.ndarray:
+    """(3,) or (count, 3) finite numbers as (count, 3). ValueError for others."""
+    numbers = _numbers(name, value)
+    if numbers.shape not in ((3,), (count, 3)):
+        raise ValueError(f"{name} is three numbers, or three for each goal; got {value}")
+    return np.array(np.broadcast_to(numbers, (count, 3)))  # kernels are compiled for what may be written to
 
 
 def unfit(goal: ArrayLike, around: Sequence[Any], floor: float = 0.0, clearance: float = SHOULDER, size: float = 1.0) -> str:
