@@ -112,6 +112,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     from gambol.controllers.tracking import Tracker, TrackerSettings, fitted_shape
     from gambol.controllers.tracking.twists import local_turns
 
+    from ..files import plain
     from ..meshes import surface_of
     from ..output import Take, checked, recorder, write
     from ..footage import checked as complete
@@ -153,7 +154,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
             if tape is not None:
                 tape.write(overlaid(film, surface, number, pose))
     turned = [local_turns(surface.chain, pose) for pose in poses]
-    files = write(out, [Take(film.people[who], surface.chain.skeleton, tuple(turned), np.zeros((len(poses), 4), bool))], film.fps)
+    files = write(out, [Take(film.people[who], surface.chain.skeleton, tuple(turned), np.zeros((len(poses), 4), bool))], plain(film.fps))
     off = error_of(film, surface, poses, who)
     say(f"{files[0]}: {len(poses)} frames of {film.people[who]}" + (
         "" if off is None else f"; joints {100 * off.mean():.1f} cm from the truth, {100 * off.max():.0f} at worst"))

@@ -77,7 +77,7 @@ def shoot(plan: Plan, folder: str | Path, controller: Any, stage: Any, tell: Cal
             drawn += 1
         yield drawn
     truth.write(path, film.fps)
-    write(path / "motion.bvh", takes(moments), film.fps)
+    write(path / "motion.bvh", takes(moments), plain(film.fps))
     complete(path, truth.people)
     for line in frame.refused:
         tell(line)
