@@ -40,10 +40,11 @@ GIF_RATE = 25
 
 def palettes(size: tuple[int, int], tick: Fraction) -> Any:
     """A filter that gives each picture the 256 colours that suit it. tick: what its times count in [s]."""
+    from av import VideoFormat
     from av.filter import Graph
 
     graph = Graph()
-    source = graph.add_buffer(width=size[0], height=size[1], format="rgb24", time_base=tick)
+    source = graph.add_buffer(width=size[0], height=size[1], format=VideoFormat("rgb24"), time_base=tick)
     split, palette = graph.add("split"), graph.add("palettegen", "stats_mode=single")
     use, sink = graph.add("paletteuse", "new=1:dither=bayer:bayer_scale=4:diff_mode=rectangle"), graph.add("buffersink")
     source.link_to(split)
