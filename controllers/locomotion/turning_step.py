@@ -55,9 +55,9 @@ GLIDES = 0.12
 RUNS, SECOND, RUNS_ON = (1.3, 2.5), (0.42, 0.6), 0.3
 """Who is to be faster than the first of these [m/s], altogether from the second on, takes the second step of a turn, from and until so long after its first toe-off in
 phase, by this share faster."""
-STRETCHES, STRETCHED = (1.25, 1.08), 0.8
-"""Recorded people set off at 1.1 m/s: the second step of a turn comes to go as fast as is asked for, by strides that are at most so many times as long, into
-a walk and into a run, until so long after the first toe-off in phase."""
+STRETCHES, STRETCHED = (0.45, 1.25, 1.08), 0.38
+"""Recorded people set off at 1.1 m/s. Whoever is to go slower takes strides that are so many times as long at least, from the first on; whoever is to go faster
+longer ones in his second, so many times at most into a walk and into a run. Strides come to be as long within so much phase."""
 SMALLEST = 0.0, 1.3
 """Smaller turns than this [rad] are such ones, whose way is turned less: no smaller ones were recorded."""
 FOLLOWS = 0.04
@@ -308,12 +308,13 @@ def turn_ahead(m, turns, agility, later, ground):
 def _pace(m, turns, agility, since):
     """How many times as fast as recorded a turn's ground frame goes there."""
     pace = agility * _tempo(m, since)
-    if m.spot or since < SECOND[0]:
+    if m.spot or since <= 0.0:
         return pace
     ends = agility * _tempo(m, END) * math.hypot(turn_kernel(m, turns, WAY_AT, END), turn_kernel(m, turns, WAY_AT + 2, END))
-    longest = STRETCHES[0] + (STRETCHES[1] - STRETCHES[0]) * m.turn_haste
-    stretch = min(max(m.turn_goes / ends, 1.0), longest)
-    return pace * (1.0 + (stretch - 1.0) * smooth((since - SECOND[0]) / (STRETCHED - SECOND[0])))
+    most = STRETCHES[1] + (STRETCHES[2] - STRETCHES[1]) * m.turn_haste
+    stretch = min(max(m.turn_goes / ends, STRETCHES[0]), most)
+    begins = SECOND[0] if stretch > 1.0 else 0.0
+    return pace * (1.0 + (stretch - 1.0) * smooth((since - begins) / STRETCHED))
 
 
 @kernel
