@@ -15,8 +15,10 @@ from .first_stride import shift_left
 from .memory import WALK
 from .minimum_jerk import smooth
 from .root_motion import cadence_kernel, short_way
-from .turning_step import BEFORE, GOES, enter_turn
+from .turning_step import BEFORE, enter_turn
 
+GOES = 0.5
+"""Who will be slower than this [m/s] needs no turns of those who walk."""
 BACK = 2.75
 """Who is told to face another way by more than this [rad] turns back …"""
 LEAST, GONE = 0.5, 1.2

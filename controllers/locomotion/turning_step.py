@@ -42,7 +42,7 @@ SHIFTS, HASTE = (0.65, 0.25), (2.6, 1.0)
 FROM, FARTHEST = (0.9, 0.6), (4.0, 2.0)
 """Smaller turns than the first [rad] are walked and stepped as the gait has them, into a walk and on the spot; larger ones than the second
 are made in two."""
-GOES, STANDS = 0.5, 0.05
+GOES, STANDS = 0.25, 0.05
 """Who will be faster than the first [m/s] turns into a walk, who will be no faster than the second on the spot."""
 OTHERWISE = 0.6
 """Who is told to face another way than that by more than this [rad] leaves a turn."""
@@ -55,7 +55,7 @@ GLIDES = 0.12
 RUNS, SECOND, RUNS_ON = (1.3, 2.5), (0.42, 0.6), 0.3
 """Who is to be faster than the first of these [m/s], altogether from the second on, takes the second step of a turn, from and until so long after its first toe-off in
 phase, by this share faster."""
-STRETCHES, STRETCHED = (0.45, 1.25, 1.08), 0.38
+STRETCHES, STRETCHED = (0.3, 1.25, 1.08), 0.38
 """Recorded people set off at 1.1 m/s. Whoever is to go slower takes strides that are so many times as long at least, from the first on; whoever is to go faster
 longer ones in his second, so many times at most into a walk and into a run. Strides come to be as long within so much phase."""
 SMALLEST = 0.0, 1.3

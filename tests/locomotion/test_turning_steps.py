@@ -48,7 +48,7 @@ def test_who_goes_another_way_turns_there_in_two_steps(locomotion):
     assert np.allclose([np.hypot(*state.velocity[:, [0, 2]].T) for state in states[-6:]], 1.3, atol=0.05)
 
 
-@pytest.mark.parametrize("speed", [0.6, 0.9, 1.3])
+@pytest.mark.parametrize("speed", [0.4, 0.6, 0.9, 1.3])
 def test_turns_come_to_the_speed_that_is_asked_for(locomotion, speed):
     """Those recorded set off at 1.1 m/s: whoever tilts his stick a little is not thrown ahead, and whoever is to go faster needs no third step for it."""
     degrees = np.array([70.0, 90, 135, 160, -70, -90, -135, -160])
