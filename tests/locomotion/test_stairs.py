@@ -17,7 +17,14 @@ from gambol.controllers.locomotion.memory import RUN  # noqa: E402
 from gambol.controllers.locomotion.tops import tops  # noqa: E402
 from gambol.controllers.locomotion.treads import most_speed, on_stairs  # noqa: E402
 from gambol.controllers.navigation import steer  # noqa: E402
-from stairs import flight, ran, walked  # noqa: E402
+from stairs import depth, flight, ran, walked  # noqa: E402
+
+
+def test_a_point_at_the_foot_of_a_riser_is_as_deep_in_it_as_it_is_beyond_it():
+    """However little it is below the tread that it stands on."""
+    around, _ = flight(0.16, 0.30, 1.0)
+    for along, under in ((0.02, 0.0), (0.02, 0.0005), (0.05, -0.001)):
+        assert depth(np.array([[0.0, -under, 2.0 + along]]), around) == pytest.approx(np.hypot(along, max(under, 0.0)), abs=0.01)
 
 
 @settings(max_examples=6, deadline=None)
