@@ -207,6 +207,7 @@ def leave_level(m):
     """Note where feet stand while nothing is about: what comes about in mid-swing is passed over from there on."""
     place = np.empty(2)
     for foot in range(2):
+        m.kept[foot] = 0
         if max(m.grip[2 * foot], m.grip[2 * foot + 1]) >= 1.0:
             _left_at(m, foot, place)
 
