@@ -48,7 +48,7 @@ def shape_command(m, wish, lean, dt, settings, table, walk, run, stance, p, inne
     no faster than legs can push, and as hard only as they bear, so that feet need not slip; before stairs no faster than feet find them. lean: the share of its
     strength with which a body pushes. stance: where heels and balls are at rest (4, 2) [m]."""
     m.wished[0], m.wished[1] = wish[2], wish[0]
-    edge = m.brink > 0.0 and (m.halts == NOWHERE or m.halts == CHOSE)  # who comes to rest at a place was told where
+    edge = m.brink > 0.0 and (m.halts == NOWHERE or m.halts >= CHOSE)  # who comes to rest at a place was told where
     off = edge and runs_off(m)
     ahead, left = (m.command[0], m.command[2]) if off else (wish[0], wish[2])
     speed = math.hypot(ahead, left)

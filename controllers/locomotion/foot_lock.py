@@ -20,7 +20,7 @@ from ..compiled import kernel
 from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
 from .kernel import LABELS_AT
-from .last_stride import BESIDE
+from .last_stride import BESIDE, OFF, STAYS
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .root_motion import as_runner, sooner
 from .short_leg import STRAINED, give_way
@@ -275,7 +275,7 @@ def at_rest(m, legs):
         far = math.hypot(x, z)
         if m.cramped:  # walls leave them no room there: near to where they were set down
             far = min(far, math.hypot(x - m.land[foot, 0], z - m.land[foot, 1]))
-        if far > (BESIDE + 0.01 if m.waits else CLOSE) or m.lift[foot] > 0.003:
+        if far > (BESIDE + OFF + 0.01 if m.waits else CLOSE) and not (m.waits and m.halts == STAYS) or m.lift[foot] > 0.003:
             return False
     return True
 

@@ -10,7 +10,7 @@ import math
 
 from ..compiled import kernel
 from .first_stride import shift_left
-from .last_stride import AHEAD, NOWHERE, STOPS, lets_go, time_to_stop, to_halt
+from .last_stride import AHEAD, NOWHERE, STAYS, STOPS, lets_go, time_to_stop, to_halt
 from .root_motion import short_way
 
 THERE, STRAIGHT = 0.02, 0.034
@@ -35,8 +35,8 @@ def heed_halt(m, wish, settings, table, dt):
         return
     turn = 0.0 if math.isnan(m.halt[2]) else short_way(m.halt[2] - m.ground[2])
     if m.settled:
-        m.halts = AHEAD
-        if math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) <= THERE and abs(turn) <= STRAIGHT:
+        m.halts = STAYS if m.halts == STAYS or m.halts == STOPS and (m.kept[0] or m.kept[1]) else AHEAD  # as near as the ground has room for his feet
+        if m.halts == STAYS or math.hypot(m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]) <= THERE and abs(turn) <= STRAIGHT:
             wish[0] = wish[1] = wish[2] = 0.0
         else:
             _step_there(m, wish)

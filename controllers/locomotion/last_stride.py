@@ -41,8 +41,8 @@ SHORT, LONGER = 0.7, 0.2
 """He slows down with this power of the time that is left at least where his end is given, and sets a foot down at most so far [m] from where it would come down."""
 AT, CROWDED = 0.1, 0.08
 """Who is no farther from his place than this [m] is there; a foot that is kept by more than the second [m] from where it belongs is crowded out by the other."""
-NOWHERE, AHEAD, STOPS, CHOSE = range(4)
-"""Whether there is a place where somebody is to come to rest: none; one ahead; he has let go of his wish for it; he stops at one of his own choice."""
+NOWHERE, AHEAD, STOPS, CHOSE, STAYS = range(5)
+"""Whether there is a place where somebody is to come to rest: none; one ahead; he has let go of his wish for it; he stops at one of his own choice; he has stepped there once more, and stays as his feet come down."""
 BEYOND, ON_ITS_WAY = 0.1, 0.5 + STRIKE
 """He stops over a foot that he would be beyond by no more than this [m]; one that is on its way with less than the second left, in phase, is known."""
 HALFWAY = 0.5
@@ -85,7 +85,7 @@ def plan_stop(m, settings, table, stance):
         return
     if m.stop <= 0.0:
         if m.halts == CHOSE:  # he has stopped, and steps once more: where he is
-            m.halt[0], m.halt[1] = m.ground[0], m.ground[1]
+            m.halt[0], m.halt[1], m.halts = m.ground[0], m.ground[1], STAYS
         if m.family != WALK or speed < LEAST and m.halts < STOPS:
             return
         far = to_halt(m) if m.halts >= STOPS else 0.0
@@ -207,7 +207,9 @@ def _most(settings):
 
 @kernel
 def to_halt(m):
-    """How far somebody still is from where he is to come to rest [m], 0 where he does not go there; beside a place of his own choice, how far ahead it is."""
+    """How far somebody still is from where he is to come to rest [m], 0 where he does not go there, or stays; beside a place of his own choice, how far ahead it is."""
+    if m.halts == STAYS:
+        return 0.0
     x, z = m.halt[0] - m.ground[0], m.halt[1] - m.ground[1]
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     ahead = (s * x + c * z) * m.command[0] + (c * x - s * z) * m.command[2]
@@ -246,8 +248,9 @@ def bring_together(m, foot, stance):
     elif m.halts >= STOPS and 0.5 < m.stop <= 0.5 + STRIKE and foot != _last(m):
         heading = m.ground[2] if math.isnan(m.halt[2]) else m.halt[2]
         c, s = math.cos(heading), math.sin(heading)
-        x = m.halt[0] + c * stance[ball, 0] + s * stance[ball, 1] - m.coming[foot, 1, 0]
-        z = m.halt[1] - s * stance[ball, 0] + c * stance[ball, 1] - m.coming[foot, 1, 1]
+        place = m.ground if m.halts == STAYS else m.halt
+        x = place[0] + c * stance[ball, 0] + s * stance[ball, 1] - m.coming[foot, 1, 0]
+        z = place[1] - s * stance[ball, 0] + c * stance[ball, 1] - m.coming[foot, 1, 1]
         share = min(LONGER / max(math.hypot(x, z), 1e-9), 1.0)
         m.land[foot, 0], m.land[foot, 1] = share * x, share * z
 
@@ -279,7 +282,7 @@ def come_over(m, stance, most, dt):
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
     across = s * (m.halt[1] - m.ground[1]) - c * (m.halt[0] - m.ground[0]) - x
     along = -s * (m.halt[0] - m.ground[0]) - c * (m.halt[1] - m.ground[1]) - z
-    share = min(OFF / max(math.hypot(across, along), 1e-9), 1.0) if m.halts >= STOPS else 0.0
+    share = min(OFF / max(math.hypot(across, along), 1e-9), 1.0) if STOPS <= m.halts < STAYS else 0.0
     x, z = x + share * across, z + share * along
     m.rate[0] = (spring_kernel(z, m.command[0], 0.0, OVER, dt)[1] - m.command[0]) / dt
     m.rate[2] = (spring_kernel(x, m.command[2], 0.0, OVER, dt)[1] - m.command[2]) / dt
@@ -296,7 +299,9 @@ def until_together(m, step, rest):
     if m.waits:
         x, z = m.offset[0, 0] - m.offset[1, 0], m.offset[0, 1] - m.offset[1, 1]
         faded = not m.spot or not m.left_turn and abs(m.blend[HIPS_AT]) + abs(m.blend[HIPS_AT + 2]) < FADED
-        if faded and m.weights[rest] >= DECIDED and math.hypot(x, z) > 2.0 * BESIDE:
+        if faded and m.weights[rest] >= DECIDED and math.hypot(x, z) > 2.0 * BESIDE and m.halts < STAYS:
+            if m.halts == STOPS and (m.kept[0] or m.kept[1]):
+                m.halts = STAYS  # where he is: the ground has no room for both feet there, and he would tread on the spot for good
             m.waits = 0
             _absorb(m)
         return 0.0

@@ -141,7 +141,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("base", "f8", 2), ("climb", "f8", 2), ("tilt", "f8", (2, 2)),  # the ground under each foot over the floor, how fast that goes up, how it rises along x and z
         ("left", "f8", 2), ("left_at", "f8", (2, 2)),  # the ground it left, and where, x, z in the world
         ("held", "i4", 2), ("land", "f8", (2, 2)),  # whether it found its own; how far from where the blend does it comes down
-        ("aim", "f8", (2, 5)), ("aimed", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain
+        ("aim", "f8", (2, 5)), ("aimed", "i4", 2), ("kept", "i4", 2),  # where each foot will come down, x, z in the world, and the ground there; whether that is certain; whether the ground kept it from where it was to
         ("coming", "f8", (2, 2, 2)),  # where heel and ball of each foot of the blend come down, x, z in the world
         ("pace", "f4"), ("runner", "f4"), ("most", "f4"), ("stairs", "f4"), ("brink", "f4"), ("wished", "f4", 2),  # the share of the wished speed that short steps leave; how much of a runner he is on stairs; the most [m/s] that the ground ahead allows, 0 if all; likewise, but of stairs that it stands on, in every direction; how far ahead the ground ends of who has let go [m], 0 where it does not; the wish, to the left and ahead [m/s]
         ("high", "f8", 2), ("off", "i4", 4),  # how high the ground that each foot is led on lies over where it comes down; which points are shown off the ground

@@ -84,6 +84,7 @@ def come_down(m, tops, floor, foot, progress, out):
         out[0], out[1], out[2] = aim[2] - floor, aim[3], aim[4]
         return
     stands, shift, left, speed = _choose(m, tops, floor, foot, x, z, c, s, out)
+    m.kept[foot] = 1 if math.hypot(m.land[foot, 0], m.land[foot, 1]) > ASIDE else 0
     m.land[foot, 0] += beside_x
     m.land[foot, 1] += beside_z
     aim[0], aim[1] = ball[0] + m.land[foot, 0], ball[1] + m.land[foot, 1]

@@ -28,11 +28,13 @@ RECOVERS = 0.35
 """Who slowed down for short steps takes up speed again by so much of the wish a second."""
 RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
-DROPS, CLIMBS = 2.0, 4.0
+DROPS, CLIMBS = 2.0, 3.0
 """A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s], but of who steps oftener as he runs on stairs."""
-HASTE = 50.0, 300.0
+HASTE = 50.0, 100.0
 """A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose
 knee is bent as it leaves: a straight one would be thrown."""
+LETS_GO = 0.5
+"""A foot whose points grip no firmer than this together may go up before a riser."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
 GRAVITY = 9.81
@@ -48,7 +50,7 @@ BETWEEN = 20
 """So many places on a foot's way are looked at for what it must pass over."""
 SOON = 0.03
 """A foot that goes aside is looked for where it will be so much later [s]."""
-REACHES = 0.06
+REACHES = 0.08
 """A foot that goes up is up so far before a riser [m]."""
 TOUCHES, VOID = 0.035, 0.25
 """A point higher than the first over the ground does not touch it, and a foot higher than the second stands on nothing [m]."""
@@ -60,7 +62,8 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     bent = max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1) if m.family == WALK else 0.0
-    haste, faster = HASTE[0] + (HASTE[1] - HASTE[0]) * bent, sooner(m)
+    faster = sooner(m)
+    haste = (HASTE[0] + (HASTE[1] - HASTE[0]) * bent) * faster * faster
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -71,7 +74,8 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         passed = ((m.phase - 0.5 * foot) % 1.0) / swing
         progress = min(passed, 1.0)
         aim = m.aim[foot]
-        m.climb[foot] = m.climb[foot] if progress < 1.0 and not firm else 0.0
+        if firm:
+            m.climb[foot] = 0.0
         if firm or progress >= 1.0:  # it is down: on what lies under it, or it is about to leave that
             if m.held[foot] == 0 or firm:
                 ball_kernel(m, foot, place)
@@ -91,7 +95,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
                 m.high[foot] = m.base[foot] - under[0]
                 _left_at(m, foot, place)
             else:
-                m.base[foot] = _loose(m, tops, floor, foot, place, dt)
+                m.base[foot] = _loose(m, tops, floor, foot, place, haste, dt)
             bears[foot] = m.left[foot]
             if firm and abs(m.high[foot]) < 1e-6:
                 m.held[foot], m.aimed[foot] = 1, 0
@@ -113,7 +117,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
         before, goal = m.base[foot], max(path, rising, m.base[foot] - faster * DROPS * dt)
-        m.base[foot] = min(goal, before + min(m.climb[foot] + haste * dt, faster * CLIMBS, math.sqrt(2.0 * haste * max(goal - before, 0.0))) * dt)
+        m.base[foot] = min(goal, before + _rises(m, foot, goal - before, haste, faster * CLIMBS, dt))
         m.climb[foot] = max(m.base[foot] - before, 0.0) / dt
         m.high[foot] = m.base[foot] - under[0]
         bears[foot] = min(m.base[foot], bearing)
@@ -148,16 +152,26 @@ def _climbs(m):
 
 
 @kernel
-def _loose(m, tops, floor, foot, place, dt):
-    """How high the ground lies under a foot that has stood and has let go, before it swings: over a riser that it comes to."""
+def _loose(m, tops, floor, foot, place, haste, dt):
+    """How high the ground lies under a foot that has stood and has let go, or nearly, before it swings: over a riser that it comes to, up as its swing goes on to."""
     high = goal = _along(m, foot, place)
-    if m.grip[2 * foot] + m.grip[2 * foot + 1] <= 0.0:
+    if m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO:
         riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
         goal = riser if riser > high + RISER else high
-    lifted = m.base[foot] > high + SAME or goal > high
-    now = min(max(goal, m.base[foot] - DROPS * dt), m.base[foot] + DROPS * dt) if lifted else high
+    before = m.base[foot]
+    lifted = before > high + SAME or goal > high
+    now = max(goal, before - DROPS * dt) if lifted else high
+    if now > before:
+        now = min(now, before + _rises(m, foot, now - before, haste, DROPS, dt))
+    m.climb[foot] = max(now - before, 0.0) / dt if lifted else 0.0
     m.high[foot] = now - high  # it takes no hold up there
     return now
+
+
+@kernel
+def _rises(m, foot, left, haste, most, dt):
+    """How far a foot goes up in dt that still has so far to go up [m], no faster than `most` [m/s]."""
+    return min(m.climb[foot] + haste * dt, most, math.sqrt(2.0 * haste * max(left, 0.0))) * dt
 
 
 @kernel
@@ -207,6 +221,7 @@ def leave_level(m):
     """Note where feet stand while nothing is about: what comes about in mid-swing is passed over from there on."""
     place = np.empty(2)
     for foot in range(2):
+        m.kept[foot] = 0
         if max(m.grip[2 * foot], m.grip[2 * foot + 1]) >= 1.0:
             _left_at(m, foot, place)
 
@@ -226,8 +241,9 @@ def _beneath(m, tops, floor, foot, highest, place):
     heel_x, heel_z = place[0], place[1]
     shown_kernel(m, 2 * foot + 1, place)
     c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    for k in range(4):  # heel, ball, toes' end
-        along = (0.0, 1.0, 1.0 + TOE / FOOT, 1.0 + (TOE + REACHES) / FOOT)[k]
+    size = max(math.hypot(place[0] - heel_x, place[1] - heel_z), 0.25 * FOOT)
+    for k in range(4):  # heel, ball, toes' end, which lie flat however high the heel is
+        along = (0.0, 1.0, 1.0 + TOE / size, 1.0 + (TOE + REACHES) / size)[k]
         x, z = heel_x + along * (place[0] - heel_x), heel_z + along * (place[1] - heel_z)
         if ground_kernel(tops, m.ground[0] + c * x + s * z, m.ground[1] - s * x + c * z, floor, m.level, ground) and ground[0] < highest:
             x, z = x - place[0], z - place[1]

@@ -24,11 +24,11 @@ from scipy.ndimage import binary_opening
 from hands import Body, draw
 
 from gambol.controllers.body import anatomy, centre_of_mass, hull, margin
-from gambol.controllers.navigation import floor_at
+from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.person import person
 from gambol.controllers.struck import flesh_of
 from gambol.game.input import AHEAD, Wish
-from gambol.game.scene import Box, Prop
+from gambol.game.scene import Box, Pillar, Prop
 from gambol.game.session import Timeline, begin
 from gambol.game.world import DT, RATE, Character, World
 
@@ -38,6 +38,8 @@ OVER, TOUCHES, STILL = 0.03, 0.012, 0.15
 """A point of a sole stands on nothing that is farther over the ground than the first, touches it where it is nearer than the second [m]; a foot is still that is slower than the third [m/s]."""
 SLOW, BESIDE = 0.15, 0.06
 """Who is slower than the first [m/s] is off balance whose mass centre is farther than the second [m] beside what he stands on."""
+ALONG = 21
+"""A sole is looked at in so many places from its heel to its tip."""
 LASTS = 3
 """What lasts for fewer frames than so many is not told."""
 FIGURES = ("air [s]", "half [s]", "tips [s]", "slides [m/s]", "free [m/s]", "mass level [m/s²]", "mass up [m/s²]", "hips [m/s²]", "soles deep [cm]", "hands deep [cm]")
@@ -131,8 +133,20 @@ def _lasting(found: np.ndarray) -> tuple[float, int]:
     return float(found.sum() * DT), int(found.argmax())
 
 
+def along_soles(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Places (T, 2 · ALONG, 3) along both soles, and how far (T, 2 · ALONG) each is from what lies there [m]: a sole whose heel is past a tread's edge stands on it from there on."""
+    heel, ball, tip = np.moveaxis(body.flesh[0][:, -6:].reshape(-1, 2, 3, 3), 2, 0)
+    share = np.linspace(0.0, 2.0, ALONG)[:, None]
+    points = (heel[:, :, None] + np.minimum(share, 1.0) * (ball - heel)[:, :, None] + np.maximum(share - 1.0, 0.0) * (tip - ball)[:, :, None]).reshape(len(heel), -1, 3)
+    away = points[..., 1].copy()
+    for thing in body.things:
+        if isinstance(thing, (Box, Pillar)):
+            away = np.minimum(away, gap(points.reshape(-1, 3), thing).reshape(away.shape))
+    return points, away - flesh_of(body.who.parts["jump"].physique).thick[-1]
+
+
 def _off_balance(points: np.ndarray, touching: np.ndarray, middle: np.ndarray) -> np.ndarray:
-    """How far (T,) [m] a mass centre (T, 2) is beside the hull of points (T, 6, 2) that touch; 0 where none does."""
+    """How far (T,) [m] a mass centre (T, 2) is beside the hull of points (T, P, 2) that touch; 0 where none does."""
     return np.array([-float(margin(hull(p[t]), m)) if t.any() else 0.0 for p, t, m in zip(points, touching, middle)])
 
 
@@ -151,7 +165,7 @@ def told(scene: Scene, who: Any, states: Sequence[Any], gone: int) -> Told:
     mass = centre_of_mass(anatomy(who.skeleton), *body.placed)
     accelerations = [np.pad((x[4:] - 2.0 * x[2:-2] + x[:-4]) * (0.5 * RATE) ** 2, ((2, 2), (0, 0))) for x in (mass, body.placed[0][:, 0])]
     walking = binary_opening(stands & walks, np.ones(5))[:, None]
-    touching = (feet < TOUCHES).reshape(-1, 6)
+    along, over = along_soles(body)
     slow = np.linalg.norm(np.gradient(mass, DT, axis=0), axis=-1) < SLOW
     bears = (feet < TOUCHES).any(-1) & walks[:, None] & from_now[:, None]
     joints = flesh_of(who.parts["jump"].physique).joints
@@ -161,7 +175,7 @@ def told(scene: Scene, who: Any, states: Sequence[Any], gone: int) -> Told:
                        *(np.where(walking, part, 0.0).max(-1) for part in (np.linalg.norm(accelerations[0][:, [0, 2]], axis=-1)[:, None], np.abs(accelerations[0][:, 1:2]), np.linalg.norm(accelerations[1], axis=-1)[:, None])),
                        *(np.where(from_now, -100.0 * part.min(-1), 0.0) for part in (feet.reshape(-1, 6), away[:, hand]))])
     lasting = [_lasting((high.all(-1) & still).any(-1)), _lasting((still & ((high[..., 1] & high[..., 2]) | (high[..., 0] & high[..., 1]))).any(-1)),
-               _lasting(stands & slow & (_off_balance(soles.reshape(-1, 6, 3)[..., [0, 2]], touching, mass[:, [0, 2]]) > BESIDE))]
+               _lasting(stands & slow & (_off_balance(along[..., [0, 2]], over < TOUCHES, mass[:, [0, 2]]) > BESIDE))]
     asked = scene.leaps < 99.0
     active = [state.active for state in states[gone:]]
     falls = sum(a != b for a, b in zip(active, active[1:]) if b == "jump") > (1 if asked else 0) or "struck" in active

@@ -4,7 +4,7 @@
 
 Treads of 22–35 cm, rises of 12–20 cm, bodies of 1.2–2.1 m who are asked for 0.5–3.0 m/s: up six steps, over a landing and down
 again. Four people walk each way, each from another phase. In: frames with a heel, ball or toe's end more than 1 cm in the steps,
-told by the shortest way out of them, up or along; the deepest that a standing heel or ball, and that anything, got. Falls: people
+told by the shortest way out of them; the deepest that a standing heel or ball, and that anything, got. Falls: people
 who set a foot down over nothing, or did not arrive. Labels: points said to be in contact more than 4 cm over what lies under them,
 in the standard body's size. Jerk: of feet's joints, the highest [km/s³], and the 95th percentile of each way's highest.
 Kerbs: up one of 6–16 cm after five metres, on for 0.5–6 m, down again, straight on and askew; at least so fast meanwhile, as a share of
@@ -85,13 +85,13 @@ def ground(points, around):
 
 
 def depth(points, around):
-    """How deep points (..., 3) are in steps [m] by the shortest way out, up or along; negative: how high over them."""
+    """How deep points (..., 3) are in steps [m] by the shortest way out, up, along or both: a point at the foot of a riser is as deep in it as it is beyond it. Negative: how high over them."""
     below = ground(points, around) - points[..., 1]
     at = below > DEEP
     inside, deep = points[at], below[at]
     for out in np.linspace(-0.3, 0.3, 61):
-        free = ground(inside + [0.0, 0.0, out], around) <= inside[:, 1]
-        deep = np.where(free, np.minimum(deep, abs(out)), deep)
+        up = np.maximum(ground(inside + [0.0, 0.0, out], around) - inside[:, 1], 0.0)
+        deep = np.minimum(deep, np.hypot(out, up))
     below[at] = deep
     return below
 

@@ -76,3 +76,19 @@ def test_who_comes_too_fast_to_a_wall_is_stopped_evenly(speed, room):
         left -= 0.5 * (before[1] + velocity[1]) / FPS
     assert velocity[1] < 0.05 and left > -0.02
     assert hardest <= 1.6 * max(SUDDEN, 0.5 * speed**2 / room)
+
+
+@pytest.mark.parametrize("heading", (0.19, -0.19))
+def test_who_is_told_to_rest_where_a_corner_has_no_room_for_his_feet_does_not_tread_on_the_spot(locomotion, heading):
+    """He stays as near as they stand, however long he wishes to go on."""
+    around, count = (SimpleNamespace(centre=(0.0, 0.5, 0.0), size=(2.0, 1.0, 10.4), heading=heading, slope=0.0),), 12
+    aside = np.linspace(-0.15, 0.15, count)
+    state = locomotion.start(np.stack([aside, np.linspace(0.5, 0.0, count), np.zeros(count)], -1), np.ones(count))
+    wish = Intent(np.array([2.7, 0.0, 0.0]), around=around, halt=np.stack([aside, np.full(count, 5.0), np.full(count, np.nan)], -1))
+    for _ in range(360):
+        state, _ = locomotion.step(state, wish, 1 / 60)
+    stands = state.ground
+    for _ in range(60):
+        state, _ = locomotion.step(state, wish, 1 / 60)
+        assert state.memory["settled"].all(), "at rest"
+    assert np.array_equal(state.ground, stands) and np.hypot(*(stands[:, :2] - np.stack([aside, np.full(count, 5.0)], -1)).T).max() < 0.5

@@ -17,7 +17,14 @@ from gambol.controllers.locomotion.memory import RUN  # noqa: E402
 from gambol.controllers.locomotion.tops import tops  # noqa: E402
 from gambol.controllers.locomotion.treads import most_speed, on_stairs  # noqa: E402
 from gambol.controllers.navigation import steer  # noqa: E402
-from stairs import flight, ran, walked  # noqa: E402
+from stairs import depth, flight, ran, walked  # noqa: E402
+
+
+def test_a_point_at_the_foot_of_a_riser_is_as_deep_in_it_as_it_is_beyond_it():
+    """However little it is below the tread that it stands on."""
+    around, _ = flight(0.16, 0.30, 1.0)
+    for along, under in ((0.02, 0.0), (0.02, 0.0005), (0.05, -0.001)):
+        assert depth(np.array([[0.0, -under, 2.0 + along]]), around) == pytest.approx(np.hypot(along, max(under, 0.0)), abs=0.01)
 
 
 @settings(max_examples=6, deadline=None)
@@ -151,3 +158,10 @@ def test_who_climbs_backward_has_no_knee_thrown(locomotion, rise, tread):
         knees.append(forward_kinematics(locomotion.skeleton, pose.root, pose.rotations)[0][joints])
     change = np.linalg.norm(np.diff(knees, 2, axis=0), axis=-1) * 60.0
     assert state.floor > 3.5 * rise and change.max() < 4.5
+
+
+@pytest.mark.parametrize("rise, tread, height, speed", ((0.20, 0.30, 1.74, 0.8), (0.17, 0.29, 1.74, 1.2), (0.17, 0.25, 1.2, 0.8)))
+def test_feet_rise_to_the_next_tread_but_one_without_a_jolt(locomotion, rise, tread, height, speed):
+    """As they leave, before the riser that their toes stand at: they were thrown up by 4 m/s within a frame as the swing began."""
+    found = walked(locomotion, rise, tread, height, speed)
+    assert found.jerk < 20e3 and found.deep.max() < 0.015
