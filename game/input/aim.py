@@ -221,7 +221,7 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
         if self._goes(state):
-            return Leap(None, stays=self.rests, along=True)
+            return Leap(None, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])
