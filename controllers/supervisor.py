@@ -20,9 +20,9 @@ from .navigation import changed, checked, going, matters
 from .navigation.passing import drawn_on
 
 
-MOVED, PASSED, TURNED = 0.05, 0.2, 0.1
+MOVED, PASSED, TURNED, ALONG = 0.05, 0.2, 0.1, 0.03
 """A leap that was refused is tried again from elsewhere: so far away [m], farther by so much for each m/s, turned by so much [rad], on other feet, or
-once he stands who was standing up."""
+once he stands who was standing up. One along the way that somebody goes after the last [m]: it is asked of each moment anew, and the next may do."""
 
 
 ALONE = "characters come singly; a crowd that only walks is stepped by the locomotion itself"
@@ -65,7 +65,7 @@ class Asked:
                 return False
         far = state.ground - before.ground
         pace = float(np.hypot(before.velocity[0], before.velocity[2]))
-        return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < MOVED + PASSED * pace
+        return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < (ALONG if leap.along else MOVED + PASSED * pace)
                     and abs(far[2]) < TURNED and state.floor == before.floor and not (_rises(before) and not _rises(state)))
 
 

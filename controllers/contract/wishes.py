@@ -52,7 +52,7 @@ class Leap:
     on: "left", "right" or "both": lands on that foot, or on both, to hop on from there; None to stand there, or to walk or run on.
     stays: whether who walks lands on both feet, to come to rest; else he walks on, on one. A runner runs on.
     along: whether who walks, however slowly, and aside or backward, too, leaps the way he goes, about as far as that carries him, off one foot onto the other, and
-    goes on; there is no place then. Who stands leaps straight up.
+    goes on; there is no place then. Who stands leaps straight up. waited: for so long [s] he has wanted to: the longer, the less well a foot need carry him on.
     how: along which arc it was found that it can be made, see `Controller.found`, which is tried first; None where that was not.
     """
 
@@ -64,12 +64,13 @@ class Leap:
     how: Any = None
     stays: bool = False
     along: bool = False
+    waited: float = 0.0
 
     def __post_init__(self):
         if self.place is not None:
             object.__setattr__(self, "place", _numbers("a leap's place", self.place))
-        for name in ("airtime", "slack", "heading"):
-            if getattr(self, name) is not None or name == "slack":
+        for name in ("airtime", "slack", "heading", "waited"):
+            if getattr(self, name) is not None or name in ("slack", "waited"):
                 _number(f"a leap's {name}", getattr(self, name))
         if not 0.0 <= self.slack < math.inf:
             raise ValueError(f"a leap's slack must be 0 m or more, got {self.slack!r}")

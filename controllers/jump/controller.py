@@ -168,6 +168,8 @@ class Jump(Reach, Controller):
                     return f"too high: this body gets {self.highest:.2f} m up at most, in {self.longest:.2f} s, and {leap.airtime:.2f} s were asked", None, here
                 return (f"{leap.airtime:.2f} s in the air is too {'long' if leap.airtime > other.made.path.airtime else 'short'} for this "
                         f"body there; the jump takes {other.made.path.airtime:.2f} s", None, here)
+        if start.along:  # nowhere else, but in some other moment
+            return reason, None, here
         if start.single is None and not self.path(start, place, floor, leap.airtime).strong:
             usual = self.path(start, here, floor, leap.airtime)
             if not usual.strong and usual.airtime > self.longest:
@@ -210,20 +212,20 @@ class Jump(Reach, Controller):
         here = self.middle(start, floor)
         place = here if leap.place is None else leap.place
         if leap.along:
-            place = self._carried(state, start, floor).place if start.along else self.easy(start, floor)[0]
+            place = self._carried(state, start, floor, leap).place if start.along else self.easy(start, floor)[0]
             place[1] = floor_at(place[0], place[2], around, floor + STEP)
         return start, meant(place, leap.airtime), floor, here
 
-    def _carried(self, state: CharacterState, start: Start, floor: float) -> Carried:
+    def _carried(self, state: CharacterState, start: Start, floor: float, leap: Leap) -> Carried:
         """How somebody leaves the foot that stands who goes slowly, aside or backward."""
-        return carried(self.physique, start, goes(state), floor, -float(self.gravity[1]))
+        return carried(self.physique, start, goes(state), floor, -float(self.gravity[1]), leap.waited)
 
     def _ready(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> bool:
         """Whether a leap can start at this moment."""
         if not along_of(state, leap):
             return ready(self.physique, state, around)
         start, floor = self.placed(state, leap, around)
-        return start.along and self._carried(state, start, floor).keeps
+        return start.along and self._carried(state, start, floor, leap).keeps
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that can be made from a state, with how; None where it can't."""

@@ -31,7 +31,7 @@ HIGH, SINKS = 0.012, 0.2
 the air, whatever its contacts say."""
 SLOWLY = 0.25, 1.1
 """Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as walkers and runners do."""
-CLEAR = 0.025
+CLEAR = 0.015
 """A foot that has just left the floor, and is no higher than this over it [m], at standard height, would come into it as its body goes down."""
 BACK = 0.8
 """Who goes back by more than this share of his speed goes backward."""
@@ -135,15 +135,15 @@ def along_of(state: CharacterState, leap: Leap | None) -> bool:
 
 def off_one(physique: Physique, start: Start, leap: Leap | None, state: CharacterState, gravity: float) -> Start:
     """The same start of somebody who leaps so, off the foot that keeps his speed best of those that stand flat; as it is where none does. gravity: [m/s²] downward."""
-    if not along_of(state, leap):
+    if leap is None or not along_of(state, leap):
         return start
     contacts = np.asarray(state.contacts).reshape(2, 2)
     back = float(goes(state) @ yaw(start.heading)[:, 2]) < -BACK * float(np.linalg.norm(goes(state)))
     high = start.feet[:, 1] > float(state.floor) + physique.tables.sole + CLEAR * physique.size
-    clear = high & ~contacts.any(1) if back else high | contacts.any(1)  # ahead of who goes back it stands on its heel, and would be drawn through the floor
+    clear = high & ~contacts.any(1) if back else np.ones(2, bool)  # ahead of who goes back it stands on its heel, and would be drawn through the floor
     flat = np.flatnonzero(contacts.all(1) & clear[::-1])
     ways = [replace(start, single=int(side), along=True) for side in flat]
-    found = [carried(physique, way, goes(state), float(state.floor), gravity) for way in ways]
+    found = [carried(physique, way, goes(state), float(state.floor), gravity, leap.waited) for way in ways]
     return min(zip(ways, found), key=lambda one: (not one[1].keeps, one[1].strays))[0] if ways else start
 
 

@@ -30,6 +30,8 @@ GOES = 0.35
 ARC, BENDS, BENT = 0.1, 0.26, 0.05
 """Faster than the first [rad/s] somebody goes along an arc. He leans into it, so that his foot sends him so long [s] farther round it: there the ring lies, and stays ahead of
 who turns by more than the third [rad] as he waits for his footfall."""
+STANDS = 0.2
+"""Who still walks faster than this [m/s] as he lets go of a ring at which he aimed from a stand comes to rest before it: it stays where it is."""
 PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
 SWINGS = 3.0
@@ -131,7 +133,7 @@ class Aim:
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*self.offset) >= NEAR else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even)
             sets = state.refused == SETS_FEET
             if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
                 offset = _ring(state)
@@ -142,7 +144,7 @@ class Aim:
                 return Aim()
             gone = self._gone_round(state)
             return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt, even=even)
-        moving, heading, place = _pace(state) > (GOES if even and tilt >= RESTS else MOVING), None, None
+        moving, heading, place = _pace(state) > (GOES if even and tilt >= RESTS and not stays else MOVING), None, None  # who goes back from it stands soon
         if moving:
             offset = _ring(state)
         else:
@@ -182,11 +184,11 @@ class Aim:
             heading = faces if math.hypot(*offset) < NEAR else math.atan2(*offset)
         return None if heading is None else math.remainder(heading + SWINGS * dt * wish.turn, math.tau)
 
-    def facing(self, state: CharacterState, around: Sequence[Any]) -> float | None:
-        """The heading [rad] that a body about to jump from a stand turns to on its feet, if any."""
+    def facing(self, state: CharacterState, around: Sequence[Any], back: bool = False) -> float | None:
+        """The heading [rad] that a body about to jump from a stand turns to on its feet, if any. back: it goes back from what it would leap onto or over, and keeps facing that."""
         x, z = self._there(state)
         turns = self.aiming or self.waiting > 0.0 and floor_at(x, z, around, float(state.floor) + UP) > float(state.floor) + LOWER
-        return self._ahead if turns and self.held >= TURNS_ROUND else None
+        return self._ahead if back or turns and self.held >= TURNS_ROUND else None
 
     @property
     def _ahead(self) -> float | None:
@@ -221,7 +223,7 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
         if self._goes(state):
-            return Leap(None, stays=self.rests, along=True)
+            return Leap(None, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])

@@ -85,7 +85,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         goal = None if math.hypot(*wish.move) > 0.0 or wish.turn or aim.stands or wish.jump else player.goal  # hands take over at once
         players.append(replace(player, pilot=pilot, camera=camera, aim=aim, goal=goal, pushed=False))
         props = moment.after.props
-        facing = aim.facing(stands, props)
+        facing = aim.facing(stands, props, back is not None)
         command = replace(command, facing=command.facing if facing is None else facing)
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:

@@ -87,3 +87,19 @@ def test_a_ring_lies_where_both_feet_fit_and_near_to_where_hands_left_it(x, z, h
     if all(abs(floor_at(x + SOLES * np.sin(a), z + SOLES * np.cos(a), things) - floor_at(x, z, things)) < 1e-9 for a in turned):
         assert place == (x, z)
     assert on_top((x, z), 0.0, ()) == (x, z)
+
+
+def test_who_is_stopped_as_he_taps_at_a_box_keeps_facing_it_and_leaps_onto_it(somebody):
+    thing = Box((0.0, 0.2, 5.4), (2.0, 0.4, 0.74))
+    line, tapped, states, aims = Timeline(begin(World((Character("A", somebody, somebody.start()),), (thing,)), 1)), 0, [], []
+    while len(states) < 7.0 / DT:
+        state = line.now.after.characters[0].state
+        tapped += bool(tapped) or state.ground[1] + 0.7 + 0.52 * state.velocity[0] > 5.467
+        on = tapped < 41
+        line.advance((Wish(move=(0.0, float(on)), run=0.475 * on, jump=0 < tapped <= 4).rounded(),))
+        states.append(state)
+        aims.append(line.now.players[0].aim)
+    assert max(abs(float(state.ground[2])) for state in states) < 0.3, "he does not turn his back"
+    assert states[-1].floor == pytest.approx(0.4, abs=0.01)
+    held = [aim.place for aim in aims if aim.waiting > 0.0 and not aim.moving]
+    assert held and None not in held and np.ptp(np.array(held), axis=0).max() < 0.02, "the ring stays where it was let go"

@@ -68,6 +68,48 @@ def test_feet_stand_still_and_clear_the_floor_and_each_other(leapt, person):
         assert not len(stood) or np.ptp(stood, axis=0)[[0, 2]].max() < 0.02
 
 
+@pytest.mark.parametrize(("way", "most"), [((-0.4, 0.4), 0.45), ((-0.4, -0.4), 0.45), ((-0.8, 0.0), 0.45), ((0.55, 0.55), 0.5), ((0.8, 0.0), 0.5)])
+def test_nobody_waits_long_for_a_foot_that_carries_him_on(person, way, most):
+    wish, state = np.array([way[0], 0.0, way[1]]), person.start()
+    for _ in range(150):
+        state, _ = person.step(state, Intent(wish), 1 / FPS)
+    for _ in range(6):
+        asked = state
+        for step in range(round(most * FPS)):
+            asked, _ = person.step(asked, Intent(wish, Leap(None, along=True, waited=step / FPS)), 1 / FPS)
+            if isinstance(asked.memory.memory, Jumping):
+                break
+        assert isinstance(asked.memory.memory, Jumping), asked.refused
+        for _ in range(11):
+            state, _ = person.step(state, Intent(wish), 1 / FPS)
+
+
+def test_who_skips_ahead_swings_his_arms_by_turns_and_low(person):
+    wish, state = np.array([1.0, 0.0, 0.0]), person.start()
+    for _ in range(150):
+        state, _ = person.step(state, Intent(wish), 1 / FPS)
+    while not isinstance(state.memory.memory, Jumping):
+        state, _ = person.step(state, Intent(wish, ALONG), 1 / FPS)
+    made = state.memory.memory.plan
+    assert made.path.airtime < 0.3
+    lands = made.at(made.touch_down)
+    joints, _ = forward_kinematics(person.skeleton, lands.root, lands.rotations)
+    left, right = (joints[person.skeleton.index(side + "Hand"), 2] - joints[0, 2] for side in ("Left", "Right"))
+    ahead, behind = (right, left) if made.path.lands == 0 else (left, right)
+    assert ahead > behind + 0.15, "beside the foot that pushed his hand is ahead"
+
+
+def test_a_foot_that_stands_is_lifted_and_not_drawn_away(leapt, person):
+    states, begun, made = leapt
+    free = made.path.lands
+    if not np.reshape(states[begun].contacts, (2, 2))[free].all():
+        return  # it is in the air already
+    shown = [made.at(time) for time in (0.0, 1 / FPS)]
+    joints, turned = forward_kinematics(person.skeleton, np.array([one.root for one in shown]), np.array([one.rotations for one in shown]))
+    moved = np.diff(sole_corners(person.skeleton, joints, turned).reshape(2, 2, -1, 3)[:, free].mean(1)[:, [0, 2]], axis=0)
+    assert np.linalg.norm(moved) * FPS < 1.2
+
+
 def test_a_leap_along_the_way_has_no_place_and_who_stands_leaps_up(person):
     with pytest.raises(ValueError, match="no place"):
         Leap(np.zeros(3), along=True)

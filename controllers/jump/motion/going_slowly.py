@@ -13,27 +13,38 @@ import numpy as np
 
 from ...body import HALF_SOLE, yaw
 from ..body import FLAT, Physique, Start, carriage
-from ..prior import EACH, LEGS
+from ..prior import EACH, LEGS, ROWS
 
-PUSHES, FLIES = 0.25, 0.34
+PUSHES, FLIES = 0.22, 0.25
 """So long [s] his foot gives and pushes, and so long he flies, on Earth, at standard height: a low skip."""
+LOW = 0.015
+"""So much lower he leaves than on a straight leg [m], at standard height: it would have to straighten at once."""
 WITHIN = 0.6, 0.11, 0.05
 """The force comes from within so much of the sole's half width, from no farther behind the ball than the second, since heels rise, and from no nearer to the tip than the
 third [m], at standard height."""
-LEAVES, STRAYS, WALKS = (0.85, 1.25, 1.75), 0.45, (0.38, 1.05)
+LEAVES, STRAYS, WALKS = (0.85, 1.4, 1.75), 0.45, (0.38, 1.05)
 """He leaves no slower on his way than the first times as he goes, no faster than the second, or the third where that is slower than a walk, nor faster aside of it than so
 much; and no slower than one who walks, as fast as whom he may be [m/s], at standard height."""
+WAITED, EASED = (0.25, 0.3), (0.15, 0.2, 0.08)
+"""Who has waited for longer than the first, by the second [s], is content with so much less of each of the lower ones, and strays by so much more: the second of these."""
 CROSSES = 0.05
 """Who comes farther than this [m] past the foot that pushes, to its outer side, would bring the other leg past it, at standard height."""
 TRAILS = 0.16
 """How far ahead of him [m] his foot comes down for each m/s."""
 HANGS = np.concatenate([carriage.STAND, np.tile([-0.1, 0.3, 0.0], 2)])
-CALM, AHEAD = np.concatenate([[0.6] * 3, [0.4] * (LEGS - 3), np.tile([0.15, 0.35, 0.6], 2)]), np.concatenate([np.zeros(LEGS), np.tile([0.45, 0.35, 0.4], 2)])
+CALM, AHEAD = np.concatenate([[0.6] * 3, np.tile([0.3, 0.3, 0.3, 0.2], 2), np.tile([0.15, 0.35, 0.6], 2)]), np.concatenate([np.zeros(LEGS), np.tile([0.4, 0.32, 0.4], 2)])
 """He carries trunk, arms and legs by the first of these shares as far from how they hang [rad] as runners, and by so much more of it as he goes ahead."""
+ARMS, SWINGS = (slice(3, 6), slice(7, 10)), (0.42, 1.1)
+"""The columns in which arms turn; who goes ahead swings each by the first [rad] from how it hangs, less where he is slower than the second [m/s], at standard height."""
+SWUNG = np.interp(np.arange(ROWS), [0, 14, ROWS - 1], [0.0, 1.0, 2.0])
+SWUNG = 1.5 * np.minimum(SWUNG, 1.0)**2 * (3.0 - 2.0 * np.minimum(SWUNG, 1.0)) - np.maximum(SWUNG - 1.0, 0.0)**2 * (5.0 - 2.0 * SWUNG) - 0.5
+"""How far that arm is ahead which is beside the foot that pushes, and the other behind, in each row: most of all as he lands, as a walker's whose other foot strikes."""
 ASIDE = 1.75
 """His foot comes down so many times as far ahead of him aside as it would ahead."""
 BENDS = np.array([-0.45, 0.9, 0.0])
 """By so much [rad] he bends hip and knee of his free leg on its way, if it is straight: else its foot would come into the floor."""
+FOLDS = 0.5
+"""Where that does not clear the floor, his hip bends by so much of what his knee does: a shank that hangs swings back as its knee bends, and hardly rises."""
 GIVES = 0.75
 """He gives to his landing by this share of the usual."""
 
@@ -48,8 +59,8 @@ class Carried(NamedTuple):
     keeps: bool
 
 
-def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float) -> Carried:
-    """How somebody leaves the foot that stands who goes so fast (3,) [m/s], off a floor [m], under gravity [m/s²] downward."""
+def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, waited: float = 0.0) -> Carried:
+    """How somebody leaves the foot that stands who goes so fast (3,) [m/s], off a floor [m], under gravity [m/s²] downward, and has waited [s] for it."""
     assert start.single is not None
     body, size = physique.tables, physique.size
     scale = math.sqrt(size * 9.81 / gravity)
@@ -65,23 +76,31 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     velocity = (here - pressed) * rate * sinh + speed * cosh
     leave = pressed + (here - pressed) * cosh + speed * sinh / rate
     pace = max(float(np.linalg.norm(goes)), 1e-9)
-    slow, fast = (math.sqrt(size) * speed for speed in WALKS)
+    eased = min(max((waited - WAITED[0]) / WAITED[1], 0.0), 1.0)
+    slow, fast = math.sqrt(size) * (WALKS[0] - eased * EASED[2]), math.sqrt(size) * WALKS[1]
     along = goes / pace
     ahead = float(velocity @ along) / pace
     aside = float(np.linalg.norm(velocity - (velocity @ along) * along)) / pace
     past = float((leave - ball) @ facing[:, 0]) * (1 - 2 * start.single)
     lands = TRAILS * beside(start, velocity)
     place = leave + velocity * flies + lands + [0.0, floor, 0.0]
-    keeps = max(LEAVES[0], slow / pace) <= ahead <= max(LEAVES[1], min(LEAVES[2], fast / pace)) and aside <= STRAYS and past <= CROSSES * size
+    keeps = max(LEAVES[0] - eased * EASED[0], slow / pace) <= ahead <= max(LEAVES[1], min(LEAVES[2], fast / pace)) and aside <= STRAYS + eased * EASED[1] and past <= CROSSES * size
     return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
 
 
-def calm(keys: np.ndarray, start: Start) -> np.ndarray:
-    """The same keys (..., COLUMNS) of the carriage, or nearer to how a body hangs of who goes slowly, aside or backward."""
+def calm(keys: np.ndarray, start: Start, rows: np.ndarray | int, size: float) -> np.ndarray:
+    """The same keys (..., COLUMNS) of the carriage in rows (...), or nearer to how a body of a size over an adult's hangs of who goes slowly, aside or backward; who goes ahead
+    swings his arms by turns, as he walks."""
     if not start.along:
         return keys
-    ahead = float(start.velocity @ yaw(start.heading)[:, 2]) / max(float(np.linalg.norm(start.velocity * FLAT)), 1e-9)
-    return HANGS + (CALM + max(ahead, 0.0) * AHEAD) * (keys - HANGS)
+    pace = max(float(np.linalg.norm(start.velocity * FLAT)), 1e-9)
+    ahead = max(float(start.velocity @ yaw(start.heading)[:, 2]) / pace, 0.0)
+    calmed = HANGS + (CALM + ahead * AHEAD) * (keys - HANGS)
+    swung = ahead * SWINGS[0] * min(pace / (SWINGS[1] * math.sqrt(size)), 1.0) * SWUNG[rows]
+    for side, arm in enumerate(ARMS):
+        calmed[..., arm] += ahead * (HANGS[arm] - calmed[..., arm])
+        calmed[..., arm.start] += -swung if side == start.single else swung
+    return calmed
 
 
 def beside(start: Start, towards: np.ndarray) -> np.ndarray:
@@ -97,5 +116,5 @@ def straight_through(rows: np.ndarray, start: np.ndarray, due: np.ndarray) -> np
     may be anywhere, and goes straight there."""
     share = (due / due[-1])[:, None, None]
     rows = start + share**2 * (3.0 - 2.0 * share) * (rows[-1] - start)
-    rows[:, :EACH, 0] += 4.0 * share[..., 0] * (1.0 - share[..., 0]) * max(1.0 - float(start[1, 0]) / BENDS[1], 0.0) * BENDS
+    rows[:, :EACH, 0] += 16.0 * (share[..., 0] * (1.0 - share[..., 0]))**2 * max(1.0 - float(start[1, 0]) / BENDS[1], 0.0) * BENDS
     return rows

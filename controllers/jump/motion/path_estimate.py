@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ...body import yaw
 from ..body import (FLAT, TOUCH_REACH, TRAIL, BodyTables, Physique, Start, apex_airtime, carriage, carried, hermite, least_effort, measures, monotone, soles,
                     take_off_velocity, TURNED)
-from ..prior import BETWEEN, EACH, LEGS, Prior
+from ..prior import BETWEEN, EACH, LEGS, ROWS, Prior
 from .hopping import hopping
 from .going_slowly import FLIES, beside, calm
 from .take_off import Running, Standing
@@ -171,7 +171,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         features = [prior.features(speed, ahead, pace, size, start.runs)
                     for speed in (float(velocity[1]), fall)]
         swings = prior.swings(flight * np.sqrt(g / 9.81), pace, size, start.runs)
-        angles = [_low(calm(prior.row(number * BETWEEN, some, runner, swings), start), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
+        angles = [_low(calm(prior.row(number * BETWEEN, some, runner, swings), start, number * BETWEEN, size), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
         heights = upright.of(*(carried(physique, some) for some in angles))
         if not start.runs:
             # who waits needs no more than the muscles do, and pushes from as deep as it is
@@ -193,7 +193,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         guess = guess + relaxed * lacks
     low, leave, passing, wind_up, dip, strong, pressed = found
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
-    keys = _tuck(_low(calm(prior.keys(features[0], features[1], runner, swings), start), low_arms), flight, tucked)
+    keys = _tuck(_low(calm(prior.keys(features[0], features[1], runner, swings), start, np.arange(ROWS), size), low_arms), flight, tucked)
     if start.onto is None and not start.springs:
         lands = _stride(start, velocity, flight, gravity, size)
         keys = _folded(keys, lands)

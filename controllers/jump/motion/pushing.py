@@ -12,7 +12,7 @@ from .airborne import GROUND_RATE, Airborne
 from .clearing import ROWS as LIFT_ROWS
 from .descent import sinking
 from .footing import FADE, MOMENT, RUNNERS_HEEL, faded, heels_rise, heels_up, settling, swivels
-from .going_slowly import GIVES, straight_through
+from .going_slowly import FOLDS, GIVES, straight_through
 from .ground_kernels import FREE, ground_kernel
 from .path_estimate import Path
 from .swinging import CLEARS, lifted, lowest
@@ -164,7 +164,8 @@ class Pushing(Airborne):
         ground = self.planted[1 - side], self.start.slope
         low, room = float(lowest(self.physique, side, self.start.root[None], self.start.rotations[None], *ground)[0]), CLEARS * self.physique.size
         clears = min(low, room) + max(room - low, 0.0) * np.minimum(self.times[some] / SOON, 1.0)
-        return lifted(self.physique, side, *ground, swung[some], clears, self.angles[some], self.offsets[some], self.turns[some], self.centres[some], self.feet[some], self.start.root)
+        return lifted(self.physique, side, *ground, swung[some], clears, self.angles[some], self.offsets[some], self.turns[some], self.centres[some], self.feet[some], self.start.root,
+                      FOLDS if self.start.along else 0.0)
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""

@@ -44,9 +44,9 @@ def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarr
 
 
 def lifted(physique: Physique, free: int, stands: np.ndarray, slope: np.ndarray, bent: np.ndarray, clears: np.ndarray | float, angles: np.ndarray, offsets: np.ndarray,
-           turned: np.ndarray, centres: np.ndarray, feet: np.ndarray, root: np.ndarray) -> np.ndarray:
+           turned: np.ndarray, centres: np.ndarray, feet: np.ndarray, root: np.ndarray, folds: float = 0.0) -> np.ndarray:
     """By how much more (M, EACH) [rad] a leg `free`, 0 left or 1 right, is to bend whose joints are turned by bent (M, 4, 3) [rad], so that its foot is so
-    high (M,) [m] over the ground, see `lowest`: its knee, and what that can't its ankle. The other poses are as in `ground_kernel`."""
+    high (M,) [m] over the ground, see `lowest`: its knee, and its hip by so much of that as it folds, and what these can't its ankle. The other poses are as in `ground_kernel`."""
     body, count = physique.tables, len(physique.skeleton)
     joints, leg, flex = carriage.joints_of(physique.skeleton), free_leg(body, 1 - free), FLEX * physique.flexibility
     roots, local = np.empty((len(bent), 3)), np.tile(np.eye(3), (len(bent), count, 1, 1))
@@ -62,6 +62,7 @@ def lifted(physique: Physique, free: int, stands: np.ndarray, slope: np.ndarray,
         wanted += missing
         knee, ankle = bent[:, 1, 0], bent[:, 2, 0]
         more[:, 1] = np.minimum(wanted, np.maximum(knee, BENT)) - knee
+        more[:, 0] = -folds * more[:, 1]
         more[:, 2] = np.maximum(ankle - TOES_UP * (wanted - knee - more[:, 1]), np.minimum(ankle, FLEXED)) - ankle
     return more
 

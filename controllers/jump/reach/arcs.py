@@ -25,6 +25,8 @@ WAYS = (False, False), (False, True), (True, True)
 """With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
 LITTLE, RISES = 0.06, 0.03
 """Who leaves in haste is elsewhere by so much at most [m]; and a body that flies higher by no more than the rise of its arc and the second [m]."""
+WITHIN, BEFORE = 0.018, "too soon for this pace: the foot that pushes would have to press outside its sole"
+"""Who leaps along his way presses no farther outside the sole than the first [m], at standard height: he can wait for a better moment."""
 FLUSH = 0.03
 """A target lies on the floor if it is no farther from it than this [m]; only told where something stands about."""
 STEEPEST = 0.4
@@ -89,6 +91,13 @@ class Arcs:
         the legs drawn up and the arms down and, without an airtime, higher: by `heights` times the airtime, which begin with 1; of a runner whose foot can't push so,
         lower. None is gone in more haste than it takes. Who is told (by `send`) how deep [m] something lay
         in the plan along the last of them leaves out those along which it would as well. Before each path that is made, what that costs."""
+        if start.along:  # in no haste: the next moment may do
+            for low, tucked in WAYS if len(around) else WAYS[:1]:
+                yield PATH
+                arc = self.arc(start, place, floor, around, How(airtime, low, tucked, 0))
+                course = arc.path.course
+                yield arc._replace(why=arc.why or BEFORE) if course is not None and course.outside > WITHIN * self.physique.size else arc
+            return
         usual = yield from self._arcs(start, place, floor, airtime, around, heights)
         if usual is None or airtime is not None:
             return
