@@ -44,6 +44,8 @@ DRAWN = 0.58, 0.15
 ABOUT, SHARES = (0.43, 2.9, 0.75), (0.95, 0.05, 0.15)
 """How far bodies leap from a stand, over their size, by how high they rise over it; and what share of that behind, more ahead and less aside: within 0.2 m of
 what is found for bodies of 0.7 to 2.1 m, weak and strong."""
+ELSEWHERE = 0.02
+"""Whose pelvis is farther than this [m] from where it was as he began to seek, as he still went down into his crouch or came to rest, seeks once more before he is refused."""
 MOST_HITS = 3
 """A body that still touches something after so many hits slips by."""
 
@@ -124,13 +126,16 @@ class Jump(Reach, Controller):
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
         """The same, sought in pieces. onward: of the step before, where the same was asked. Refused until a plan is found, with why there is none as
         far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
-        seeking, steps = onward or Onward(None)
-        seeking, steps = seeking or Seeking(self._looked_for(state, intent, self._waits(state))), steps + 1
-        found, onward = seeking.after(steps), Onward(seeking, steps)
+        seeking, steps, began = self._seeks(state, intent) if onward is None or onward.seeking is None else onward
+        assert seeking is not None
+        steps += 1
+        found, onward = seeking.after(steps), Onward(seeking, steps, began)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
         leap = intent.leap
         if not isinstance(found, Found):
+            if steps > 1 and float(np.linalg.norm(state.pose.root - began)) > ELSEWHERE:
+                raise Refused("", onward=self._seeks(state, intent))
             raise Refused(*found)
         assert leap is not None  # or nothing would have been found
         if steps == 1:
@@ -140,8 +145,12 @@ class Jump(Reach, Controller):
         start, floor = self.placed(state, leap, intent.around)
         found = self.again(found.arc.how, start, found.place, floor, leap.airtime, intent.around)
         if found is None:  # he moved meanwhile
-            raise Refused("", onward=Onward(Seeking(self._looked_for(state, intent, self._waits(state)))))
+            raise Refused("", onward=self._seeks(state, intent))
         return found.made
+
+    def _seeks(self, state: CharacterState, intent: Intent) -> Onward:
+        """The beginning of seeking from a state."""
+        return Onward(Seeking(self._looked_for(state, intent, self._waits(state))), 0, np.array(state.pose.root, float))
 
     def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.

@@ -18,7 +18,7 @@ from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import SETS_FEET, SLOWLY
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
-from .on_top import on_top
+from .on_top import on_top, past_edge
 from .run_up import AHEAD
 from .straight_ahead import UP
 from .wish import Wish, in_view
@@ -42,6 +42,8 @@ BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
 CLIMBS = 1.5
 """Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
+OVER_EDGE = 0.86, 1.9
+"""And it stops so far past the edge of a box: this share of how far the body leaps over level ground, and so much less for each metre up [m]. From near by legs clear no more of a high one."""
 SLOPED = 2.0
 """On the move, by so much for each metre a metre that ground rises there [m]: uphill a foot sends nobody as far, nor as near, as on level ground."""
 NEAR = 0.12
@@ -126,6 +128,10 @@ class Aim:
         farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
+        stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
+        if stopped and np.all(state.contacts):
+            x, z = self._there(state)
+            return replace(self, waiting=self.waiting - TURNS * dt, moving=False, offset=(x - float(state.ground[0]), z - float(state.ground[1])), tilt=math.hypot(*wish.move))
         x, z = self._there(state)
         stays = not self.moving and (cramped or self.place is not None)
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
@@ -139,7 +145,7 @@ class Aim:
                 offset = _ring(state)
                 return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
-            pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or cramped or self._askew(state) else 1.0
+            pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
             if given_up:
                 return Aim()
             gone = self._gone_round(state)
@@ -164,6 +170,14 @@ class Aim:
         here = float(state.ground[0]), float(state.ground[1])
         far = math.dist(here, self.place)
         return replace(self, place=(here[0] + far * math.sin(course), here[1] + far * math.cos(course)), course=course)
+
+    def _stopped(self, state: CharacterState, even: bool) -> bool:
+        """Whether somebody let go of the ring on his way and has come to rest before it, as before a box: from there he leaps as one who stands."""
+        if not self.moving or self.aiming or even or _pace(state) > STANDS or state.active == "jump":
+            return False
+        x, z = self._there(state)
+        ahead = (x - float(state.ground[0])) * math.sin(self.course) + (z - float(state.ground[1])) * math.cos(self.course)
+        return ahead > NEAR
 
     def _goes(self, state: CharacterState) -> bool:
         """Whether somebody goes on by a small leap, slowly, aside or backward."""
@@ -248,7 +262,12 @@ class Aim:
         x, z = (place[k] - float(state.ground[k]) for k in (0, 1))
         aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring, and to one on something first
         there = floor_at(*place, around, floor + UP)
-        share = (reaches(aside) - CLIMBS * max(there - floor, 0.0) + BEYOND) / max(math.hypot(x, z), 1e-9)
+        far, up, reach = math.hypot(x, z), max(there - floor, 0.0), reaches(aside)
+        stops = reach - CLIMBS * up + BEYOND
+        if LOWER < up and reach < math.inf:
+            past = past_edge(place, (float(state.ground[0]), float(state.ground[1])), there, around)
+            stops = min(stops, far - max(past - max(OVER_EDGE[0] * reach - OVER_EDGE[1] * up, 0.0), 0.0))
+        share = stops / max(far, 1e-9)
         if share >= 1.0 or there < floor - LOWER:
             return place
         near = float(state.ground[0]) + share * x, float(state.ground[1]) + share * z

@@ -18,6 +18,8 @@ SOLES = 0.19
 """Both soles side by side lie within so much of their middle [m]."""
 ASIDE, FINE = 0.3, 0.05
 """The ring is moved by no more than this, and is looked for so finely [m]."""
+STEPS = 0.1, 0.0125
+"""The edge of what the ring lies on is looked for in such steps back to the body, and found to so much [m]."""
 LEVEL = 0.03
 """Floor of one height is no more uneven than this [m]."""
 
@@ -29,6 +31,21 @@ def on_top(place: tuple[float, float], floor: float, around: Sequence[Any]) -> t
         return place
     places = (np.asarray(place) + np.arange(FINE, ASIDE + 0.5 * FINE, FINE)[:, None, None] * ROUND).reshape(-1, 2)  # the nearest first
     return next(((float(x), float(z)) for x, z in places if _even((x, z), floor, around)), place)
+
+
+def past_edge(place: tuple[float, float], here: tuple[float, float], high: float, around: Sequence[Any]) -> float:
+    """How far [m] a place (2,) on what is `high` [m] lies past the edge of that, on the straight way from a body here (2,)."""
+    far = math.dist(place, here)
+    back = (np.asarray(here, float) - place) / max(far, 1e-9)
+
+    def on_it(past: float) -> bool:
+        x, z = np.asarray(place) + past * back
+        return floor_at(float(x), float(z), around, high + LEVEL) > high - LEVEL
+    past = 0.0
+    for step in STEPS[0] * 0.5**np.arange(math.log2(STEPS[0] / STEPS[1]) + 0.5):
+        while past < far and on_it(past + step):
+            past += float(step)
+    return past
 
 
 def _even(place: tuple[float, float], floor: float, around: Sequence[Any]) -> bool:

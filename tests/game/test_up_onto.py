@@ -10,12 +10,12 @@ from gambol.controllers.navigation import floor_at, gap
 from gambol.controllers.person import person
 from gambol.controllers.struck import flesh
 from gambol.controllers.body import forward_kinematics
-from gambol.game.input.on_top import ASIDE, SOLES, on_top
+from gambol.game.input.on_top import ASIDE, SOLES, on_top, past_edge
 from gambol.game.input.straight_ahead import CLEARS, before, cramped
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box
 from gambol.game.session.state import begin
-from gambol.game.session.tick import Timeline
+from gambol.game.session.tick import Timeline, refused
 from gambol.game.world.world import DT, Character, World
 
 
@@ -103,3 +103,40 @@ def test_who_is_stopped_as_he_taps_at_a_box_keeps_facing_it_and_leaps_onto_it(so
     assert states[-1].floor == pytest.approx(0.4, abs=0.01)
     held = [aim.place for aim in aims if aim.waiting > 0.0 and not aim.moving]
     assert held and None not in held and np.ptp(np.array(held), axis=0).max() < 0.02, "the ring stays where it was let go"
+
+
+def tapped(who, thing, run, press, ring, later):
+    """The states of somebody who goes at a box, presses the leap's key once his ring is beyond a place along z [m], lets go of it once it is beyond another, and of all `later` [s]; where he aimed, and what he was told."""
+    line, held, tapped, states, aims, told = Timeline(begin(World((Character("A", who, who.start()),), (thing,)), 1)), False, 0, [], [], []
+    while len(states) < 7.0 / DT:
+        state = line.now.after.characters[0].state
+        lies = state.ground[1] + 0.7 + 0.52 * state.velocity[0]
+        held, tapped = held or lies > press, tapped + (tapped > 0 or lies > ring)
+        on, before = tapped <= 4 + round(later / DT), line.now
+        line.advance((Wish(move=(0.0, float(on)), run=run * on, jump=held and tapped <= 4).rounded(),))
+        states.append(state)
+        aims.append(line.now.players[0].aim)
+        told += refused(before, line.now)
+    return states, aims, told
+
+
+@pytest.mark.parametrize(("run", "far", "deep", "high", "press", "ring", "later"), [
+    (0.463, 4.551, 0.848, 0.581, 4.799, 4.799, 0.6), (0.822, 5.12, 0.902, 0.57, 5.432, 5.432, 0.0), (0.359, 4.88, 1.975, 0.59, 4.483, 5.384, 0.0)])
+def test_who_stops_before_a_box_as_he_waits_leaps_onto_it_from_where_he_rests(somebody, run, far, deep, high, press, ring, later):
+    """He comes to rest later than a leap on the move is waited for, and then looks for one that can be made."""
+    states, aims, told = tapped(somebody, Box((0.0, 0.5 * high, far + 0.5 * deep), (2.0, high, deep)), run, press, ring, later)
+    assert not told
+    assert states[-1].floor == pytest.approx(high, abs=0.01)
+    assert any(aim.moving and aim.waiting > 0.0 for aim in aims) and any(aim.stands and aim.waiting > 0.0 for aim in aims)
+
+
+@pytest.mark.parametrize(("high", "far"), [(0.5, 0.5), (0.57, 0.5), (0.57, 0.62)])
+def test_a_ring_pushed_over_a_high_box_stops_where_legs_still_clear_its_edge(somebody, high, far):
+    """From near by legs would come against the edge of who leaps far over it."""
+    states, _ = led(somebody, (box(high, far),), [(0.2, 0.0, False), (0.9, 1.0, True), (3.0, 0.0, False)])
+    assert states[-1].floor == pytest.approx(high, abs=0.01)
+
+
+@given(st.floats(0.05, 1.4), st.floats(0.3, 0.9))
+def test_how_far_a_ring_lies_past_an_edge(past, high):
+    assert past_edge((0.0, 1.4 + past), (0.0, 0.6), high, (box(high),)) == pytest.approx(past, abs=0.013)

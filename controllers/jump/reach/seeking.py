@@ -98,7 +98,8 @@ def _sought(known: tuple[Any, ...]) -> Seeking[Any]:
 
 
 class Onward(NamedTuple):
-    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, and after how many steps."""
+    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, after how many steps, and where (3,) [m] his pelvis was as he began."""
 
     seeking: Seeking[Any] | None
     steps: int = 0
+    began: Any = None
