@@ -154,9 +154,10 @@ def _climbs(m):
 
 @kernel
 def _loose(m, tops, floor, foot, place, haste, dt):
-    """How high the ground lies under a foot that has stood and has let go, or nearly, before it swings: over a riser that it comes to, up as its swing goes on to."""
+    """How high the ground lies under a foot that has stood and has let go, or nearly, before it swings: over a riser that it comes to, up as its swing goes on to. Who steps back comes to none: his foot was
+    thrown up for a frame or two, and dropped as it swung."""
     high = goal = _along(m, foot, place)
-    if m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO:
+    if m.velocity[0] > 0.0 and m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO:
         riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
         goal = riser if riser > high + RISER else high
     before = m.base[foot]
