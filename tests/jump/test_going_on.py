@@ -109,8 +109,8 @@ def test_skips_fly_longer_the_nearer_they_come_to_a_walkers_leap(person):
         while not isinstance(state.memory.memory, Jumping):
             state, _ = person.step(state, Intent(wish, ALONG), 1 / FPS)
         flown.append(state.memory.memory.plan.path.airtime)
-    assert max(flown[:3]) < 0.3 and flown[-1] > 0.32  # [s]; a walker flies 0.39
-    assert np.abs(np.diff(flown)).max() < 0.06
+    assert max(flown[:3]) < 0.3 and flown[-1] > 0.31  # [s]; a walker flies 0.39
+    assert np.abs(np.diff(flown)).max() < 0.07
 
 
 def test_a_foot_that_stands_is_lifted_and_not_drawn_away(leapt, person):

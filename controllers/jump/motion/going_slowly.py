@@ -17,7 +17,7 @@ from ..prior import EACH, LEGS, ROWS
 
 PUSHES = 0.22
 """So long [s] his foot gives and pushes, on Earth, at standard height."""
-FLIES, FASTER = (0.25, 0.35), (0.8, 1.1)
+FLIES, FASTER = (0.25, 0.34), (0.9, 1.1)
 """He flies so long [s] who goes no faster than the first of these [m/s], in a low skip, and longer up to the second, from which on he leaps as walkers do; at standard height."""
 LOW = 0.015
 """So much lower he leaves than on a straight leg [m], at standard height: it would have to straighten at once."""
