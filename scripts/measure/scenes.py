@@ -47,7 +47,8 @@ FIGURES = ("air [s]", "half [s]", "tips [s]", "slides [m/s]", "free [m/s]", "mas
 
 class Scene(NamedTuple):
     """What stands about, how far along z [m] somebody begins, what he asks for until he lets go, and when he does: a time [s] and a place along z [m], whichever is first.
-    walks: he lets go of the run key so much sooner [s]. leaps: beyond this place along z [m] the ring is leapt to."""
+    walks: he lets go of the run key so much sooner [s]. leaps: the ring is let go once it is beyond this place along z [m]; presses: the leap's key is held from when the ring would be beyond
+    this one, 99 for a tap. later: hands let go of all so much later [s]."""
 
     things: tuple[Prop, ...]
     begins: float = 0.0
@@ -58,6 +59,7 @@ class Scene(NamedTuple):
     walks: float = 0.0
     leaps: float = 99.0
     later: float = 0.0
+    presses: float = 99.0
 
 
 def _pace(rng: np.random.Generator) -> dict[str, Any]:
@@ -80,10 +82,11 @@ def edge(rng: np.random.Generator) -> Scene:
 
 
 def onto(rng: np.random.Generator) -> Scene:
-    """A box that is leapt onto at a run; hands let go with the key, or a little later."""
+    """A box that is leapt onto at a run: the key is pressed as the ring comes to its edge, held, where he stops before it, too, and let go well on it; hands let go then, or a little later."""
     deep, high, far = rng.uniform(0.6, 2.0), rng.uniform(0.2, 0.6), 4.5 + rng.uniform(0.0, 1.4)
     box = Box((0.0, 0.5 * high, far + 0.5 * deep), (2.0, high, deep))
-    return Scene((box,), run=rng.uniform(0.3, 1.0), leaps=far + rng.uniform(0.15, max(deep - 0.2, 0.2)), later=rng.choice([0.0, 0.2, 0.4, 0.6]))
+    return Scene((box,), run=rng.uniform(0.3, 1.0), leaps=far + rng.uniform(0.15, max(deep - 0.2, 0.2)), later=rng.choice([0.0, 0.2, 0.4, 0.6]),
+                 presses=far + rng.uniform(-0.6, 0.2))
 
 
 def wall(rng: np.random.Generator) -> Scene:
@@ -106,16 +109,18 @@ KINDS: dict[str, Callable[[np.random.Generator], Scene]] = {one.__name__: one fo
 def played(scene: Scene, who: Any) -> tuple[list[Any], int]:
     """All states of a scene, and in which of them hands let go."""
     start = who.start((0.0, scene.begins, 0.0), floor_at(0.0, scene.begins, scene.things))
-    line, states, gone, pressed = Timeline(begin(World((Character("A", who, start),), scene.things), 1)), [], 0, 0
+    line, states, gone, held, pressed = Timeline(begin(World((Character("A", who, start),), scene.things), 1)), [], 0, False, 0
     while len(states) < 12 * RATE and (not gone or len(states) < gone + AFTER * RATE):
-        state, now = line.now.after.characters[0].state, len(states) * DT
+        state, aim, now = line.now.after.characters[0].state, line.now.players[0].aim, len(states) * DT
         states.append(state)
-        if pressed or state.ground[1] + AHEAD[0] + AHEAD[1] * float(state.velocity[0]) > scene.leaps:
+        ring = float(state.ground[1]) + (aim.offset[1] if aim.aiming else AHEAD[0] + AHEAD[1] * float(state.velocity[0]))
+        if pressed or ring > scene.leaps or aim.spent:
             pressed += 1
+        held = held or ring > scene.presses
         if not gone and (now > scene.time or state.ground[1] > scene.place or pressed > 4 + scene.later * RATE):
             gone = len(states)
         run = 0.0 if now > scene.time - scene.walks else scene.run
-        line.advance((Wish(move=(0.0, 0.0) if gone else scene.move, run=0.0 if gone else run, jump=0 < pressed <= 4).rounded(),))
+        line.advance((Wish(move=(0.0, 0.0) if gone else scene.move, run=0.0 if gone else run, jump=(held or pressed > 0) and pressed <= 4).rounded(),))
     return states, gone or len(states) - 1
 
 
