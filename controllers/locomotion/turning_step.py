@@ -129,7 +129,7 @@ def enter_turn(m, turns, turn, since, row):
     m.turns_to = m.towards[0]
     m.turn_ends = m.ground[2] + turn
     m.turn, m.turned, m.first = turn, since, 0 if turn > 0.0 else 1
-    m.turn_gain, m.turn_goes = 1.0, m.towards[1]
+    m.turn_gain, m.turn_goes, m.turn_stretch = 1.0, m.towards[1], 1.0
     m.turn_haste = 0.0 if m.spot else smooth((m.towards[1] - RUNS[0]) / (RUNS[1] - RUNS[0]))
     m.stray[0] = m.stray[1] = m.glide[0] = m.glide[1] = 0.0
     whole = way_kernel(m, turns, STRIKE if m.spot else END) - way_kernel(m, turns, since)
@@ -244,6 +244,9 @@ def turned_row(m, turns, since, row):
     for d in range(COLUMNS):
         row[d] = turn_kernel(m, turns, d, since)
     row[DURATION_AT] = turn_time(m, turns, since)
+    share = _stretched(m, since)
+    if share < 1.0:  # legs that reach less far ahead and behind carry hips higher: up to as high as he stood
+        row[HIPS_AT + 1] += (1.0 - share * share) * max(turn_kernel(m, turns, HIPS_AT + 1, -BEFORE) - row[HIPS_AT + 1], 0.0)
 
 
 @kernel
@@ -256,6 +259,7 @@ def turn_time(m, turns, since):
 @kernel
 def lead_turn(m, turns, agility, dt):
     """How far a turn runs on in phase in dt; command and velocity become those of its ground frame meanwhile."""
+    m.turn_stretch = _stretch(m, turns, agility)
     until = -m.turned * turn_time(m, turns, 0.5 * m.turned) / agility  # the first toe-off, from which on phase runs otherwise
     if 0.0 < until < dt:
         step = (dt - until) * agility / turn_time(m, turns, 0.0) - m.turned
@@ -263,7 +267,7 @@ def lead_turn(m, turns, agility, dt):
         half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
         step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
     turned = way_kernel(m, turns, m.turned + step) - way_kernel(m, turns, m.turned)
-    pace, fades = _pace(m, turns, agility, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
+    pace, fades = _pace(m, agility, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
     m.glide[0], m.glide[1] = fades * m.glide[0], fades * m.glide[1]
     c, s = math.cos(m.ground[2] + 0.5 * turned), math.sin(m.ground[2] + 0.5 * turned)
     glides = s * m.glide[0] + c * m.glide[1], 0.0, c * m.glide[0] - s * m.glide[1]
@@ -294,7 +298,7 @@ def turn_ahead(m, turns, agility, later, ground):
     for k in range(PIECES):
         since = m.turned + k * step
         time = step * turn_time(m, turns, since + 0.5 * step) / agility
-        pace = _pace(m, turns, agility, since + 0.5 * step)
+        pace = _pace(m, agility, since + 0.5 * step)
         omega = (way_kernel(m, turns, since + step) - way_kernel(m, turns, since)) / max(time, 1e-6)
         advance(ground, pace * turn_kernel(m, turns, WAY_AT, since + 0.5 * step), omega, pace * turn_kernel(m, turns, WAY_AT + 2, since + 0.5 * step), time)
         _back(m, ground, since, since + step)
@@ -305,16 +309,25 @@ def turn_ahead(m, turns, agility, later, ground):
 
 
 @kernel
-def _pace(m, turns, agility, since):
+def _pace(m, agility, since):
     """How many times as fast as recorded a turn's ground frame goes there."""
-    pace = agility * _tempo(m, since)
-    if m.spot or since <= 0.0:
-        return pace
+    return agility * _tempo(m, since) * _stretched(m, since)
+
+
+@kernel
+def _stretch(m, turns, agility):
+    """How many times as long as recorded a turn's strides come to be, for the speed that is asked for."""
+    if m.spot:
+        return 1.0
     ends = agility * _tempo(m, END) * math.hypot(turn_kernel(m, turns, WAY_AT, END), turn_kernel(m, turns, WAY_AT + 2, END))
-    most = STRETCHES[1] + (STRETCHES[2] - STRETCHES[1]) * m.turn_haste
-    stretch = min(max(m.turn_goes / ends, STRETCHES[0]), most)
-    begins = SECOND[0] if stretch > 1.0 else 0.0
-    return pace * (1.0 + (stretch - 1.0) * smooth((since - begins) / STRETCHED))
+    return min(max(m.turn_goes / ends, STRETCHES[0]), STRETCHES[1] + (STRETCHES[2] - STRETCHES[1]) * m.turn_haste)
+
+
+@kernel
+def _stretched(m, since):
+    """How many times as long as recorded they are there."""
+    begins = SECOND[0] if m.turn_stretch > 1.0 else 0.0
+    return 1.0 + (m.turn_stretch - 1.0) * smooth((since - begins) / STRETCHED)
 
 
 @kernel

@@ -28,11 +28,12 @@ RECOVERS = 0.35
 """Who slowed down for short steps takes up speed again by so much of the wish a second."""
 RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
-DROPS, CLIMBS = 2.0, 3.0
-"""A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s], but of who steps oftener as he runs on stairs."""
-HASTE = 50.0, 100.0
+DROPS, CLIMBS, OF_RUNNERS = 2.0, 3.0, 1.0
+"""A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s], and by the third faster the more he runs on stairs; faster, too, as he
+steps oftener there."""
+HASTE = 50.0, 100.0, 200.0
 """A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose
-knee is bent as it leaves: a straight one would be thrown."""
+knee is bent as it leaves: a straight one would be thrown; by so much more of who runs on stairs; all by the square of how much oftener he steps there."""
 LETS_GO = 0.5
 """A foot whose points grip no firmer than this together may go up before a riser."""
 TILT_HALFLIFE = 0.05
@@ -63,7 +64,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     bent = max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1) if m.family == WALK else 0.0
     faster = sooner(m)
-    haste = (HASTE[0] + (HASTE[1] - HASTE[0]) * bent) * faster * faster
+    haste = (HASTE[0] + (HASTE[1] + HASTE[2] * m.runner - HASTE[0]) * bent) * faster * faster
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -117,7 +118,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
         before, goal = m.base[foot], max(path, rising, m.base[foot] - faster * DROPS * dt)
-        m.base[foot] = min(goal, before + _rises(m, foot, goal - before, haste, faster * CLIMBS, dt))
+        m.base[foot] = min(goal, before + _rises(m, foot, goal - before, haste, faster * (CLIMBS + OF_RUNNERS * m.runner), dt))
         m.climb[foot] = max(m.base[foot] - before, 0.0) / dt
         m.high[foot] = m.base[foot] - under[0]
         bears[foot] = min(m.base[foot], bearing)
@@ -153,9 +154,10 @@ def _climbs(m):
 
 @kernel
 def _loose(m, tops, floor, foot, place, haste, dt):
-    """How high the ground lies under a foot that has stood and has let go, or nearly, before it swings: over a riser that it comes to, up as its swing goes on to."""
+    """How high the ground lies under a foot that has stood and has let go, or nearly, before it swings: over a riser that it comes to, up as its swing goes on to. Who steps back comes to none: his foot was
+    thrown up for a frame or two, and dropped as it swung."""
     high = goal = _along(m, foot, place)
-    if m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO:
+    if m.velocity[0] > 0.0 and m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO:
         riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
         goal = riser if riser > high + RISER else high
     before = m.base[foot]

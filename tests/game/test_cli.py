@@ -69,7 +69,7 @@ def gambol(*arguments):
 def test_a_name_that_cannot_be_is_told_of_before_anything_is_learnt(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("gambol.game.cli.films.learn", lambda *_: pytest.fail("it began to learn"))
-    assert gambol("render", "reconstruct", "-o", "a.gif").exit_code == 2
+    assert gambol("render", "reconstruct", "-o", "a.avi").exit_code == 2
 
 
 def test_progress_is_told_where_no_bar_can_be_seen(short, tmp_path):
@@ -136,7 +136,9 @@ def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, comma
 
 @pytest.mark.parametrize(("arguments", "says"), [
     (("render", "nowhere", "-o", "a.mp4"), "no scenario is called 'nowhere'"),
-    (("render", "demo", "-o", "a.gif"), "can't record .gif"),
+    (("render", "demo", "-o", "a.avi"), "can't record .avi"),
+    (("render", "demo", "-o", "a.gif", "--fps", "60"), "a.gif: has 60 frames a second, a .gif at most 50"),
+    (("render", "demo", "-o", "a.mp4", "--fps", "fast"), "--fps: needs frames a second from 1 to 240, such as 30, 29.97 or 30000/1001; got fast"),
     (("strip", "a.gambol", "-o", "a.png"), "a.gambol: is no scenario, which is a .toml file; an input log is filmed with --replay"),
     (("render", "A.BVH", "-o", "a.mp4"), "is no scenario, which is a .toml file; motion is a follower's clip in one"),
     (("export", "kid.glb", "-o", "a.glb"), "is no scenario, which is a .toml file; a body is worn with --character"),

@@ -23,7 +23,7 @@ from gambol.controllers.reconstruction.pose_vector import SKELETON  # noqa: E402
 from gambol.controllers.reconstruction.control_points import parse  # noqa: E402
 from gambol.controllers.reconstruction.live.placing import stances  # noqa: E402
 from gambol.game import cli  # noqa: E402
-from gambol.game.cli import live  # noqa: E402
+from gambol.game.cli import live, live_clock  # noqa: E402
 from test_stream import bundle, message, tracker  # noqa: E402
 
 WORN = "lwrist", "rwrist", "lankle", "rankle"
@@ -178,8 +178,8 @@ def stream(motion, tmp_path, monkeypatch):
             performer.now += held_up if "recording" in line else 0.0
         told, port = [], free_port()
         performer = Performer(motion[2], port, lambda: any("recording" in line for line in told), then)
-        monkeypatch.setattr(live, "time", performer)
-        monkeypatch.setattr(live, "_clock", lambda: None)  # packets count as of when they are asked for
+        monkeypatch.setattr(live_clock, "time", performer)
+        monkeypatch.setattr(live, "clock", lambda: None)  # packets count as of when they are asked for
         monkeypatch.setattr(live, "say", say)
         with performer.socket:
             done = gambol("reconstruct", "--stream", "osc", "--port", port, "--points", ",".join(WORN), "--method", "nearest",
@@ -220,14 +220,14 @@ def test_a_stream_that_falls_silent_as_the_recording_begins_is_waited_for(stream
 
 PROGRAM = """
 import sys
-from gambol.game.cli import live, main
-live._clock = lambda: None
-ticks = live._ticks
+from gambol.game.cli import live, live_clock, main
+live.clock = lambda: None
+ticks = live_clock.ticks
 def told(seconds, *more):
     for number, now in enumerate(ticks(seconds, *more)):
         print("tick", number, file=sys.stderr, flush=True)
         yield now
-live._ticks = told
+live_clock.ticks = told
 main()
 """
 
@@ -258,7 +258,7 @@ def test_a_program_that_hears_a_stream_keeps_it_when_it_is_ended_from_outside(mo
 def test_packets_that_were_kept_are_heard_again_into_a_motion_and_for_another_program(stream, motion, tmp_path, monkeypatch):
     told, made = stream(lambda seconds: True, "--seconds", 2, "--keep", tmp_path / "take.packets")
     assert any("take.packets: all packets" in line for line in told)
-    monkeypatch.setattr(live, "time", time)  # nobody performs any more
+    monkeypatch.setattr(live_clock, "time", time)  # nobody performs any more
     common = ["--points", ",".join(WORN), "--method", "nearest", "--database", motion[0]]
     done = gambol("reconstruct", tmp_path / "take.packets", "-o", tmp_path / "again.bvh", *common)
     assert done.exit_code == 0, done.output
@@ -310,8 +310,8 @@ def test_how_trackers_are_turned_is_heard_by_the_method_that_ships_and_again_fro
         told, port, out = [], free_port(), tmp_path / f"{turning}.bvh"
         performer = Turning(clip, port, lambda told=told: any("recording" in line for line in told), turning)
         with performer.socket, monkeypatch.context() as patched:
-            for name, value in (("time", performer), ("_clock", lambda: None), ("say", told.append)):
-                patched.setattr(live, name, value)
+            for module, name, value in ((live_clock, "time", performer), (live, "clock", lambda: None), (live, "say", told.append)):
+                patched.setattr(module, name, value)
             done = gambol("reconstruct", "--stream", "osc", "--port", port, "--points", "head,lwrist,rwrist", "-o", out, "--seconds", 2,
                           "--keep", tmp_path / f"{turning}.packets")
         assert done.exit_code == 0, done.output

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from gambol.controllers.body import STATURE
 from gambol.controllers.reconstruction.control_points import parse
 from gambol.controllers.reconstruction.pose_vector import SKELETON
-from gambol.game.cli import live
+from gambol.game.cli import live, live_clock
 from gambol.game.cli.base import Mistake
 
 
@@ -31,48 +31,48 @@ class Clock:
 @pytest.fixture(autouse=True)
 def clock(monkeypatch):
     turned = Clock()
-    monkeypatch.setattr(live, "time", turned)
+    monkeypatch.setattr(live_clock, "time", turned)
     return turned
 
 
 @given(st.lists(st.floats(0.0, 1.5), min_size=60, max_size=60))
 def test_frames_of_a_take_are_evenly_apart_however_slow_the_machine_is(works):
     """Each as long as none is ten seconds late."""
-    clock, skipped = live.time, []
+    clock, skipped = live_clock.time, []
     sum_, times = 0.0, []
-    for now, work in zip(live._ticks(1.0, live._BEHIND, skipped, live.Stop()), works):
+    for now, work in zip(live_clock.ticks(1.0, live_clock.BEHIND, skipped, live_clock.Stop()), works):
         times.append(now)
         sum_ += work
-        clock.now += work if sum_ < live._BEHIND else 0.0
+        clock.now += work if sum_ < live_clock.BEHIND else 0.0
     assert len(times) == 60 and not skipped
-    np.testing.assert_allclose(np.diff(times), 1 / live.FPS)
+    np.testing.assert_allclose(np.diff(times), 1 / live_clock.FPS)
 
 
 def test_frames_that_are_sent_on_are_left_out_where_they_would_come_too_late_and_that_is_counted(clock):
     skipped, late = [], []
-    for now in live._ticks(5.0, live._SENDING_BEHIND, skipped, live.Stop()):
+    for now in live_clock.ticks(5.0, live_clock.SENDING_BEHIND, skipped, live_clock.Stop()):
         late.append(clock.now - now)
         clock.now += 0.03
-    assert max(late) <= live._SENDING_BEHIND and len(late) == 300
+    assert max(late) <= live_clock.SENDING_BEHIND and len(late) == 300
     assert sum(skipped) + max(late) + 0.03 >= 300 * (0.03 - 1 / 60)
 
 
 def test_what_was_heard_until_a_take_is_ended_is_still_worked_through(clock, monkeypatch):
     """A machine three times too slow is 6.7 s behind after ten: it goes on for these, says so, and for no more."""
-    said, stop, times = [], live.Stop(), []
-    monkeypatch.setattr(live, "say", said.append)
-    for now in live._ticks(None, live._BEHIND, skipped := [], stop):
+    said, stop, times = [], live_clock.Stop(), []
+    monkeypatch.setattr(live_clock, "say", said.append)
+    for now in live_clock.ticks(None, live_clock.BEHIND, skipped := [], stop):
         times.append(now)
         clock.now += 0.05
         if clock.now >= 110.0 and stop.at == math.inf:
             stop.at = clock.now
-    assert not skipped and stop.at - 1 / live.FPS < times[-1] <= stop.at
-    np.testing.assert_allclose(np.diff(times), 1 / live.FPS)
+    assert not skipped and stop.at - 1 / live_clock.FPS < times[-1] <= stop.at
+    np.testing.assert_allclose(np.diff(times), 1 / live_clock.FPS)
     assert said == ["7 s of what was heard are still to come; Ctrl-C again leaves them out"]
 
 
 def test_who_ends_it_twice_ends_it_at_once(clock):
-    with live._stoppable() as stop:
+    with live_clock.stoppable() as stop:
         with pytest.raises(KeyboardInterrupt):  # nobody stands yet: there is nothing to keep
             signal.raise_signal(signal.SIGTERM)
         stop.gently = True

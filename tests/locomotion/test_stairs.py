@@ -165,3 +165,16 @@ def test_feet_rise_to_the_next_tread_but_one_without_a_jolt(locomotion, rise, tr
     """As they leave, before the riser that their toes stand at: they were thrown up by 4 m/s within a frame as the swing began."""
     found = walked(locomotion, rise, tread, height, speed)
     assert found.jerk < 20e3 and found.deep.max() < 0.015
+
+
+def test_who_steps_back_from_a_riser_has_no_foot_thrown_up_it(locomotion):
+    """The foot whose toes stand at it was thrown up by 4 cm for two frames, and dropped as it swung."""
+    around, skeleton = (SimpleNamespace(centre=(0.0, 0.08, 0.8), size=(6.0, 0.16, 1.0), heading=0.0, slope=0.0),), locomotion.skeleton
+    feet, thrown = [skeleton.index(name) for name in ("LeftFoot", "RightFoot")], []
+    for near in np.arange(-0.09, 0.1, 0.02):
+        state, heights = locomotion.start((0.0, -near, 0.0)), []
+        for frame in range(150):
+            state, pose = locomotion.step(state, Intent(np.array([-0.5 if frame > 20 else 0.0, 0.0, 0.0]), around=around), 1 / 60)
+            heights.append(forward_kinematics(skeleton, pose.root, pose.rotations)[0][feet, 1])
+        thrown.append(np.abs(np.diff(heights, 2, axis=0)).max())
+    assert max(thrown) < 0.01

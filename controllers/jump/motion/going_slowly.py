@@ -15,8 +15,10 @@ from ...body import HALF_SOLE, yaw
 from ..body import FLAT, Physique, Start, carriage
 from ..prior import EACH, LEGS, ROWS
 
-PUSHES, FLIES = 0.22, 0.25
-"""So long [s] his foot gives and pushes, and so long he flies, on Earth, at standard height: a low skip."""
+PUSHES = 0.22
+"""So long [s] his foot gives and pushes, on Earth, at standard height."""
+FLIES, FASTER = (0.25, 0.34), (0.9, 1.1)
+"""He flies so long [s] who goes no faster than the first of these [m/s], in a low skip, and longer up to the second, from which on he leaps as walkers do; at standard height."""
 LOW = 0.015
 """So much lower he leaves than on a straight leg [m], at standard height: it would have to straighten at once."""
 WITHIN = 0.6, 0.11, 0.05
@@ -64,7 +66,7 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     assert start.single is not None
     body, size = physique.tables, physique.size
     scale = math.sqrt(size * 9.81 / gravity)
-    pushes, flies = PUSHES * scale, FLIES * scale
+    pushes, flies = PUSHES * scale, airtime(start.velocity, size) * scale
     foot, facing = start.planted(floor, body)[start.single], yaw(start.heading)
     ball, turned = foot[:3] * FLAT, yaw(foot[3])
     rate = math.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / max(float(start.centre[1]) - floor, 0.3 * size))
@@ -86,6 +88,11 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     place = leave + velocity * flies + lands + [0.0, floor, 0.0]
     keeps = max(LEAVES[0] - eased * EASED[0], slow / pace) <= ahead <= max(LEAVES[1], min(LEAVES[2], fast / pace)) and aside <= STRAYS + eased * EASED[1] and past <= CROSSES * size
     return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
+
+
+def airtime(velocity: np.ndarray, size: float) -> float:
+    """How long somebody flies on Earth who goes so fast (3,) [m/s], at standard height [s]. size: over an adult's."""
+    return float(np.interp(np.linalg.norm(velocity * FLAT) / math.sqrt(size), FASTER, FLIES))
 
 
 def calm(keys: np.ndarray, start: Start, rows: np.ndarray | int, size: float) -> np.ndarray:

@@ -15,7 +15,7 @@ from ..body import (FLAT, TOUCH_REACH, TRAIL, BodyTables, Physique, Start, apex_
                     take_off_velocity, TURNED)
 from ..prior import BETWEEN, EACH, LEGS, ROWS, Prior
 from .hopping import hopping
-from .going_slowly import FLIES, beside, calm
+from .going_slowly import airtime as skips, beside, calm
 from .take_off import Running, Standing
 from .thrust import Push, push
 
@@ -165,7 +165,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         land = goal * FLAT - trail * lays + [0.0, goal[1] + height, 0.0]
         flight = float(airtime) if airtime is not None else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
-            ((FLIES if start.along else RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
+            ((skips(start.velocity, size) if start.along else RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
         fall = g * flight - float(velocity[1])
         features = [prior.features(speed, ahead, pace, size, start.runs)
