@@ -20,7 +20,7 @@ def frame_rate(told: Any, most: int = 240) -> Fraction:
     if rate is None or not 1 <= rate <= most:
         raise ValueError(f"needs frames a second from 1 to {most}, such as 30, 29.97 or 30000/1001; got {str(told)[:40]}")
     whole = round(rate * NTSC)
-    if rate.denominator > 1 and abs(rate * NTSC - whole) < NEAR:
+    if rate.denominator > 1 and whole > 1 and abs(rate * NTSC - whole) < NEAR:
         return whole / NTSC
     return rate.limit_denominator(1001)
 

@@ -21,6 +21,8 @@ ABOUT, CAMERAS, TRUTH = "footage.json", "cameras.toml", "truth.npz"
 KINDS = ("frame", "mask", "depth")
 """What there is of each frame: the picture, who is where (0 nobody, 1 the first, …), and how far [mm], 0 for nothing."""
 VERSION = 1
+FASTEST = 1000
+"""Cameras take no more frames a second."""
 UNSEEN = 0.3
 """So long [s] may no camera see somebody."""
 
@@ -192,7 +194,7 @@ def read_footage(folder: str | Path) -> Footage:
     if type(told.get("frames")) is not int or not 1 <= told["frames"] <= 10**7:
         raise FootageError(f"{folder / ABOUT}: frames: needs a whole number from 1 to {10**7}; film it anew")
     try:
-        fps = frame_rate(told.get("fps"), 1000)
+        fps = frame_rate(told.get("fps"), FASTEST)
     except ValueError as fault:
         raise FootageError(f"{folder / ABOUT}: fps: {fault}; film it anew") from None
     people = told.get("people")

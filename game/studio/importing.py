@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from gambol.controllers.files import reason
 from gambol.controllers.tracking.cameras import Lens
 
 from ..files import frame_rate, plain, whole
-from ..footage import FootageError, begun, complete, file_of, fingerprint
+from ..footage import FASTEST, FootageError, begun, complete, file_of, fingerprint
 
 BORDER = 16
 """A film may have so many columns and rows fewer than its camera was calibrated with: coders cut them off at the right and below."""
@@ -70,7 +71,7 @@ def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
             if not file.streams.video:
                 raise FootageError(f"{film}: holds no pictures: no film, or one that is cut short")
             stream = file.streams.video[0]
-            yield frame_rate(stream.average_rate or 30)
+            yield _rate(film, stream.average_rate or 30)
             for frame in file.decode(stream):
                 picture = frame.to_ndarray(format="rgb24")
                 more = np.array(lens.size[::-1]) - picture.shape[:2]
@@ -81,6 +82,13 @@ def _pictures(film: Path, lens: Lens) -> Iterator[Any]:
     except (FFmpegError, OSError) as fault:
         told = fault.strerror if isinstance(fault, FFmpegError) else reason(fault)
         raise FootageError(f"{film}: {str(told)[:1].lower()}{str(told)[1:]}: no film, or one that is cut short") from None
+
+
+def _rate(film: Path, told: Any) -> Fraction:
+    try:
+        return frame_rate(told, FASTEST)
+    except ValueError as fault:
+        raise FootageError(f"{film}: {fault}") from None
 
 
 def _kept(picture: np.ndarray, size: tuple[int, int], file: Path) -> None:

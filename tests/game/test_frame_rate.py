@@ -24,7 +24,11 @@ def test_rates_of_television_are_whole_ones_slowed_down(told, whole):
 def test_what_a_file_tells_is_what_was_written(rate):
     """As a number in JSON and back."""
     assert frame_rate(plain(frame_rate(rate))) == frame_rate(rate)
-    assert abs(frame_rate(rate) - rate) <= Fraction(5, 1000)
+    assert 1 <= frame_rate(rate) and abs(frame_rate(rate) - rate) <= Fraction(5, 1000)
+
+
+def test_slow_rates_stay_possible_and_cameras_may_be_faster():
+    assert frame_rate("1.001") >= 1 and frame_rate(300, 1000) == 300
 
 
 @pytest.mark.parametrize("told", ["", "fast", "0", "-3", "241", "nan", "inf", "1/0", "1/2/3", None, True, [30]])

@@ -1,6 +1,7 @@
 """Footage tracked: from masks and from painted pictures, from the truth's first poses or a file's, and what is said of broken folders."""
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -11,6 +12,7 @@ from stand_in import Glide
 from test_studio import Drawing
 from typer.testing import CliRunner
 
+from gambol.assets import path as asset
 from gambol.controllers.mocap import load as load_motion
 from gambol.controllers.tracking import Tracker
 from gambol.controllers.tracking.cameras import read_cameras
@@ -19,7 +21,7 @@ from gambol.game import cli
 from gambol.game.footage import FootageError, first_poses, person_in, read_footage, seen_in
 from gambol.game.meshes import surface_of
 from gambol.game.scenario.scenario import load
-from gambol.game.studio import Plan, Sensor, error_of, followed, overlaid, shoot
+from gambol.game.studio import Plan, Sensor, error_of, followed, imported, overlaid, shoot
 
 SCENARIO = """
 title = "Short"
@@ -208,6 +210,13 @@ def mp4(path, pictures, fps=30):
         for picture in pictures:
             file.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
         file.mux(stream.encode())
+
+
+def test_fast_films_become_footage_of_their_rate(tmp_path):
+    lens = replace(read_cameras(asset("cameras", "four.toml"))[0], name="fast").scaled(64)
+    mp4(tmp_path / "fast.mp4", [np.zeros((lens.size[1] // 2 * 2, 64, 3), np.uint8)] * 3, 480)
+    assert list(imported([tmp_path / "fast.mp4"], [lens], tmp_path / "real")) == [0, 1, 2]
+    assert read_footage(tmp_path / "real").fps == 480
 
 
 def test_real_films_become_footage_and_clicks_begin_a_track(footage, tmp_path):
