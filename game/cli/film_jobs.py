@@ -9,6 +9,7 @@ import itertools
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ class Job:
     folder: str
     cameras: str
     width: int | None
-    fps: int | None
+    fps: Fraction | None
     preset: str
     library: str | None
     character: str | None

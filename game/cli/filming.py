@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, Unit, Up, app, cores, learn, of_a_motion_file, person_of, plainly, progress_bar, reading_of, say, say_doubts, say_refused
+from .base import Library, Mistake, Preset, Quality, Unit, Up, app, cores, learn, of_a_motion_file, person_of, plainly, progress_bar, rate_of, reading_of, say, say_doubts, say_refused
 from .film_jobs import Job, at_once, count_of, frames, jobs_of, on_cluster
 
 
@@ -19,7 +19,7 @@ def film(scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO…", h
          out: Annotated[Path, typer.Option("-o", "--out", help="The folder for pictures and truth, of several films a folder each in it; what is there of the same film is gone on with.")],
          cameras: Annotated[Path | None, typer.Option(help="The cameras: a .toml file, or a calibration of Qualisys's; four round the origin by default.")] = None,
          width: Annotated[int | None, typer.Option(min=16, max=8192, help="Pictures so wide, all cameras scaled; as calibrated by default.")] = None,
-         fps: Annotated[int | None, typer.Option(min=1, max=240, help="Frames a second; the scenario's by default.")] = None,
+         fps: Annotated[str | None, typer.Option(help="Frames a second, 29.97, too; the scenario's by default.")] = None,
          seeds: Annotated[int, typer.Option(min=0, max=10_000, help="Film each so many times, with other noise; once, with the file's seed, by default.")] = 0,
          workers: Annotated[int | None, typer.Option(min=1, max=256, help="How many programs film at once; as many as there are cores by default.")] = None,
          cluster: Annotated[str | None, typer.Option(help="The address of a Dask cluster that films instead, on the same disk.")] = None,
@@ -33,12 +33,13 @@ def film(scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO…", h
     from ..scenario import scenario as tables
     from ..studio import read_sensor
 
+    rate = rate_of(fps)
     cameras = asset("cameras", "four.toml") if cameras is None else cameras
     lenses = read_cameras(cameras)
     read_sensor(cameras)  # told of before anything is drawn
     people: list[Path | None] = list(character or [None])
     names = [name if name in tables.shipped() else str(tables.locate(name).absolute()) for name in scenarios]
-    jobs = jobs_of(names, out, seeds, people, cameras=str(Path(cameras).absolute()), width=width, fps=fps, preset=preset.value,
+    jobs = jobs_of(names, out, seeds, people, cameras=str(Path(cameras).absolute()), width=width, fps=rate, preset=preset.value,
                    library=None if library is None else str(library.absolute()))
     for name in dict.fromkeys(names):
         say_doubts(name, tables.load(name))

@@ -1,6 +1,7 @@
 """Films of several cameras: footage that goes on where it was stopped and is read back, and many of them at once."""
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -116,6 +117,10 @@ def test_the_command_films(tmp_path, monkeypatch):
     assert done.exit_code == 0 and "2 cameras, 4 frames" in done.output
     assert "8 pictures were there already" in run().output
     assert run("--width", "32").exit_code == 2
+    slow = run("--fps", "fast")
+    assert slow.exit_code == 2 and "--fps: needs frames a second from 1 to 240" in slow.output
+    assert run("-o", str(tmp_path / "slower"), "--fps", "23.976").exit_code == 0
+    assert read_footage(tmp_path / "slower").fps == Fraction(24000, 1001)
     cameras.write_text("[front]\n")
     broken = run()
     assert broken.exit_code == 2 and "front: is no camera" in broken.output and "Traceback" not in broken.output
