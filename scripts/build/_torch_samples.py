@@ -61,7 +61,6 @@ class Body:
         self.group, self.twin, self.middle = get("group", torch.long), get("twin", torch.long), get("middle", torch.bool)
         self.parts, self.lying, self.side = get("parts"), get("lying"), get("side")
         self.kinds, self.often, self.lags = get("kinds", torch.bool), get("often"), get("lags", torch.long)
-        self.mixed_parts, self.mixed_told = get("mixed_parts", torch.long), get("mixed_told", torch.long)
         depth = [0] * len(self.parents)
         for j in range(1, len(depth)):
             depth[j] = depth[self.parents[j]] + 1
@@ -158,7 +157,7 @@ def worn(body: Body, count: int, dice: Dice) -> tuple[Tensor, ...]:
     placed = torch.where(free[:, None], dice.even(count, slots) < 0.6, body.kinds[kind.clamp(max=len(body.kinds) - 1)])
     sure = nn.functional.one_hot(dice.whole(2, 7, count), slots).bool()
     placed = placed | (sure & ~placed.any(-1, keepdim=True))
-    turning, way = torch.where(kind == 2, 0.8, torch.where(kind == 0, 0.65, 0.45)), dice.even(count)
+    turning, way = torch.where(kind == 2, 0.8, 0.45), dice.even(count)
     spins = placed & (way < turning)[:, None]
     spins = spins | (placed & ((way >= turning) & (way < turning + 0.1))[:, None] & (dice.even(count, slots) < 0.5))
     unplaced = spins & free[:, None] & (dice.even(count, slots) < 0.2) & ~sure
@@ -178,29 +177,10 @@ def worn(body: Body, count: int, dice: Dice) -> tuple[Tensor, ...]:
     return placed[:, None] & known, spins[:, None] & known, moved, off, spun, heading
 
 
-def mixed(body: Body, motion: Motion, count: int, which: Tensor, dice: Dice) -> Tensor:
-    """Whose trunk and arms there are: other moments (P, B) for those `which` (B,) are mixed, -1 for their own. See `mixing.mixed`."""
-    others = torch.stack([drawn(motion, count, dice) for _ in body.mixed_parts])
-    taken = which & (dice.even(len(others), count) < 0.6) & (motion.behind[others] >= body.lags[-1])
-    return torch.where(taken, others, -1)
-
-
-def moments(body: Body, motion: Motion, at: Tensor, offsets: Tensor, others: Tensor | None = None) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """truth (B, 63), places (B, L, S, 3), turns (B, L, S, 3, 3), there (B, L) of frames `at` (B,) on bodies: see `samples.moments_kernel`.
-
-    others: (P, B) see `mixed`.
-    """
+def moments(body: Body, motion: Motion, at: Tensor, offsets: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """truth (B, 63), places (B, L, S, 3), turns (B, L, S, 3, 3), there (B, L) of frames `at` (B,) on bodies: see `samples.moments_kernel`."""
     which = (at[:, None] - body.lags).clamp(min=0)
-    frames = motion.frames[at].clone()
-    if others is None:
-        own = motion.orientations[which].unflatten(-1, (3, 3))
-    else:
-        past = motion.frames[which]
-        for columns, other in zip(body.mixed_parts, others, strict=True):
-            theirs = motion.frames[(torch.where(other < 0, at, other)[:, None] - body.lags).clamp(min=0)]
-            past[..., columns] = theirs[..., columns]
-            frames[:, columns] = theirs[:, 0, columns]
-        own = body.orientations(past)
+    own = motion.orientations[which].unflatten(-1, (3, 3))
     ratio, joints = body.legs_of(offsets) / body.leg, body.positions(own, offsets[:, None])
     height = motion.frames[at, HEIGHT]
     lowest = height + body.positions(own[:, 0], body.offsets)[:, body.legs, 1].amin(-1)
@@ -211,7 +191,7 @@ def moments(body: Body, motion: Motion, at: Tensor, offsets: Tensor, others: Ten
                         (s * way[..., 0] + c * way[..., 1]) * ratio[:, None]], -1)
     heading = yaw(way[..., 2])[:, :, None]
     places = turned(heading, joints[:, :, body.slots]) + hips[:, :, None]
-    truth = frames
+    truth = motion.frames[at].clone()
     truth[:, HEIGHT] = height * ratio + up
     truth[:, YAW:] = 0
     return truth, places, product(heading, own[:, :, body.slots]), body.lags <= motion.behind[at][:, None]
@@ -261,10 +241,10 @@ class Batch:
 
 
 @torch.no_grad()
-def sample(body: Body, motion: Motion, at: Tensor, offsets: Tensor, wearing: tuple[Tensor, ...], others: Tensor | None = None) -> Batch:
-    """What is learnt from: frames `at` (B,), mixed with `others` (P, B), on bodies (B, J, 3), as trackers tell of them."""
+def sample(body: Body, motion: Motion, at: Tensor, offsets: Tensor, wearing: tuple[Tensor, ...]) -> Batch:
+    """What is learnt from: frames `at` (B,) on bodies (B, J, 3), as trackers tell of them."""
     placed, spins, moved, off, spun, astray = wearing
-    truth, places, turns, there = moments(body, motion, at, offsets, others)
+    truth, places, turns, there = moments(body, motion, at, offsets)
     places, turns = places + turned(turns, off) + moved, product(turns, spun)
     given = astray - motion.frames[at, YAW] / motion.fps
     inputs, ground = view(body, motion.fps, places, turns, placed & there[..., None], spins & there[..., None], offsets, given)
@@ -274,16 +254,10 @@ def sample(body: Body, motion: Motion, at: Tensor, offsets: Tensor, wearing: tup
     return Batch(inputs, truth, motion.stands[at], offsets, body.placed(truth, offsets))
 
 
-def drawn(motion: Motion, count: int, dice: Dice) -> Tensor:
-    """Frames (B,) that are learnt from."""
-    draw = torch.rand(count, device=dice.device, generator=dice.generator, dtype=torch.float64)
-    return motion.good[torch.searchsorted(motion.upto, draw).clamp(max=len(motion.good) - 1)]
-
-
-def batches(body: Body, motion: Motion, size: int, seed: int, share: float = 0.0) -> Iterator[Batch]:
-    """All that are drawn with a seed. share: how often bodies are mixed where trackers tell their parts apart."""
+def batches(body: Body, motion: Motion, size: int, seed: int) -> Iterator[Batch]:
+    """All that are drawn with a seed."""
     dice = Dice(torch.Generator(body.device).manual_seed(seed), body.device)
     while True:
-        at, wearing = drawn(motion, size, dice), worn(body, size, dice)
-        apart = wearing[0][:, :, body.mixed_told].any(1).all(-1) & (dice.even(size) < share)
-        yield sample(body, motion, at, bodies(body, size, dice), wearing, mixed(body, motion, size, apart, dice) if share else None)
+        draw = torch.rand(size, device=body.device, generator=dice.generator, dtype=torch.float64)
+        at = motion.good[torch.searchsorted(motion.upto, draw).clamp(max=len(motion.good) - 1)]
+        yield sample(body, motion, at, bodies(body, size, dice), worn(body, size, dice))

@@ -1,7 +1,6 @@
 """Learn the network for trackers from CMU's motion, and write assets/reconstruction/trackers.npz.
 
     python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER [--batches 78000] [--ship]
-    python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --on NETWORK.npz [--batches 6000] [--size 2048] [--half]
     python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --pack PACK.npz
     python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --weights WEIGHTS.npz
 
@@ -10,8 +9,7 @@ and cmu_30fps. --small: the folder whose clips scripts/measure/reconstruction.py
 are never learnt from, nor what a few subjects did (`evaluation.STRANGERS`). --work: where checkpoints lie; begun again it goes on from the last
 one, the same as if it had not stopped. --ship: write the network that the newest checkpoint holds, and learn nothing.
 It takes a night on one thread; progress is shown. The same seed gives the same network. --pack: write all that is learnt from, for
-scripts/build/trackers_torch.py, which learns on a graphics card in minutes; --weights: write the network of what that learnt. --on: go on from a network that was learnt, at
-a smaller rate; --size: samples in a batch; --half: products in half precision, by PyTorch.
+scripts/build/trackers_torch.py, which learns on a graphics card in minutes; --weights: write the network of what that learnt.
 """
 
 from __future__ import annotations
@@ -29,9 +27,8 @@ import numpy as np
 from gambol.controllers.files import whole
 from gambol.controllers.reconstruction.database import Database, DatabaseError, build
 from gambol.controllers.reconstruction.evaluation import learnt_from, small_of
-from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments, Network, packed
+from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments, packed
 
-MIXED = 0.6
 CHECKPOINT = "trackers-learning.npz"
 
 
@@ -47,10 +44,6 @@ def main() -> None:
     parser.add_argument("--ship", action="store_true", help="write the network of the newest checkpoint")
     parser.add_argument("--pack", type=Path, metavar="PACK.npz", help="write what is learnt from, and learn nothing")
     parser.add_argument("--weights", type=Path, metavar="WEIGHTS.npz", help="write the network of weights that were learnt elsewhere, and learn nothing")
-    parser.add_argument("--on", type=Path, metavar="NETWORK.npz", help="go on from this network")
-    parser.add_argument("--size", type=int, default=SIZE, help="samples in a batch")
-    parser.add_argument("--mixed", type=float, default=MIXED, help="how often bodies are mixed of several moments, see trackers/mixing.py")
-    parser.add_argument("--half", action="store_true", help="layers in half precision, by PyTorch: for processors that multiply bfloat16")
     parser.add_argument("--out", type=Path, default=SHIPPED, help="where to")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
@@ -64,16 +57,12 @@ def main() -> None:
         large = Database.open(options.large)
         database = learnt_from(large, small_of(large, options.small))
         _say(f"{len(database):,} poses of {len({take.subject for take in database.takes})} subjects, mirror images included")
-        moments = Moments.of(database, options.mixed)
+        moments = Moments.of(database)
         if options.pack:
             with whole(options.pack) as own, own.open("wb") as file:
                 np.savez_compressed(file, **packed(moments))
             return
-        learner = Learner(moments, options.batches, options.seed, size=options.size, began=None if options.on is None else Network.load(options.on))
-        if options.half:
-            from _half_layers import backward, forward
-
-            learner.forward, learner.backward = forward, backward
+        learner = Learner(moments, options.batches, options.seed)
         if options.weights:
             learner.take(options.weights)
         elif path.exists():
@@ -82,7 +71,7 @@ def main() -> None:
         elif options.ship:
             sys.exit(f"{path}: there is no checkpoint to ship")
         if not (options.ship or options.weights):
-            learner.learn(path, options.every, lambda done, count, loss: _say(f"batch {done} of {count}, {options.size} samples each: loss {loss:.4f}"))
+            learner.learn(path, options.every, lambda done, count, loss: _say(f"batch {done} of {count}, {SIZE} samples each: loss {loss:.4f}"))
     except (DatabaseError, ValueError) as error:
         sys.exit(str(error))
     options.out.parent.mkdir(parents=True, exist_ok=True)

@@ -57,12 +57,12 @@ def loss(body: Body, poses: Tensor, said: Tensor, batch: Batch) -> Tensor:
     return far + askew + SAYING * nn.functional.binary_cross_entropy_with_logits(said, batch.stands.float())
 
 
-def learn(body: Body, motion: Motion, net: Net, count: int, seed: int, mixed: float, told: Callable[[int, float], None]) -> tuple[Tensor, list[Tensor]]:
+def learn(body: Body, motion: Motion, net: Net, count: int, seed: int, told: Callable[[int, float], None]) -> tuple[Tensor, list[Tensor]]:
     """Means and deviations (2, 63) of poses, and the running mean of the weights after `count` batches.
 
-    mixed: how often bodies are mixed, see `_torch_samples`. told: called now and then with the batches done and the mean loss since.
+    told: called now and then with the batches done and the mean loss since.
     """
-    stream = batches(body, motion, SIZE, seed, mixed)
+    stream = batches(body, motion, SIZE, seed)
     truth = torch.cat([next(stream).truth for _ in range(2)])
     outs = torch.stack([truth.mean(0), truth.std(0).clamp(min=1e-3)])
     adam = torch.optim.Adam(net.parameters(), lr=RATE, fused=body.device == "cuda")
@@ -100,7 +100,6 @@ def main() -> None:
     parser.add_argument("--batches", type=int, default=9_753, help=f"of {SIZE} samples")
     parser.add_argument("--widths", type=int, nargs="+", default=[1536, 1536, 1536])
     parser.add_argument("--dropped", type=float, default=0.05, help="share of hidden layers that is left out at a time")
-    parser.add_argument("--mixed", type=float, default=0.6, help="how often bodies are mixed of several moments")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     device = "cuda" if torch.cuda.is_available() else "cpu"
@@ -111,7 +110,7 @@ def main() -> None:
     motion = Motion(pack, body)
     torch.manual_seed(options.seed)
     net, began = Net(int(pack["inputs"]), tuple(options.widths), options.dropped).to(device), time.time()
-    outs, mean = learn(body, motion, net, options.batches, options.seed, options.mixed,
+    outs, mean = learn(body, motion, net, options.batches, options.seed,
                        lambda done, off: print(f"batch {done} of {options.batches}: loss {off:.4f}, {time.time() - began:.0f} s", flush=True))
     save(options.out, outs, mean, options.batches * SIZE)
 

@@ -6,12 +6,10 @@ import pytest
 from gambol.controllers.reconstruction import SKELETON
 from gambol.controllers.reconstruction.database import Database, standing
 from gambol.controllers.reconstruction.database.database import Writer
-from gambol.controllers.reconstruction.pose_vector import JOINTS, WIDTH, encode
-from gambol.controllers.reconstruction.trackers import INPUTS, LAGS, PLACES, Learner, Moments, Network, bodies
+from gambol.controllers.reconstruction.pose_vector import encode
+from gambol.controllers.reconstruction.trackers import INPUTS, Learner, Moments, Network, bodies
 from gambol.controllers.reconstruction.trackers.learning import MEAN, adam_kernel, loss
-from gambol.controllers.reconstruction.trackers.mixing import BACK, PARTS, mixed, told
 from gambol.controllers.reconstruction.trackers.network import OUTPUTS
-from gambol.controllers.reconstruction.trackers.wearing import exactly
 from dolls import shipped, strides
 
 DT = 1 / 60
@@ -49,49 +47,6 @@ def test_truth_is_where_the_trackers_of_each_body_are(known):
     hips = np.stack([batch.truth[:, -1], batch.truth[:, 57]], -1)  # leftward, height
     assert np.median(np.abs(newest[fresh, 0] * 0.4 - hips[fresh, 0])) < 0.01
     assert np.median(np.abs(newest[fresh, 1] * 0.4 + 0.9 - hips[fresh, 1])) < 0.01
-
-
-def test_bodies_are_mixed_of_moments_where_trackers_tell_their_parts_apart(known):
-    """Hips and legs are the moment's own in every frame that is seen, trunk and arms another one's for as long; and nobody's where hands are not seen."""
-    moments, rng = Moments.of(known), np.random.default_rng(0)
-    frames, count = known.frames, 40
-    at, first = moments.which[-count:].astype(np.int64), moments.first[-count:].astype(np.int64)
-    there, begun = np.full(count, moments.which[0] + BACK + 3, np.int64), np.full(count, moments.first[0], np.int64)
-    which = np.arange(count) % 2 == 0
-    made, sound, here, start = mixed(known, at, first, which, lambda: (there, begun), rng)
-    assert sound.all() and (here - start == BACK - 1).all()
-    made, own = made.reshape(count, BACK, -1), frames[at[:, None] + np.arange(1 - BACK, 1)]
-    theirs = frames[there[:, None] + np.arange(1 - BACK, 1)]
-    parts = [np.concatenate([3 * list(JOINTS).index(SKELETON.index(name)) + np.arange(3) for name in names]) for names in PARTS]
-    rest = np.setdiff1d(np.arange(WIDTH), np.concatenate(parts))
-    assert len(rest) == WIDTH - 3 * 13 and np.array_equal(made[:, :, rest], own[:, :, rest])
-    assert np.array_equal(made[~which], own[~which])
-    taken = np.array([[np.array_equal(made[b][:, part], theirs[b][:, part]) for part in parts] for b in range(count)])
-    kept = np.array([[np.array_equal(made[b][:, part], own[b][:, part]) for part in parts] for b in range(count)])
-    assert (taken | kept).all() and 0.3 < (taken & ~kept)[which, 1:].mean() < 0.9  # the trunk of these is the same everywhere
-    placed = np.zeros((3, len(LAGS), len(PLACES)), bool)
-    placed[0] = placed[1, 2:] = placed[2] = True
-    placed[2, :, PLACES.index("LeftHand")] = False
-    assert told(placed).tolist() == [True, True, False]
-
-
-def test_mixed_bodies_are_drawn_and_others_stay_as_they_were(known):
-    plain, some = Moments.of(known).draw(200, 0, 1), Moments.of(known, 1.0).draw(200, 0, 1)
-    moved = np.abs(some.truth - plain.truth).max(-1) > 1e-6
-    assert 0.1 < moved.mean() < 0.9 and np.array_equal(plain.bodies, some.bodies) and np.array_equal(plain.contacts, some.contacts)
-    legs = [3 * list(JOINTS).index(SKELETON.index(name)) for name in ("LeftUpLeg", "RightLeg")]
-    assert np.allclose(some.truth[:, legs], plain.truth[:, legs])
-    assert np.array_equal(Moments.of(known, 1.0).draw(50, 0, 1, exactly(50, *[np.ones(len(PLACES), bool)] * 2)).truth,
-                          Moments.of(known).draw(50, 0, 1, exactly(50, *[np.ones(len(PLACES), bool)] * 2)).truth), "what is judged is as recorded"
-
-
-def test_learning_goes_on_from_a_network(known):
-    """It begins as that one, with its means and deviations, and counts what that one was learnt from."""
-    learner = Learner(Moments.of(known), 4, size=1024, began=shipped())
-    assert all(np.array_equal(a, b) for a, b in zip(learner.used(), [*shipped().weights, *shipped().biases], strict=True))
-    assert np.array_equal(learner.outs, shipped().outs)
-    learner.step()
-    assert learner.learnt == shipped().learnt + 2 and not np.array_equal(learner.values[0], shipped().weights[0])
 
 
 def test_learning_goes_on_from_a_checkpoint_the_same(known, tmp_path):

@@ -7,7 +7,6 @@ weights (Polyak & Juditsky 1992), so that it can be taken at any time. scripts/b
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
 from collections.abc import Callable
@@ -34,8 +33,7 @@ NEAR, STRAIGHT = 0.01, math.radians(2.0)
 """Distances [m] and turns [rad] count evenly from about here on, below by their squares."""
 SIZE = 512
 """Samples in a batch."""
-RATE, ON = 1.2e-3, 5e-4
-"""From nothing, and on from a network: at most."""
+RATE = 1.2e-3
 WARMING = 300
 """Batches in which the rate comes up, or a tenth of them all if they are few; then it falls along a cosine."""
 SAYING = 0.1
@@ -124,26 +122,18 @@ def adam_kernel(value, slope, first, second, share, scale, left):
 class Learner:
     """A network while it is learnt. moments: what from. batches: in all; the rate falls to nothing until then.
 
-    seed: of all that is drawn. hidden: the widths of the layers between, as wide as each other. began: a network to go on from instead.
+    seed: of all that is drawn. hidden: the widths of the layers between, as wide as each other.
     """
 
     rate, of, added, dropped = RATE, "", ADDED, DROPPED
     """Of learning; what a checkpoint must be of, beside seed, size and widths; see `ADDED`."""
-    forward, backward = staticmethod(forward), staticmethod(backward)
-    """Its layers, which others may do faster."""
 
-    def __init__(self, moments: Moments, batches: int, seed: int = 0, hidden: tuple[int, ...] = HIDDEN, size: int = SIZE,
-                 began: Network | None = None):
-        if began is not None:
-            hidden = tuple(len(bias) for bias in began.biases[:-1])
+    def __init__(self, moments: Moments, batches: int, seed: int = 0, hidden: tuple[int, ...] = HIDDEN, size: int = SIZE):
         self.moments, self.batches, self.seed, self.size, self.batch = moments, batches, seed, size, 0
         self.count = len(hidden) + 1
-        self.values = starting((INPUTS, *hidden, OUTPUTS), np.random.default_rng([seed, 0, 1])) if began is None else _copied(began)
+        self.values = starting((INPUTS, *hidden, OUTPUTS), np.random.default_rng([seed, 0, 1]))
         self.first, self.second = ([np.zeros_like(value) for value in self.values] for _ in range(2))
-        self.means, self.before = [value.copy() for value in self.values], 0
-        if began is not None:
-            self.rate, self.outs, self.added, self.before, self.of = ON, began.outs, began.added, began.learnt, _name(began)
-            return
+        self.means = [value.copy() for value in self.values]
         truth = moments.draw(_JUDGED, seed, _STANDARD).truth
         self.outs = np.stack([truth.mean(0), np.maximum(truth.std(0), 1e-3)])
 
@@ -152,7 +142,7 @@ class Learner:
         batch = self.moments.draw(self.size, self.seed, self.batch)
         weights, biases = self.values[:self.count], self.values[self.count:]
         kept = shares((self.size, len(biases[0])), self.count - 1, self.dropped, np.random.default_rng([self.seed, self.batch, 2]))
-        found, seen, own = self.forward(weights, biases, batch.inputs, self.added, kept)
+        found, seen, own = forward(weights, biases, batch.inputs, self.added, kept)
         out = np.asarray(found, float)
         out[:, :WIDTH] = out[:, :WIDTH] * self.outs[1] + self.outs[0]
         total, slopes = loss(out, batch)
@@ -160,7 +150,7 @@ class Learner:
         rate = self.rate * self.share()
         self.batch += 1
         share, scale = np.float32(rate / (1.0 - 0.9 ** self.batch)), np.float32(1.0 / (1.0 - 0.999 ** self.batch))
-        slopes = self.backward(weights, seen, own, slopes.astype(np.float32), self.added, kept)
+        slopes = backward(weights, seen, own, slopes.astype(np.float32), self.added, kept)
         for value, slope, first, second, mean in zip(self.values, slopes, self.first, self.second, self.means, strict=True):
             adam_kernel(value.reshape(-1), np.ascontiguousarray(slope).reshape(-1), first.reshape(-1), second.reshape(-1), share, scale, mean.reshape(-1))
         return total
@@ -213,7 +203,7 @@ class Learner:
         """The network as it is now: the weights' mean without its first steps, and how far off it is with some trackers."""
         used = self.used()
         bare = Network(tuple(used[:self.count]), tuple(used[self.count:]), self.outs, np.empty(0), np.empty(0), np.empty(0),
-                       *self.range(), 0, self.added)
+                       *self.range(), self.batch, self.added)
         kinds, factors, rests = [], [], []
         for text in KINDS:
             placed = members(text)
@@ -224,12 +214,7 @@ class Learner:
                 kinds.append(np.concatenate([placed, turned]))
                 factors.append(factor)
                 rests.append(rest)
-        return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.learnt, self.added)
-
-    @property
-    def learnt(self) -> int:
-        """Batches of `SIZE` samples that it was learnt from, those of the network it began as among them."""
-        return self.before + self.batch * self.size // SIZE
+        return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.batch, self.added)
 
     def used(self) -> list[np.ndarray]:
         """Weights, then biases, as a network has them."""
@@ -244,18 +229,6 @@ class Learner:
         frames = self.moments.database.frames[np.sort(self.moments.which[::max(1, len(self.moments) // 200_000)])]
         low, high = np.quantile(frames[:, :ANGLES].astype(float), (_RARE, 1.0 - _RARE), axis=0)
         return low - _WIDER, high + _WIDER
-
-
-def _copied(network: Network) -> list[np.ndarray]:
-    return [value.copy() for value in (*network.weights, *network.biases)]
-
-
-def _name(network: Network) -> str:
-    """What tells a network from others."""
-    told = hashlib.sha1()
-    for value in (*network.weights, *network.biases):
-        told.update(value.tobytes())
-    return told.hexdigest()
 
 
 def reduced(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..database import tracks_of
 from ..pose_vector import ANGLES, JOINTS, REFERENCE, SKELETON, WIDTH, mirror
-from . import mixing, wearing
+from . import wearing
 from .bodies import proportions
 from .samples import LEGS, Moments
 from .slots import INPUTS, LAGS, SLOTS
@@ -47,4 +47,4 @@ def packed(moments: Moments) -> dict[str, np.ndarray]:
             "good": new[moments.which[kept]], "share": share, "fps": np.array(database.fps), "lags": LAGS, "inputs": np.array(INPUTS),
             "offsets": SKELETON.offsets, "parents": SKELETON.parents, "reference": REFERENCE, "joints": JOINTS, "slots": SLOTS, "legs": LEGS,
             "mirror_columns": np.abs(columns).astype(np.int64) - 1, "mirror_signs": np.sign(columns),
-            "knee": np.array([SKELETON.index("Left" + name) for name in ("Leg", "Foot", "Toe")]), **proportions(), **wearing.sets(), **mixing.columns()}
+            "knee": np.array([SKELETON.index("Left" + name) for name in ("Leg", "Foot", "Toe")]), **proportions(), **wearing.sets()}

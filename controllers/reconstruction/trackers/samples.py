@@ -17,7 +17,6 @@ from ..ours import seen_from
 from ..pose_vector import FORWARD, HEIGHT, JOINTS, LEFTWARD, REFERENCE, SKELETON, WIDTH, YAW_RATE
 from ..regression import EXACT, kinematics_kernel
 from .bodies import bodies, legs
-from .mixing import mixed, told
 from .slots import INPUTS, LAGS, SLOTS, views_kernel
 from .wearing import Worn, worn
 
@@ -44,17 +43,16 @@ class Batch:
 class Moments:
     """Moments of a database to learn on. which: (M,) numbers of frames. first: (M,) where their takes begin. upto: (M,) in (0, 1],
     the share of draws that fall on them or those before. contacts: (N, 4) bool, of every frame of the database: left heel, left
-    ball, right heel, right ball. mixed: how often bodies are mixed of several moments where trackers tell them apart, see `mixing`."""
+    ball, right heel, right ball."""
 
     database: Database
     which: np.ndarray
     first: np.ndarray
     upto: np.ndarray
     contacts: np.ndarray
-    mixed: float = 0.0
 
     @staticmethod
-    def of(database: Database, mixed: float = 0.0) -> Moments:
+    def of(database: Database) -> Moments:
         """All sound moments of a database's takes. ValueError if there is none."""
         which, first, whose = [], [], []
         subjects = sorted({take.subject for take in database.takes})
@@ -67,29 +65,23 @@ class Moments:
             raise ValueError(f"{database.path}: has no sound frame to learn from")
         who = np.concatenate(whose)
         upto = np.cumsum(np.bincount(who)[who] ** (EVEN - 1.0))
-        return Moments(database, np.concatenate(which).astype(np.int32), np.concatenate(first).astype(np.int32), upto / upto[-1], contacts(database), mixed)
+        return Moments(database, np.concatenate(which).astype(np.int32), np.concatenate(first).astype(np.int32), upto / upto[-1], contacts(database))
 
     def __len__(self) -> int:
         return len(self.which)
 
     def draw(self, count: int, seed: int, number: int, wearing: Worn | None = None) -> Batch:
-        """A batch: the same for the same seed and number. wearing: which trackers there are; drawn, too, by default, and bodies mixed."""
+        """A batch: the same for the same seed and number. wearing: which trackers there are; drawn, too, by default."""
         rng = np.random.default_rng([seed, number])
-
-        def moments() -> tuple[np.ndarray, np.ndarray]:
-            chosen = np.searchsorted(self.upto, rng.random(count))
-            return self.which[chosen].astype(np.int64), self.first[chosen].astype(np.int64)
-        at, first = moments()
-        people, drawn = bodies(count, rng), wearing is None
-        wearing = wearing or worn(count, rng)
-        source = self.database.frames, self.database.sound, at, first
-        if drawn and self.mixed:
-            source = mixed(self.database, at, first, told(wearing.placed) & (rng.random(count) < self.mixed), moments, rng)
+        chosen = np.searchsorted(self.upto, rng.random(count))
+        at, first = self.which[chosen].astype(np.int64), self.first[chosen].astype(np.int64)
+        people = bodies(count, rng)
         shape = count, len(LAGS), len(SLOTS)
         places, turns, there = np.empty((*shape, 3)), np.empty((*shape, 3, 3)), np.empty(shape[:2], np.bool_)
         truth = np.empty((count, WIDTH))
-        moments_kernel(*source, 1.0 / self.database.fps, LAGS, SLOTS, people,
+        moments_kernel(self.database.frames, self.database.sound, at, first, 1.0 / self.database.fps, LAGS, SLOTS, people,
                        legs(people) / _STANDARD, SKELETON.offsets, SKELETON.parents, REFERENCE, FIRST, LEGS, truth, places, turns, there)
+        wearing = worn(count, rng) if wearing is None else wearing
         wearing = wearing.among(there)
         places, turns = wearing.spoilt(places, turns)
         heading = wearing.heading - self.database.frames[at, YAW_RATE].astype(float) / self.database.fps

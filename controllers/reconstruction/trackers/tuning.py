@@ -29,10 +29,13 @@ SHARE = 0.5
 class Tuner(Learner):
     """A network while it is learnt on. began: what it was. moments, batches, seed: as of a `Learner`. share: see `SHARE`."""
 
+    rate = RATE
+
     def __init__(self, began: Network, moments: Moments, batches: int = BATCHES, seed: int = 0, share: float = SHARE):
-        super().__init__(moments, batches, seed, began=began)
-        self.began, self.taken, self.rate = began, share, RATE
+        super().__init__(moments, batches, seed, tuple(len(bias) for bias in began.biases[:-1]))
+        self.began, self.taken, self.outs, self.added = began, share, began.outs, began.added
         self.anchors = [*began.weights, *began.biases]
+        self.values, self.means = ([value.copy() for value in self.anchors] for _ in range(2))
         told = hashlib.sha1(f"{batches}".encode())
         for part in (*self.anchors, moments.which, np.ascontiguousarray(moments.database.frames[::100])):
             told.update(part.tobytes())

@@ -10,21 +10,21 @@ from ...body import exp
 from .slots import LAGS, PLACES
 
 _SETS = (
-    (0.36, "Hips Head LeftHand RightHand LeftFoot RightFoot"),
-    (0.16, "LeftHand RightHand LeftFoot RightFoot"),
+    (0.24, "Hips Head LeftHand RightHand LeftFoot RightFoot"),
+    (0.22, "LeftHand RightHand LeftFoot RightFoot"),
     (0.15, "Head LeftHand RightHand"),
-    (0.05, "Hips LeftHand RightHand LeftFoot RightFoot"),
-    (0.04, "LeftHand LeftFoot RightFoot"),
-    (0.03, "LeftHand RightFoot"),
-    (0.05, "Head LeftHand RightHand LeftFoot RightFoot"),
+    (0.06, "Hips LeftHand RightHand LeftFoot RightFoot"),
+    (0.05, "LeftHand LeftFoot RightFoot"),
+    (0.04, "LeftHand RightFoot"),
+    (0.06, "Head LeftHand RightHand LeftFoot RightFoot"),
     (0.03, "Hips Spine2 Head LeftHand RightHand LeftFoot RightFoot"),
     (0.03, "Hips Spine2 Head LeftHand RightHand LeftFoot RightFoot LeftLeg RightLeg"),
     (0.02, " ".join(PLACES)),
 )
 """How often which trackers are worn together; the rest is any of them, each with `_ANY`."""
 _ANY = 0.6
-_TURNING, _SOME, _BODY, _HEAD = 0.45, 0.1, 0.65, 0.8
-"""So often all of them turn, so often some; and so often where there are six, or head and hands alone."""
+_TURNING, _SOME, _HEAD = 0.45, 0.1, 0.8
+"""So often all of them turn, so often some; and so often where head and hands are all there is."""
 _UNPLACED = 0.2
 """So many of any trackers that turn don't know where they are: inertial ones."""
 _BEGINNING, _LOST, _BACK = 0.15, 0.2, 0.1
@@ -89,7 +89,7 @@ def worn(count: int, rng: np.random.Generator) -> Worn:
     placed[free] = rng.random((int(free.sum()), len(PLACES))) < _ANY
     sure = rng.integers(2, 7, count)
     placed[np.arange(count), sure] |= ~placed.any(-1)
-    turning, way = np.select([kind == 0, kind == 2], [_BODY, _HEAD], _TURNING), rng.random(count)
+    turning, way = np.where(kind == 2, _HEAD, _TURNING), rng.random(count)
     turned = placed & (way < turning)[:, None]
     some = (way >= turning) & (way < turning + _SOME)
     turned |= placed & some[:, None] & (rng.random(placed.shape) < 0.5)

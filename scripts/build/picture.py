@@ -1,6 +1,6 @@
 """The moving picture of the README: a walk, a run, a leap and the control space, in a loop.
 
-    python scripts/build/pages/picture.py [-o docs/gambol.webp] [--size 640x360] [--fps 20]
+    python scripts/build/picture.py [-o docs/gambol.webp] [--size 640x360] [--fps 20]
 
 It is cut from the demo (assets/scenarios/demo.toml), without its captions.
 """
