@@ -3,6 +3,7 @@
     python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER [--batches 78000] [--ship]
     python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --pack PACK.npz
     python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --weights WEIGHTS.npz
+    python scripts/build/trackers.py LARGE --small FOLDER --work FOLDER --judge NETWORK.npz
 
 LARGE: a motion database (`gambol database build`) or a folder of motion files, of which CMU's are learnt from: those below cmu, cmu_bvh
 and cmu_30fps. --small: the folder whose clips scripts/measure/reconstruction.py measures on: takes that are tested or tuned on there
@@ -10,6 +11,7 @@ are never learnt from, nor what a few subjects did (`evaluation.STRANGERS`). --w
 one, the same as if it had not stopped. --ship: write the network that the newest checkpoint holds, and learn nothing.
 It takes a night on one thread; progress is shown. The same seed gives the same network. --pack: write all that is learnt from, for
 scripts/build/trackers_torch.py, which learns on a graphics card in minutes; --weights: write the network of what that learnt.
+--judge: write a network that was learnt with how far off it is told anew.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ import numpy as np
 from gambol.controllers.files import whole
 from gambol.controllers.reconstruction.database import Database, DatabaseError, build
 from gambol.controllers.reconstruction.evaluation import learnt_from, small_of
-from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments, packed
+from gambol.controllers.reconstruction.trackers import SHIPPED, SIZE, Learner, Moments, Network, judged, packed
 
 CHECKPOINT = "trackers-learning.npz"
 
@@ -44,6 +46,7 @@ def main() -> None:
     parser.add_argument("--ship", action="store_true", help="write the network of the newest checkpoint")
     parser.add_argument("--pack", type=Path, metavar="PACK.npz", help="write what is learnt from, and learn nothing")
     parser.add_argument("--weights", type=Path, metavar="WEIGHTS.npz", help="write the network of weights that were learnt elsewhere, and learn nothing")
+    parser.add_argument("--judge", type=Path, metavar="NETWORK.npz", help="write this network with how far off it is told anew, and learn nothing")
     parser.add_argument("--out", type=Path, default=SHIPPED, help="where to")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
@@ -61,6 +64,10 @@ def main() -> None:
         if options.pack:
             with whole(options.pack) as own, own.open("wb") as file:
                 np.savez_compressed(file, **packed(moments))
+            return
+        if options.judge:
+            with whole(options.out) as own:
+                judged(Network.load(options.judge), moments, options.seed).save(own)
             return
         learner = Learner(moments, options.batches, options.seed)
         if options.weights:

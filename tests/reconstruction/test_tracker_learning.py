@@ -7,9 +7,10 @@ from gambol.controllers.reconstruction import SKELETON
 from gambol.controllers.reconstruction.database import Database, standing
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.pose_vector import encode
-from gambol.controllers.reconstruction.trackers import INPUTS, Learner, Moments, Network, bodies
-from gambol.controllers.reconstruction.trackers.learning import MEAN, adam_kernel, loss
+from gambol.controllers.reconstruction.trackers import INPUTS, PLACES, Learner, Moments, Network, bodies, judged
+from gambol.controllers.reconstruction.trackers.learning import _JUDGED, _STANDARD, MEAN, UNSURE, adam_kernel, loss
 from gambol.controllers.reconstruction.trackers.network import OUTPUTS
+from gambol.controllers.reconstruction.trackers.wearing import exactly
 from dolls import shipped, strides
 
 DT = 1 / 60
@@ -130,3 +131,16 @@ def test_bodies_are_symmetric_and_the_same_from_the_same_seed():
     assert np.array_equal(made, bodies(50, np.random.default_rng(1)))
     assert np.allclose(np.linalg.norm(made[:, left], axis=-1), np.linalg.norm(made[:, right], axis=-1))
     assert np.linalg.norm(made[:, left], axis=-1).std() > 0.01
+
+
+def test_how_far_off_it_is_is_told_of_errors_as_they_are_and_half_of_what_they_have_to_do_with_each_other(known):
+    """Variances are those of its errors on what it is judged on, covariances half of them."""
+    moments, every = Moments.of(known), np.ones(len(PLACES), bool)
+    found = judged(shipped(), moments)
+    batch = moments.draw(_JUDGED, 0, _STANDARD + 1, exactly(_JUDGED, every, every))
+    errors = shipped().predict(batch.inputs)[0] - batch.truth
+    covariance, told = errors.T @ errors / len(errors), found.spread(every, every)
+    np.testing.assert_allclose(np.diagonal(told), np.diagonal(covariance), rtol=1e-4, atol=1e-9)
+    apart = ~np.eye(len(told), dtype=bool)
+    np.testing.assert_allclose(told[apart], UNSURE * covariance[apart], rtol=1e-3, atol=1e-8)
+    assert all(np.array_equal(a, b) for a, b in zip(found.weights, shipped().weights, strict=True))

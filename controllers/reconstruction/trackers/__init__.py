@@ -3,7 +3,7 @@ contacts, and the most probable pose on the performer's own skeleton.
 """
 
 from .bodies import bodies, legs
-from .learning import HIDDEN, SIZE, Learner
+from .learning import HIDDEN, SIZE, Learner, judged
 from .network import SHIPPED, Network
 from .packed import packed
 from .samples import FIRST, LEGS, Moments, moments_kernel
@@ -13,5 +13,5 @@ from .tuning import BATCHES, SHARE, Tuner
 
 __all__ = [
     "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
-    "legs", "moments_kernel", "packed",
+    "judged", "legs", "moments_kernel", "packed",
 ]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,8 +41,8 @@ SAYING = 0.1
 """How much the four contacts weigh in the loss."""
 MEAN = 0.999
 """What is left of the weights' mean a batch later."""
-RANK = 24
-"""Rows of the errors' factors; the rest of each number's variance is kept apart."""
+UNSURE = 0.5
+"""So little of what the errors of a pose's numbers have to do with each other is believed of other people (shrinkage, Ledoit & Wolf 2004)."""
 KINDS = ("Hips Head LeftHand RightHand LeftFoot RightFoot", "LeftHand RightHand LeftFoot RightFoot", "Head LeftHand RightHand",
          "Hips LeftHand RightHand LeftFoot RightFoot", "LeftHand LeftFoot RightFoot", "RightHand LeftFoot RightFoot",
          "LeftHand RightFoot", "RightHand LeftFoot", "Head LeftHand RightHand LeftFoot RightFoot",
@@ -204,17 +205,7 @@ class Learner:
         used = self.used()
         bare = Network(tuple(used[:self.count]), tuple(used[self.count:]), self.outs, np.empty(0), np.empty(0), np.empty(0),
                        *self.range(), self.batch, self.added)
-        kinds, factors, rests = [], [], []
-        for text in KINDS:
-            placed = members(text)
-            for turned in (np.zeros_like(placed), placed):
-                batch = self.moments.draw(_JUDGED, self.seed, _STANDARD + 1, exactly(_JUDGED, placed, turned))
-                errors = bare.predict(batch.inputs)[0] - batch.truth
-                factor, rest = reduced(self.believed(errors.T @ errors / len(errors), placed, turned))
-                kinds.append(np.concatenate([placed, turned]))
-                factors.append(factor)
-                rests.append(rest)
-        return Network(bare.weights, bare.biases, bare.outs, np.stack(kinds), np.stack(factors), np.stack(rests), bare.lower, bare.upper, self.batch, self.added)
+        return judged(bare, self.moments, self.seed, self.believed)
 
     def used(self) -> list[np.ndarray]:
         """Weights, then biases, as a network has them."""
@@ -231,8 +222,26 @@ class Learner:
         return low - _WIDER, high + _WIDER
 
 
-def reduced(covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows (RANK, D) and the rest (D,) of a covariance (D, D): what its strongest directions say, and each number's own variance beside."""
+def judged(network: Network, moments: Moments, seed: int = 0, believed: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None = None) -> Network:
+    """The network with how far off it is on moments, with the trackers of `KINDS`. believed: see `Learner`."""
+    kinds, factors = [], []
+    for text in KINDS:
+        placed = members(text)
+        for turned in (np.zeros_like(placed), placed):
+            batch = moments.draw(_JUDGED, seed, _STANDARD + 1, exactly(_JUDGED, placed, turned))
+            errors = network.predict(batch.inputs)[0] - batch.truth
+            covariance = shrunk(errors.T @ errors / len(errors))
+            kinds.append(np.concatenate([placed, turned]))
+            factors.append(root(covariance if believed is None else believed(covariance, placed, turned)))
+    return replace(network, kinds=np.stack(kinds), factors=np.stack(factors), rests=np.full((len(kinds), WIDTH), 1e-10))
+
+
+def shrunk(covariance: np.ndarray) -> np.ndarray:
+    """A covariance (D, D) as it is believed of others: variances as they are, the rest `UNSURE`."""
+    return (1.0 - UNSURE) * covariance + UNSURE * np.diag(np.diagonal(covariance))
+
+
+def root(covariance: np.ndarray) -> np.ndarray:
+    """Rows (D, D) whose squares sum up to a covariance (D, D)."""
     values, vectors = np.linalg.eigh(covariance)
-    rows = np.sqrt(np.maximum(values[-RANK:], 0.0))[:, None] * vectors[:, -RANK:].T
-    return rows, np.maximum(np.diagonal(covariance) - (rows ** 2).sum(0), 1e-10)
+    return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
