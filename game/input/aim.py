@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import SETS_FEET, SLOWLY
+from gambol.controllers.jump import SETS_FEET, SLOWLY, TOO_NEAR
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top, past_edge
@@ -122,10 +122,10 @@ class Aim:
     even: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
-             farthest: float = math.inf, even: bool = False) -> Aim:
+             farthest: float = math.inf, even: bool = False, now: CharacterState | None = None) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
         the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first.
-        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free."""
+        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free. now: how it goes until then, where that is another state."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
@@ -144,7 +144,11 @@ class Aim:
             if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
                 offset = _ring(state)
                 return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
-            given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
+            goes = _pace(state if now is None else now)
+            slows = not self.moving and goes > STANDS and state.refused.startswith(TOO_NEAR)
+            if slows and goes > MOVING and even and not stays and math.hypot(*offset) < NEAR:
+                return self._led_on(state if now is None else now, dt)
+            given_up = self.waiting <= dt and not aloft or not self.moving and not sets and not slows and state.refused
             pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
             if given_up:
                 return Aim()
@@ -161,6 +165,11 @@ class Aim:
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
         return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state), even=even)
+
+    def _led_on(self, state: CharacterState, dt: float) -> Aim:
+        """The same of one who wants to leap straight up, but comes down too fast for that: the ring lies ahead of him, as of everybody who goes so fast."""
+        x, z = _ring(state)
+        return replace(self, waiting=self.waiting - dt, moving=True, offset=(x, z), place=(float(state.ground[0]) + x, float(state.ground[1]) + z), course=course_of(state))
 
     def _gone_round(self, state: CharacterState) -> Aim:
         """The same of one who goes along an arc as he waits, and has turned: his ring stays ahead of him, as far away as it is."""
@@ -236,7 +245,7 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
-        if self._goes(state):
+        if self._goes(state) and not (self.rests and state.active == "jump"):
             return Leap(None, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
