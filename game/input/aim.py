@@ -25,8 +25,9 @@ from .wish import Wish, in_view
 
 MOVING = 0.9
 """Faster than this [m/s] the jump goes on the way one goes."""
-GOES = 0.35
-"""And faster than this [m/s], aside and backward, too, of who is held to go by a stick, and has even floor before him: a small leap, off one foot onto the other."""
+GOES, CREEPS = (0.35, 0.14), 0.45
+"""And faster than the first of these [m/s], aside and backward, too, of who is held to go by a stick, and has even floor before him: a small leap, off one foot onto the other. Or
+than the other, whose stick is tilted by no more than the third: he goes about as fast as it asks, and does not set off."""
 ARC, BENDS, BENT = 0.1, 0.26, 0.05
 """Faster than the first [rad/s] somebody goes along an arc. He leans into it, so that his foot sends him so long [s] farther round it: there the ring lies, and stays ahead of
 who turns by more than the third [rad] as he waits for his footfall."""
@@ -68,7 +69,7 @@ TURNS_ROUND = 0.2
 """Who holds the button for longer [s] turns to the ring on his feet meanwhile, and to one on something goes on with that when it is let go: one leaps farther ahead than aside."""
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
-RESTS, FALLING = 0.35, 0.1
+RESTS, FALLING = 0.12, 0.1
 """A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
 
 Reaches = Callable[[float], float]
@@ -106,6 +107,7 @@ class Aim:
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
+    skips: he went slowly enough for that as he let go.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -120,6 +122,7 @@ class Aim:
     tilt: float = 0.0
     course: float = 0.0
     even: bool = False
+    skips: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf, even: bool = False, now: CharacterState | None = None) -> Aim:
@@ -139,7 +142,7 @@ class Aim:
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*self.offset) >= NEAR else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*self.offset) >= NEAR else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even, skips=self.moving and _pace(state) < SLOWLY[1])
             sets = state.refused == SETS_FEET
             if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
                 offset = _ring(state)
@@ -154,7 +157,7 @@ class Aim:
                 return Aim()
             gone = self._gone_round(state)
             return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt, even=even)
-        moving, heading, place = _pace(state) > (GOES if even and tilt >= RESTS and not stays else MOVING), None, None  # who goes back from it stands soon
+        moving, heading, place = _pace(state) > (self._least(state, tilt) if even and not stays else MOVING), None, None  # who goes back from it stands soon
         if moving:
             offset = _ring(state)
         else:
@@ -165,6 +168,13 @@ class Aim:
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
         return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state), even=even)
+
+    def _least(self, state: CharacterState, tilt: float) -> float:
+        """Faster than this [m/s] a leap goes on the way of one before whom the floor is even, whose stick is tilted so far. Who aims from a stand moves the ring with it, as he
+        turns, too."""
+        if tilt < RESTS:
+            return MOVING
+        return GOES[tilt <= CREEPS and state.active != "jump" and (self.moving or not self.aiming)]
 
     def _led_on(self, state: CharacterState, dt: float) -> Aim:
         """The same of one who wants to leap straight up, but comes down too fast for that: the ring lies ahead of him, as of everybody who goes so fast."""
@@ -190,7 +200,8 @@ class Aim:
 
     def _goes(self, state: CharacterState) -> bool:
         """Whether somebody goes on by a small leap, slowly, aside or backward."""
-        return self.moving and self.even and _pace(state) < SLOWLY[1]
+        # who brakes from a run leaps to where he let go of the ring as long as he can
+        return self.moving and self.even and _pace(state) < (SLOWLY[1] if self.aiming or self.skips or state.refused else MOVING)
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
@@ -246,7 +257,8 @@ class Aim:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
         if self._goes(state) and not (self.rests and state.active == "jump"):
-            return Leap(None, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
+            turns = self.course if abs(float(state.velocity[1])) > ARC and _pace(state) > MOVING else None
+            return Leap(None, heading=turns, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])
