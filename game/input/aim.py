@@ -41,6 +41,9 @@ FARTHEST = 1.4
 """How far from a standing body the ring may be, over how far it leaps over level ground: so far it may leap down."""
 BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
+ONTO, STEADY = 0.05, 0.02
+"""And on a box so far beyond what it reaches [m]: who aims farther is off later, as he looks for where he can land instead. There it lies on a grid so fine [m], lest another leap be asked, and
+looked for anew, with each millimetre that somebody still glides."""
 CLIMBS = 1.5
 """Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
 OVER_EDGE = 0.86, 1.9
@@ -284,7 +287,7 @@ class Aim:
         aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring, and to one on something first
         there = floor_at(*place, around, floor + UP)
         far, up, reach = math.hypot(x, z), max(there - floor, 0.0), reaches(aside)
-        stops = reach - CLIMBS * up + BEYOND
+        stops = reach - CLIMBS * up + (ONTO if up > LOWER else BEYOND)
         if LOWER < up and reach < math.inf:
             past = past_edge(place, (float(state.ground[0]), float(state.ground[1])), there, around)
             stops = min(stops, far - max(past - max(OVER_EDGE[0] * reach - OVER_EDGE[1] * up, 0.0), 0.0))
@@ -292,6 +295,7 @@ class Aim:
         if share >= 1.0 or there < floor - LOWER:
             return place
         near = float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
+        near = near if up <= LOWER else (STEADY * round(near[0] / STEADY), STEADY * round(near[1] / STEADY))
         return near if floor_at(*near, around, floor + UP) > there - LOWER else place  # else it is too far off for any leap, which is told
 
     def _askew(self, state: CharacterState) -> bool:
