@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import SETS_FEET, SLOWLY, TOO_NEAR
+from gambol.controllers.jump import PACE, SETS_FEET, SLOWLY, TOO_NEAR
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top, past_edge
@@ -33,6 +33,8 @@ ARC, BENDS, BENT = 0.1, 0.26, 0.05
 who turns by more than the third [rad] as he waits for his footfall."""
 STANDS = 0.2
 """Who still walks faster than this [m/s] as he lets go of a ring at which he aimed from a stand comes to rest before it: it stays where it is."""
+RESTED = 0.03
+"""And who is faster than this [m/s] is not refused yet for his pace: once he rests he may leap after all."""
 PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
 SWINGS = 3.0
@@ -151,8 +153,8 @@ class Aim:
                 offset = _ring(state)
                 return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
             goes = _pace(state if now is None else now)
-            slows = not self.moving and goes > STANDS and state.refused.startswith(TOO_NEAR)
-            if slows and goes > MOVING and even and not stays and math.hypot(*offset) < NEAR:
+            slows = not self.moving and goes > RESTED and state.refused.startswith(PACE)  # once he rests he is asked again
+            if slows and goes > MOVING and state.refused.startswith(TOO_NEAR) and even and not stays and math.hypot(*offset) < NEAR:
                 return self._led_on(state if now is None else now, dt)
             given_up = self.waiting <= dt and not aloft or not self.moving and not sets and not slows and state.refused
             pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0

@@ -184,6 +184,8 @@ def test_who_comes_down_too_fast_to_leap_straight_up_has_the_ring_ahead_of_him_o
         waits = asked.step(FREE, 0.0, rests, False, DT, even=even, now=now)
         assert not waits.moving and 0.0 < waits.waiting < asked.waiting
     assert not asked.step(FREE, 0.0, rests, False, DT, even=True).wants, "who stands is refused at once"
+    assert asked.step(FREE, 0.0, standing((0.1, 0.0, 0.0), refused="too far for this pace: no foot speeds up so much in one step"), False, DT).wants, "he rests soon"
+    assert not asked.step(FREE, 0.0, standing((0.1, 0.0, 0.0), refused="too far: 2.0 m"), False, DT).wants, "who is refused for something else is told at once"
 
 
 def test_the_ring_stays_ahead_of_who_lets_go_of_it_in_the_air_and_goes_on():
